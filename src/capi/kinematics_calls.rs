@@ -201,8 +201,8 @@ pub unsafe extern "C" fn GetPalmPose(i: c_int, Pose: *mut PalmPose) -> c_int {
 ///   Gravity   Gravity[3]: gravity along x, y, z of the palm's frame, m/s^2. Always double
 ///
 /// Replaces hand.gravity until CloseHand. Every finger compensates the new gravity within a cycle and
-/// without a jump in torque. It also acts on simulated fingers, but not on a simulated object. The
-/// monitors begin again with every change, so a planner should not change gravity more often than it needs.
+/// without a jump in torque. It also acts on simulated fingers and on a simulated object. The monitors
+/// begin again with every change, so a planner should not change gravity more often than it needs.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child

@@ -6,9 +6,9 @@ use crate::model::configuration::Unusable;
 
 impl Hand {
     /// Sets gravity in the palm's frame, m/s^2: `hand.gravity` for the time until the hand is closed. Every finger
-    /// compensates the new gravity within a cycle and without a jump in torque. It also acts on simulated fingers, but
-    /// not on a simulated object. The black box of every finger stores the gravity with the controller that
-    /// compensates it, so that a recording can be replayed.
+    /// compensates the new gravity within a cycle and without a jump in torque. It also acts on simulated fingers and
+    /// on a simulated object. The black box of every finger stores the gravity with the controller that compensates
+    /// it, so that a recording can be replayed.
     ///
     /// The call constructs new controllers, as [`Hand::adjust`] does, and takes some hundred microseconds. The monitors
     /// begin again with every change.
@@ -36,6 +36,7 @@ impl Hand {
             refusal = refusal.or(given.err());
             self.simulated.with_finger(finger, |simulated| simulated.plant().set_gravity(changed.gravity(finger)));
         }
+        self.simulated.set_object_gravity(gravity);
         *configuration = changed;
         refusal.map_or(Ok(()), Err)
     }

@@ -65,6 +65,11 @@ impl SimulatedHand {
         }
     }
 
+    /// Sets the gravity that acts on the object, if there is one, m/s^2 in the palm's frame.
+    pub fn set_object_gravity(&self, gravity: [f64; 3]) {
+        self.coupled.iter().for_each(|ports| ports.set_object_gravity(gravity.into()));
+    }
+
     /// Returns the state of the object. `None`: there is no object.
     pub fn object(&self) -> Option<ObjectState> {
         self.object_view().map(|view| view.state())

@@ -116,6 +116,11 @@ impl FreeObject {
         self.forces.map(|force| -force)
     }
 
+    /// Sets the gravity, m/s^2 in the palm's frame. The table stays where it is.
+    pub fn set_gravity(&mut self, gravity: Vector3<f64>) {
+        self.gravity = gravity;
+    }
+
     /// Returns the position of the middle, m.
     pub fn position(&self) -> Vector3<f64> {
         self.position

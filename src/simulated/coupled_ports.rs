@@ -11,6 +11,7 @@ use crate::simulated::finger::SimulatedFinger;
 use crate::simulated::pseudo_terminal::{Closed, PseudoTerminal};
 use crate::simulated::scene::{ObjectState, Scene};
 use crate::simulated::shared_time::SharedTime;
+use nalgebra::Vector3;
 use parking_lot::Mutex;
 use std::io;
 use std::path::PathBuf;
@@ -116,6 +117,11 @@ impl CoupledPorts {
     /// meanwhile, so `look` must be short.
     pub fn with_finger<R>(&self, finger: FingerNumber, look: impl FnOnce(&mut SimulatedFinger) -> R) -> Option<R> {
         self.shared.lock().boards[finger.index()].as_mut()?.fingers().first_mut().map(look)
+    }
+
+    /// Sets the gravity that acts on the object, m/s^2 in the palm's frame.
+    pub fn set_object_gravity(&self, gravity: Vector3<f64>) {
+        self.shared.lock().scene.object().set_gravity(gravity);
     }
 
     /// Returns the view of the object's state.

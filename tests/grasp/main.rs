@@ -3,3 +3,4 @@
 mod holding;
 mod rig;
 mod shared_cable;
+mod slipping;

@@ -4,7 +4,10 @@ use crate::shared_cable::SharedCable;
 use nalgebra::{Matrix3, Point3, Vector3};
 use sun2xp::board::{Link, Terms};
 use sun2xp::control::{Law, spatial};
-use sun2xp::finger::{BlackBox, FingerServo, Mailbox, ServedPort, Servo, Stage};
+use sun2xp::finger::events::EventKind;
+use sun2xp::finger::{
+    BlackBox, Bulletin, Condition, FingerServo, Mailbox, Reaction, Reflex, Reflexes, ServedPort, Servo, Stage,
+};
 use sun2xp::model::configuration::{Configuration, ConfiguredObject, FINGERS, ObjectShape};
 use sun2xp::model::{FingerNumber, InverseKinematics};
 use sun2xp::realtime::{Clock, Consumer, CycleTiming, Schedule, ring};
@@ -21,6 +24,7 @@ pub struct GraspingHand {
     cable: SharedCable,
     servo: Servo<SharedCable, SharedCable>,
     mailboxes: Vec<Mailbox>,
+    reflexes: Vec<Reflexes>,
     configuration: Configuration,
     _unread: Vec<(Consumer<CycleTiming>, BlackBox)>,
 }
@@ -59,6 +63,7 @@ impl GraspingHand {
         let cable = SharedCable::new(SimulatedBoard::new(&configuration, &FingerNumber::ALL).expect("a board"));
         let mut link = Link::new(cable.clone());
         let (mut fingers, mut mailboxes, mut unread) = (Vec::new(), Vec::new(), Vec::new());
+        let (bulletin, mut reflexes) = (Bulletin::new(), Vec::new());
         for number in FingerNumber::ALL {
             let finger = &configuration.fingers[number.index()];
             let deadline = Clock::now(&cable) + 1_000_000_000;
@@ -71,14 +76,16 @@ impl GraspingHand {
             let (servo, mailbox) =
                 FingerServo::new(&configuration, number, stiffness, &identity, &configured, producer, recorder)
                     .expect("a finger");
+            let (servo, rules) = servo.with_reflexes(number, &bulletin);
             fingers.push(servo);
+            reflexes.push(rules);
             mailboxes.push(mailbox);
             unread.push((timings, black_box));
         }
         let period = configuration.hand.period();
         let schedule = Schedule::new(Clock::now(&cable) + period, period);
         let servo = Servo::new(cable.clone(), schedule, vec![ServedPort::new(link, fingers)]);
-        let mut hand = Self { cable, servo, mailboxes, configuration, _unread: unread };
+        let mut hand = Self { cable, servo, mailboxes, reflexes, configuration, _unread: unread };
         for _ in 0..10_000 {
             hand.servo.cycle();
             if hand.mailboxes.iter().all(|mailbox| mailbox.report().stage == Stage::Running) {
@@ -114,6 +121,23 @@ impl GraspingHand {
         for mailbox in &self.mailboxes {
             let stiffness = spatial(&Matrix3::from_diagonal_element(newton_per_cm));
             mailbox.send(|set_point| set_point.stiffness = stiffness).expect("not faulted");
+        }
+    }
+
+    /// Makes all fingers press harder toward the middle when the contact of one of them is about to slip.
+    pub fn tighten_on_slip(&self, by: f64, most: f64) {
+        for (number, outward) in FingerNumber::ALL.into_iter().zip(directions()) {
+            let direction = self.configuration.finger_to_palm(number).inverse_transform_vector(&-outward);
+            let reaction = Reaction::Grip { direction, by, most };
+            for slipping in FingerNumber::ALL {
+                let condition = if slipping == number {
+                    Condition::Event(EventKind::Slip)
+                } else {
+                    Condition::OtherFinger { finger: slipping, event: EventKind::Slip }
+                };
+                let reflex = Reflex { condition, reaction, priority: 0, refractory: 0.0, inhibition: 0.0 };
+                self.reflexes[number.index()].install(reflex).expect("a place");
+            }
         }
     }
 

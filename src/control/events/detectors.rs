@@ -4,6 +4,7 @@ use super::arrival::{Arrival, ArrivalDetector, ArrivalState};
 use super::contact_edges::{ContactBefore, ContactEdges};
 use super::joint_limits::JointLimits;
 use super::observation::Observations;
+use super::slip::{SlipDetector, SlipState};
 use super::tension_bounds::TensionBounds;
 use crate::control::signals::{Report, SetPoint};
 use crate::model::configuration::ConfiguredFinger;
@@ -15,6 +16,7 @@ pub struct Detectors {
     tensions: TensionBounds,
     joints: JointLimits,
     arrival: ArrivalDetector,
+    slip: SlipDetector,
 }
 
 /// The state of the detectors.
@@ -26,6 +28,7 @@ pub struct DetectorState {
     /// Whether each joint is at a limit.
     joints: [bool; 3],
     arrival: ArrivalState,
+    slip: SlipState,
 }
 
 impl Detectors {
@@ -36,6 +39,7 @@ impl Detectors {
             tensions: TensionBounds::new(&finger.events),
             joints: JointLimits::new(finger),
             arrival: ArrivalDetector::new(&finger.events, rate),
+            slip: SlipDetector::new(&finger.events, rate),
         }
     }
 
@@ -46,6 +50,8 @@ impl Detectors {
         self.tensions.observe(&mut state.tensions, report, &mut observations);
         self.joints.observe(&mut state.joints, report, &mut observations);
         self.arrival.observe(&mut state.arrival, report, set_point, &mut observations);
+        let settled = state.arrival().settled;
+        self.slip.observe(&mut state.slip, &report.contact, settled, &mut observations);
         observations
     }
 }
@@ -58,6 +64,7 @@ impl DetectorState {
             tensions: [false; 4],
             joints: [false; 3],
             arrival: ArrivalState::holding(set_point),
+            slip: SlipState::default(),
         }
     }
 

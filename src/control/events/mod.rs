@@ -8,6 +8,7 @@ mod contact_edges;
 mod detectors;
 mod joint_limits;
 mod observation;
+mod slip;
 mod tension_bounds;
 
 pub use arrival::Arrival;

@@ -9,7 +9,7 @@ pub enum ObservationKind {
     Contact,
     /// The fingertip no longer touches anything (force at the tip in the finger's frame, N).
     ContactLost,
-    /// The contact at the fingertip slips (force at the tip in the finger's frame, N).
+    /// The contact at the fingertip is about to slip (force at the tip in the finger's frame, N).
     Slip,
     /// The tension of a tendon crosses a configured bound (tension and bound, N).
     TensionBound,

@@ -20,6 +20,9 @@ pub struct ConfiguredEvents {
     pub tension_below: Option<f64>,
     /// Upper bound of the force at the fingertip, N.
     pub force_above: Option<f64>,
+    /// Upper bound of the ratio of the force along the surface of an object to the force across it. Below the
+    /// coefficient of friction, it is reached before the fingertip slips.
+    pub slip_friction: Option<f64>,
 }
 
 impl Default for ConfiguredEvents {
@@ -32,6 +35,7 @@ impl Default for ConfiguredEvents {
             tension_above: None,
             tension_below: None,
             force_above: None,
+            slip_friction: None,
         }
     }
 }

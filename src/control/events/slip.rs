@@ -1,0 +1,110 @@
+//! Detects that a contact is about to slip: the force at the fingertip leaves the friction cone.
+//!
+//! Without touch sensors, the normal of a contact is not measured. The detector takes the direction of the force at the
+//! first rest of the finger during the contact. This is the normal if the finger has pressed against the object and has
+//! not carried it yet. A contact that begins to slide can be recognised by its motion only when the tip moves at 0.5
+//! cm/s, and then the object is lost. The force leaves the cone before the contact slides.
+
+use super::observation::{ObservationKind, Observations};
+use crate::control::contact::ContactEstimate;
+use crate::model::configuration::ConfiguredEvents;
+use crate::model::{Part, direction};
+use nalgebra::Vector3;
+
+/// Time after an observation until the next one of the same contact, s. In this time a finger that presses harder after
+/// the first one reaches its new force.
+const PAUSE: f64 = 0.05;
+
+/// Detects slip.
+#[derive(Clone, Debug)]
+pub(super) struct SlipDetector {
+    /// Largest ratio of the force along the surface to the force across it.
+    friction: Option<f64>,
+    /// Number of cycles for which a contact must exist before its normal is taken.
+    settling: u32,
+    /// Number of cycles between two observations.
+    pause: u32,
+}
+
+/// The contact of the previous cycle.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SlipState {
+    /// Number of cycles since the contact was made.
+    cycles: u32,
+    /// Direction of the force of the surroundings on the tip at the first rest, in the finger's frame.
+    normal: Option<Vector3<f64>>,
+    /// Number of cycles until the next observation.
+    pause: u32,
+}
+
+impl SlipDetector {
+    pub fn new(events: &ConfiguredEvents, rate: f64) -> Self {
+        Self {
+            friction: events.slip_friction,
+            settling: (events.settled_ms * 1e-3 * rate).ceil() as u32,
+            pause: (PAUSE * rate).ceil() as u32,
+        }
+    }
+
+    /// `settled` tells whether the joints have come to rest since the set point changed.
+    pub fn observe(
+        &self,
+        state: &mut SlipState,
+        contact: &ContactEstimate,
+        settled: bool,
+        observations: &mut Observations,
+    ) {
+        let Some(friction) = self.friction.filter(|_| contact.touching) else {
+            *state = SlipState::default();
+            return;
+        };
+        (state.cycles, state.pause) = (state.cycles.saturating_add(1), state.pause.saturating_sub(1));
+        let force = contact.force;
+        let Some(normal) = state.normal else {
+            if settled && state.cycles >= self.settling {
+                state.normal = direction(&force);
+            }
+            return;
+        };
+        let across = force.dot(&normal);
+        let along = (force - normal * across).norm();
+        if along > friction * across && state.pause == 0 {
+            state.pause = self.pause;
+            observations.add(ObservationKind::Slip, Part::Finger, [force.x, force.y, force.z, 0.0]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the number of slips in `cycles` cycles with this force.
+    fn slips(state: &mut SlipState, force: [f64; 3], settled: bool, cycles: usize) -> usize {
+        let events = ConfiguredEvents { slip_friction: Some(0.5), ..ConfiguredEvents::default() };
+        let detector = SlipDetector::new(&events, 1000.0);
+        let contact = ContactEstimate { force: force.into(), touching: force != [0.0; 3], ..Default::default() };
+        let mut observations = Observations::default();
+        (0..cycles).for_each(|_| detector.observe(state, &contact, settled, &mut observations));
+        observations.iter().filter(|observation| observation.kind == ObservationKind::Slip).count()
+    }
+
+    #[test]
+    fn a_force_beyond_the_cone_around_the_first_rest_is_a_slip() {
+        let mut state = SlipState::default();
+        // The approach, and the rest, in which the finger presses along y.
+        assert_eq!(slips(&mut state, [1.0, 1.0, 0.0], false, 500), 0);
+        assert_eq!(slips(&mut state, [0.0, 2.0, 0.0], true, 1), 0);
+        // A load along z.
+        assert_eq!(slips(&mut state, [0.0, 2.0, 0.95], true, 500), 0);
+        assert_eq!(slips(&mut state, [0.0, 2.0, 1.05], true, 1), 1);
+        assert_eq!(slips(&mut state, [0.0, 2.0, 1.05], true, 49), 0);
+        assert_eq!(slips(&mut state, [0.0, 2.0, 1.05], true, 100), 2);
+        // A finger that presses harder carries more.
+        assert_eq!(slips(&mut state, [0.0, 4.0, 1.9], true, 100), 0);
+        // A new contact has a new normal.
+        assert_eq!(slips(&mut state, [0.0; 3], true, 1), 0);
+        assert_eq!(slips(&mut state, [0.0, 0.0, 1.0], true, 200), 0);
+        assert_eq!(slips(&mut state, [0.0, 1.0, 1.0], true, 1), 1);
+    }
+}
