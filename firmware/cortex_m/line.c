@@ -14,13 +14,11 @@ static struct {
     volatile uint32_t arrived_at[INPUT_ROOM];
 } input;
 
-/* Accessed by the interrupt, and by the main loop with interrupts masked. */
+/* The main loop writes `written`; `taken` is written by uart_transmit only. */
 static struct {
-    size_t written, taken; /* As for the input. */
-    uint8_t bytes[OUTPUT_ROOM];
+    volatile size_t written, taken; /* As for the input. */
+    volatile uint8_t bytes[OUTPUT_ROOM];
 } output;
-
-static uint32_t frame_arrived_at;
 
 void line_received(uint8_t byte)
 {
@@ -36,13 +34,9 @@ bool line_next(uint8_t *byte)
 {
     if (output.taken == output.written)
         return false;
-    *byte = output.bytes[output.taken++ % OUTPUT_ROOM];
+    *byte = output.bytes[output.taken % OUTPUT_ROOM];
+    output.taken++;
     return true;
-}
-
-uint32_t line_frame_arrived_at(void)
-{
-    return frame_arrived_at;
 }
 
 void line_sleep(void)
@@ -69,7 +63,7 @@ size_t hal_receive(unsigned line, uint8_t *bytes, size_t room, uint32_t *arrived
         *arrived_at = input.arrived_at[place];
         input.taken++;
         if (bytes[taken++] == 0) {
-            frame_arrived_at = *arrived_at;
+            line_frame_taken(*arrived_at);
             break;
         }
     }
@@ -79,12 +73,14 @@ size_t hal_receive(unsigned line, uint8_t *bytes, size_t room, uint32_t *arrived
 void hal_send(unsigned line, const uint8_t *bytes, size_t length)
 {
     (void)line;
-    mask_interrupts();
-    if (length <= OUTPUT_ROOM - (output.written - output.taken)) {
+    size_t written = output.written;
+    if (length <= OUTPUT_ROOM - (written - output.taken)) {
+        /* The interrupt does not read behind `written`, so the copy needs no mask. */
         for (size_t i = 0; i < length; i++)
-            output.bytes[(output.written + i) % OUTPUT_ROOM] = bytes[i];
-        output.written += length;
+            output.bytes[(written + i) % OUTPUT_ROOM] = bytes[i];
+        output.written = written + length;
     }
+    mask_interrupts();
     uart_transmit();
     unmask_interrupts();
 }

@@ -18,8 +18,9 @@ bool line_next(uint8_t *byte);
    only if more bytes wait. Called by the interrupt of the UART, and with interrupts masked. */
 void uart_transmit(void);
 
-/* When the last byte of the last frame that the main loop has taken arrived, us. */
-uint32_t line_frame_arrived_at(void);
+/* Implemented by each port: called when hal_receive has taken the last byte of a frame. The byte arrived at
+   `arrived_at`, us. */
+void line_frame_taken(uint32_t arrived_at);
 
 /* Sleeps until the next interrupt. Returns at once if a received byte waits. */
 void line_sleep(void);

@@ -34,6 +34,8 @@ enum { OPEN_READ_AND_WRITE = 3 };
 
 static int to_plant, from_plant;
 
+static uint32_t frame_arrived_at;
+
 static int semihost(int operation, const void *parameters)
 {
     register int r0 __asm__("r0") = operation;
@@ -69,7 +71,7 @@ static void transfer(int operation, int file, void *bytes, size_t length)
 static void ask(unsigned finger, bool sample, struct answer *answer)
 {
     struct request request = {.finger = (uint8_t)finger, .sample = sample, .now = hal_microseconds()};
-    request.arrived_at = line_frame_arrived_at();
+    request.arrived_at = frame_arrived_at;
     request.set_at = fingers[finger].set_at;
     memcpy(request.currents, fingers[finger].currents, sizeof request.currents);
     fingers[finger].asked_at = request.now;
@@ -95,6 +97,11 @@ void plant_poll(void)
         if (hal_microseconds() - fingers[finger].asked_at > REFRESH)
             ask(finger, false, &ignored);
     }
+}
+
+void line_frame_taken(uint32_t arrived_at)
+{
+    frame_arrived_at = arrived_at;
 }
 
 /* The fingers' part of the hardware layer */

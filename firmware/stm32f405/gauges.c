@@ -1,6 +1,6 @@
 /* The gauges, through an AD7606-4 or the first four channels of an AD7606 (Analog Devices). The rising edge of CONVST
-   samples all channels. BUSY rises within 45 ns and falls after at most 4.2 us. Then the 16-bit results of channels 1 to
-   4 follow each other on DOUTA. The figures are those of the data sheet; the code has never run with the part. */
+   samples all channels. BUSY rises within 45 ns and falls after at most 4.15 us. Then the 16-bit results of channels 1
+   to 4 follow each other on DOUTA. The figures are those of the data sheet; the code has never run with the part. */
 
 #include "../cortex_m/time.h"
 #include "parts.h"
@@ -8,14 +8,15 @@
 #include "registers.h"
 #include <string.h>
 
-/* us, of a clock that counts whole ones. */
-enum { BUSY_MOST = 2, CONVERSION_MOST = 8, WORD_MOST = 5 };
+/* Rounds of at least 14 cycles that a wait may take: 16 us. The conversion takes 4.15 us and a word 1.6 us. */
+enum { ROUNDS = 200 };
 
 /* Conversions in a row that may fail: 6 ms at 500 Hz. */
 enum { FAILURES_MOST = 2 };
 
 static uint16_t latest[MOTORS];
 static unsigned failures;
+static bool begun;
 
 void gauges_start(void)
 {
@@ -37,30 +38,32 @@ void gauges_convert(void)
     GPIOB->BSRR = 1u << PIN_GAUGE_CONVERT;
 }
 
-/* Waits until the bits of a register have a value, or for `most` us at least. Returns whether they have it. */
-static bool becomes(const volatile uint32_t *address, uint32_t mask, uint32_t wanted, uint32_t most)
+/* A converter that is absent or has no power does not become busy. */
+void gauges_confirm(void)
 {
-    for (uint32_t begin = time_microseconds();;) {
-        bool late = time_microseconds() - begin > most;
+    begun = (GPIOB->IDR & 1u << PIN_GAUGE_BUSY) != 0;
+    GPIOB->BSRR = 1u << (PIN_GAUGE_CONVERT + 16);
+}
+
+/* Waits until the bits of a register have a value. Returns false if they do not get it. */
+static bool becomes(const volatile uint32_t *address, uint32_t mask, uint32_t wanted)
+{
+    for (unsigned round = 0; round < ROUNDS; round++)
         if ((*address & mask) == wanted)
             return true;
-        if (late)
-            return false;
-    }
+    return false;
 }
 
 /* Returns false if the converter does not answer. */
 static bool fetch(uint16_t raw[MOTORS])
 {
-    const uint32_t busy = 1u << PIN_GAUGE_BUSY;
-    /* A converter that is absent or has no power does not become busy. */
-    if (!becomes(&GPIOB->IDR, busy, busy, BUSY_MOST) || !becomes(&GPIOB->IDR, busy, 0, CONVERSION_MOST))
+    if (!begun || !becomes(&GPIOB->IDR, 1u << PIN_GAUGE_BUSY, 0))
         return false;
     bool whole = true;
     GPIOB->BSRR = 1u << (PIN_GAUGE_SELECT + 16);
     for (unsigned channel = 0; channel < MOTORS && whole; channel++) {
         SPI2->DR = 0;
-        whole = becomes(&SPI2->SR, SPI_SR_RXNE, SPI_SR_RXNE, WORD_MOST);
+        whole = becomes(&SPI2->SR, SPI_SR_RXNE, SPI_SR_RXNE);
         raw[channel] = (uint16_t)SPI2->DR;
     }
     GPIOB->BSRR = 1u << PIN_GAUGE_SELECT;
@@ -71,7 +74,6 @@ void gauges_read(uint16_t counts[MOTORS])
 {
     uint16_t raw[MOTORS];
     bool good = fetch(raw);
-    GPIOB->BSRR = 1u << (PIN_GAUGE_CONVERT + 16);
     for (unsigned channel = 0; channel < MOTORS && good; channel++) {
         /* The ends of the range mean an open bridge, an amplifier without power, or an overload. */
         good = raw[channel] != 0x7FFF && raw[channel] != 0x8000;

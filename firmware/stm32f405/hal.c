@@ -1,6 +1,8 @@
 /* The finger's part of the hardware layer. The line's part is in ../cortex_m/line.c. */
 
 #include "../core/protocol.h"
+#include "../cortex_m/interrupts.h"
+#include "../cortex_m/line.h"
 #include "parts.h"
 #include "pins.h"
 #include "registers.h"
@@ -8,7 +10,12 @@
 /* How old the last sample may become before sensors_poll takes another one, us. */
 enum { REFRESH = 10000 };
 
+/* How old a sample may be when the core asks for it, us. */
+enum { USABLE = 50 };
+
 static uint32_t sampled_at;
+/* Whether nobody has read the last sample. */
+static bool unread;
 static bool crystal;
 
 void faults_start(bool crystal_runs)
@@ -16,11 +23,33 @@ void faults_start(bool crystal_runs)
     crystal = crystal_runs;
 }
 
+/* All eight sensors within 1 us. Interrupts would come between them. */
+static void sample(void)
+{
+    mask_interrupts();
+    gauges_convert();
+    encoders_latch();
+    gauges_confirm();
+    unmask_interrupts();
+    sampled_at = hal_microseconds();
+    unread = true;
+}
+
+/* The sensors are sampled as soon as a frame has arrived, so that the converter works while the core checks and decodes
+   the frame. This saves 4 us. */
+void line_frame_taken(uint32_t arrived_at)
+{
+    (void)arrived_at;
+    if (!unread || hal_microseconds() - sampled_at > USABLE)
+        sample();
+}
+
 void hal_sample(unsigned finger, struct sensors *sensors)
 {
     (void)finger;
-    sampled_at = hal_microseconds();
-    gauges_convert();
+    if (!unread || hal_microseconds() - sampled_at > USABLE)
+        sample();
+    unread = false;
     encoders_read(sensors->encoders);
     gauges_read(sensors->gauges);
 }

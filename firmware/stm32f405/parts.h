@@ -22,7 +22,10 @@ bool drivers_were_stopped(void);
 
 void encoders_start(void);
 
-/* Reads the counters. Call it at least every 20 ms: two of them have only 16 bits. */
+/* Reads the counters now. */
+void encoders_latch(void);
+
+/* The counts at the last latch. Latch and call it at least every 20 ms: two counters have only 16 bits. */
 void encoders_read(int32_t counts[MOTORS]);
 
 void gauges_start(void);
@@ -30,7 +33,10 @@ void gauges_start(void);
 /* Starts a conversion of all four gauges, which samples them at this instant. */
 void gauges_convert(void);
 
-/* Waits for the conversion and reads it, 11 us in all. */
+/* Checks whether the converter has begun. Call it 0.1 to 1.5 us after gauges_convert. */
+void gauges_confirm(void);
+
+/* Waits for the end of the conversion and reads it, 6 to 11 us in all. */
 void gauges_read(uint16_t counts[MOTORS]);
 
 /* Whether a gauge could not be read in the last three conversions. */

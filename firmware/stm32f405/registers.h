@@ -27,7 +27,7 @@ enum { RCC_APB2ENR_TIM8 = 1 << 1, RCC_APB2ENR_USART1 = 1 << 4 };                
 
 /* 3.9.1 Flash access control. */
 #define FLASH_ACR (*(volatile uint32_t *)0x40023C00u)
-enum { FLASH_ACR_LATENCY_5 = 5, FLASH_ACR_PRFTEN = 1 << 8, FLASH_ACR_ICEN = 1 << 9, FLASH_ACR_DCEN = 1 << 10 };
+enum { FLASH_ACR_LATENCY_5 = 5, FLASH_ACR_ICEN = 1 << 9, FLASH_ACR_DCEN = 1 << 10 };
 
 /* 5.4.1 Power control. */
 #define PWR_CR (*(volatile uint32_t *)0x40007000u)
