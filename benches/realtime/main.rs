@@ -5,6 +5,7 @@
 //!     cargo bench --bench realtime -- planner [--repeats 5] [--seconds 5]
 //!     cargo bench --bench realtime -- groups [--groups 10000]
 //!     cargo bench --bench realtime -- events [--repeats 5] [--seconds 5]
+//!     cargo bench --bench realtime -- telemetry [--repeats 5] [--seconds 5]
 //!     cargo bench --bench realtime -- long-run [--minutes 30]
 //!
 //! wake-up and long-run need cyclictest (Debian: rt-tests), and wake-up also needs stress-ng. The sides of a comparison
@@ -18,6 +19,7 @@ mod groups;
 mod long_run;
 mod percentiles;
 mod planner;
+mod telemetry;
 mod throughput;
 mod turns;
 mod wake_up;
@@ -49,6 +51,11 @@ enum Figure {
     Groups(groups::Arguments),
     /// Measures the wake-up latency of the servos with and without 10 000 events a second.
     Events(Turns),
+    /// Measures the wake-up latency of the servos with and without three processes that read telemetry.
+    Telemetry(Turns),
+    /// Reads the telemetry of a hand until standard input ends.
+    #[command(hide = true)]
+    Reader(telemetry::ReaderArguments),
     LongRun(long_run::Arguments),
 }
 
@@ -59,6 +66,8 @@ fn main() -> Result<(), Failure> {
         Some(Figure::Planner(turns)) => planner::run(&turns),
         Some(Figure::Groups(arguments)) => groups::run(&arguments),
         Some(Figure::Events(turns)) => events::run(&turns),
+        Some(Figure::Telemetry(turns)) => telemetry::run(&turns),
+        Some(Figure::Reader(arguments)) => telemetry::read(&arguments),
         Some(Figure::LongRun(arguments)) => long_run::run(&arguments),
         None => {
             // A measurement that fails does not prevent the others.
@@ -68,6 +77,7 @@ fn main() -> Result<(), Failure> {
                 planner::run(&Turns::default()),
                 groups::run(&groups::Arguments::default()),
                 events::run(&Turns::default()),
+                telemetry::run(&Turns::default()),
             ];
             measured.into_iter().collect()
         }

@@ -123,6 +123,18 @@ mod finger {
         Restart { limp: bool },
     }
 }
+#[allow(missing_docs, dead_code)]
+#[path = "../../src/telemetry"]
+mod telemetry {
+    pub mod block_ring;
+    #[path = "../../models/src/block_ring_checks.rs"]
+    pub mod block_ring_checks;
+
+    mod marks {
+        /// Fewer than in the library, whose blocks would take loom too long.
+        pub const MARKS: usize = 1;
+    }
+}
 pub mod ring_checks;
 mod tracked;
 pub mod triple_buffer_checks;
@@ -130,6 +142,7 @@ pub mod triple_buffer_checks;
 pub use finger::events::event_log_checks;
 pub use finger::{group_checks, mailbox_checks, stop_signal_checks};
 pub use realtime::atomics::weakened;
+pub use telemetry::block_ring_checks;
 
 use loom::model::Builder;
 

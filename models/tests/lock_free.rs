@@ -3,8 +3,8 @@
 use std::process::Command;
 use std::sync::{Arc, Mutex};
 use sun2xp_models::{
-    event_log_checks, explore, group_checks, mailbox_checks, ring_checks, stop_signal_checks, triple_buffer_checks,
-    weakened,
+    block_ring_checks, event_log_checks, explore, group_checks, mailbox_checks, ring_checks, stop_signal_checks,
+    triple_buffer_checks, weakened,
 };
 
 /// Environment variable of a process that runs one test with weakened orderings.
@@ -70,6 +70,13 @@ fn a_set_point_is_valid_for_one_spring() {
 fn a_log_passes_whole_events_and_counts_the_lost_ones() {
     let check = event_log_checks::events_are_whole_and_lost_events_are_counted;
     holds_and_fails_without_its_orderings("parts of different events", check);
+}
+
+/// The words of the ring are atomic, so a missing ordering shows in what the reader gets.
+#[test]
+fn a_ring_of_blocks_passes_whole_blocks() {
+    let check = block_ring_checks::blocks_are_whole_and_the_newest_arrives;
+    holds_and_fails_without_its_orderings("of different blocks", check);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Messages on their way into the ring: they are encoded one after the other, and written in blocks.
 
-use super::block_ring::{BlockWriter, MARKS};
+use super::block_ring::BlockWriter;
+use super::marks::MARKS;
 use super::memory_file::Mapping;
 use super::message::Outgoing;
 

@@ -7,6 +7,7 @@
 //!
 //! A reader does not trust the contents of the memory. Whatever they are, it neither panics nor reads beyond the ring.
 
+use super::marks::MARKS;
 use crate::realtime::atomics::{AtomicU64, Ordering, fence};
 
 /// Words before the data: the positions of the writer.
@@ -20,9 +21,6 @@ const PUBLISHED: usize = 1;
 
 /// Position of the newest complete block.
 const NEWEST: usize = 2;
-
-/// Numbers that a block carries besides its bytes.
-pub const MARKS: usize = 3;
 
 /// Words of a block before its bytes: the number of bytes, and the marks.
 const BLOCK_HEADER: u64 = 1 + MARKS as u64;
@@ -86,12 +84,12 @@ impl<M: AsRef<[AtomicU64]>> BlockWriter<M> {
         self.position
     }
 
-    /// Writes a block. Returns false, and writes nothing, if the block has more than half the size of the ring.
+    /// Writes a block. Returns false, and writes nothing, if the block is larger than the ring.
     pub fn write(&mut self, marks: [u64; MARKS], bytes: &[u8]) -> bool {
         let memory = self.memory.as_ref();
         let data = data(memory);
         let (start, end) = (self.position, self.position + words(bytes.len() as u64));
-        if end - start > data.len() as u64 / 2 {
+        if end - start > data.len() as u64 {
             return false;
         }
         memory[RESERVED].store(end, Ordering::Relaxed);
@@ -165,5 +163,74 @@ impl<M: AsRef<[AtomicU64]>> BlockReader<M> {
         // published position does not return an older value.
         fence(Ordering::Acquire);
         Found::Overtaken
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn memory(words: usize) -> Vec<AtomicU64> {
+        (0..CONTROL_WORDS + words).map(|_| AtomicU64::new(0)).collect()
+    }
+
+    /// The bytes of a block, which show its number and their places.
+    fn block(number: u64, length: usize) -> Vec<u8> {
+        (0..length).map(|place| (number as usize * 31 + place) as u8).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn blocks_arrive_whole_in_order_or_are_skipped(
+            steps in prop::collection::vec((any::<bool>(), 0_usize..150), 1..200),
+        ) {
+            let memory = memory(64);
+            let mut writer = BlockWriter::new(&memory[..]);
+            let mut reader = BlockReader::new(&memory[..], 0).expect("a ring");
+            let (mut written, mut lengths, mut bytes, mut next) = (0, vec![], Vec::new(), 0);
+            for (writes, length) in steps {
+                if writes {
+                    prop_assert!(writer.write([written, 2 * written, 0], &block(written, length)));
+                    lengths.push(length);
+                    written += 1;
+                    continue;
+                }
+                match reader.read(&mut bytes) {
+                    Found::Block([number, double, _]) => {
+                        prop_assert!(number >= next && double == 2 * number);
+                        prop_assert_eq!(&bytes, &block(number, lengths[number as usize]));
+                        next = number + 1;
+                    }
+                    Found::Nothing => prop_assert_eq!(next, written),
+                    Found::Overtaken => next = written - 1,
+                    Found::Damaged => prop_assert!(false, "damaged"),
+                }
+            }
+        }
+
+        #[test]
+        fn no_contents_of_the_memory_make_a_reader_panic(
+            contents in prop::collection::vec(prop_oneof![any::<u64>(), 0_u64..100], 0..80),
+            position in prop_oneof![any::<u64>(), 0_u64..100],
+        ) {
+            let memory: Vec<AtomicU64> = contents.into_iter().map(AtomicU64::new).collect();
+            if let Some(mut reader) = BlockReader::new(&memory[..], position) {
+                let mut bytes = Vec::new();
+                for _ in 0..20 {
+                    reader.read(&mut bytes);
+                    prop_assert!(bytes.len() <= memory.len() * WORD);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_block_larger_than_the_ring_is_not_written() {
+        let memory = memory(16);
+        let mut writer = BlockWriter::new(&memory[..]);
+        assert!(!writer.write([0; MARKS], &[0; 8 * 16]));
+        assert!(writer.write([0; MARKS], &[0; 8 * 12]));
+        assert_eq!(writer.position(), 16);
     }
 }

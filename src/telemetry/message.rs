@@ -152,3 +152,45 @@ pub struct Description {
     /// The configuration with which the hand was opened. [`Message::Controller`] has later changes.
     pub configuration: Configuration,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::Controller;
+    use proptest::prelude::*;
+
+    #[test]
+    fn borrowed_messages_are_read_as_owned_ones() {
+        let configuration = Configuration::default();
+        let (finger, hand) = (FingerNumber::TWO, &configuration.hand);
+        let configured = configuration.fingers[1].clone();
+        let controller = Controller::new(&configured, hand.rate).expect("a controller");
+        let source = ControllerSource { number: 5, gravity: configuration.gravity(finger), finger: configured };
+        let state = controller.start(&Default::default());
+        let object = ObjectState::default();
+        let check = |outgoing: Outgoing, shown: &dyn Fn(&Message) -> bool| {
+            let bytes = postcard::to_stdvec(&outgoing).expect("encoded");
+            let message = Message::decode(&bytes).expect("decoded");
+            assert!(shown(&message), "{message:?}");
+            assert_eq!(message.encode().expect("encoded"), bytes);
+            assert!(Message::decode(&bytes[..bytes.len() - 1]).is_err());
+            assert!(Message::decode(&[&bytes[..], &[0]].concat()).is_err());
+        };
+        check(
+            Outgoing::Controller { finger, source: &source, hand },
+            &|message| matches!(message, Message::Controller { source: read, hand: of, .. } if **read == source && **of == *hand),
+        );
+        check(Outgoing::Keyframe { finger, cycle: 9, state: &state }, &|message| {
+            matches!(message, Message::Keyframe { cycle: 9, state: read, .. }
+                if format!("{read:?}") == format!("{state:?}"))
+        });
+        check(Outgoing::Object(&object), &|message| matches!(message, Message::Object(read) if *read == object));
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_make_the_decoder_panic(kind in 0_u8..8, bytes in prop::collection::vec(any::<u8>(), 0..2000)) {
+            let _ = Message::decode(&[&[kind], &bytes[..]].concat());
+        }
+    }
+}

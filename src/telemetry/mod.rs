@@ -9,6 +9,7 @@ mod attach_error;
 mod batch;
 pub(crate) mod block_ring;
 mod handshake;
+mod marks;
 mod memory_file;
 mod message;
 mod names;

@@ -1,8 +1,9 @@
 //! A reader of a hand's telemetry, in another process or in that of the hand.
 
 use super::attach_error::AttachError;
-use super::block_ring::{BlockReader, Found, MARKS};
+use super::block_ring::{BlockReader, Found};
 use super::handshake::{LARGEST_REPLY, REQUEST, Reply};
+use super::marks::MARKS;
 use super::memory_file::{self, Mapping};
 use super::message::{Description, Message};
 use super::names::{hands, socket_name};
@@ -78,9 +79,8 @@ impl Reader {
             return Err(AttachError::Foreign(name));
         }
         let process = Process::open(peer.process);
-        if socket.send(REQUEST, None).is_err() {
-            return Err(AttachError::Closed(name));
-        }
+        // A hand that refuses the reader may have closed the connection already. Its reason can still be received.
+        let _ = socket.send(REQUEST, None);
         let (reply, mapping) = answer(&name, &socket, process.as_ref(), deadline)?;
         let (description, position) = reply;
         let incomprehensible = |reason: &str| AttachError::Incomprehensible { name, reason: reason.into() };
@@ -205,9 +205,12 @@ fn answer(
 ) -> Result<((Description, u64), Mapping), AttachError> {
     let name = || name.to_owned();
     let mut bytes = vec![0; LARGEST_REPLY];
+    let mut reset = false;
     let received = loop {
         match socket.receive(&mut bytes) {
             Ok(received) => break received,
+            // The hand has closed the connection without reading the request. What it has sent before comes next.
+            Err(error) if error.kind() == ErrorKind::ConnectionReset && !reset => reset = true,
             Err(error) if error.kind() != ErrorKind::WouldBlock => return Err(AttachError::Closed(name())),
             Err(_) if process.is_some_and(Process::has_ended) => return Err(AttachError::Closed(name())),
             Err(_) if Instant::now() >= deadline => return Err(AttachError::Silent(name())),

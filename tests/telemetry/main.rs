@@ -4,10 +4,15 @@
 #[path = "../common/pauses.rs"]
 mod pauses;
 
+#[allow(dead_code)]
+#[path = "../common/tools.rs"]
+mod tools;
+
 mod contents;
 mod endings;
 mod hostile;
 mod naming;
+mod raw;
 mod slow;
 mod support;
 

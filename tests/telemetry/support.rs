@@ -78,32 +78,23 @@ pub struct OtherProcess {
 impl OtherProcess {
     /// Starts a process with a hand of this name, and waits until the hand is open.
     pub fn with_hand(name: &str) -> Self {
-        Self::start("hand", name, |_| {})
+        Self::start("hand", name)
     }
 
     /// Starts a process whose hand has a forked child that keeps copies of its descriptors.
     pub fn with_forked_hand(name: &str) -> Self {
-        Self::start("forked", name, |_| {})
+        Self::start("forked", name)
     }
 
     /// Starts a process that attaches to the hand of this name, and then never reads.
     pub fn with_reader(name: &str) -> Self {
-        Self::start("reader", name, |_| {})
+        Self::start("reader", name)
     }
 
-    /// Starts a process with a hand, as another user.
-    pub fn with_hand_of(user: u32, name: &str) -> Self {
-        use std::os::unix::process::CommandExt;
-        Self::start("hand", name, |command| {
-            command.uid(user);
-        })
-    }
-
-    fn start(role: &str, name: &str, prepare: impl FnOnce(&mut Command)) -> Self {
+    fn start(role: &str, name: &str) -> Self {
         let mut command = Command::new(std::env::current_exe().expect("the test's own program"));
         command.args(["--exact", "a_child_process", "--nocapture", "--test-threads=1"]);
         command.env(ROLE, role).env(NAME, name).stdin(Stdio::piped()).stdout(Stdio::piped());
-        prepare(&mut command);
         let mut child = command.spawn().expect("the process starts");
         let lines = BufReader::new(child.stdout.take().expect("a pipe"));
         let mut process = Self { child, lines, copy: 0 };
