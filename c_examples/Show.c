@@ -13,8 +13,8 @@
 #define RADIUS 1.5                      /* of the ball, cm */
 #define CLEAR 0.4                       /* between the open fingertips and the ball, cm */
 #define SQUEEZE 0.8                     /* depth of the anchors below the surface of the ball, cm */
-#define LIFT 1.8                        /* cm */
-#define CIRCLE 0.8                      /* radius of the circle, cm */
+#define LIFT 0.9                        /* cm */
+#define CIRCLE 0.6                      /* radius of the circle, cm */
 #define PERIOD 3.0                      /* of the circle, s */
 #define SOFT 2.5                        /* stiffnesses, N/cm */
 #define STIFF 4.5
@@ -112,7 +112,7 @@ static struct Grip circle(struct Grip At, double seconds)
         At.X = grown * CIRCLE * cos(angle);
         At.Y = grown * CIRCLE * sin(angle);
         At.Up = middle + grown * HALF * CIRCLE * sin(HALF * angle);
-        At.Stiffness = between(SOFT, STIFF, fabs(fmod(time, 4.0) / 2.0 - 1.0));
+        At.Stiffness = between(SOFT, STIFF, 1.0 - fabs(fmod(time, 4.0) / 2.0 - 1.0));
         grip(At);
         nanosleep(&tick, 0);
         time = object().Time - begin;
