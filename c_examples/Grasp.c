@@ -1,9 +1,12 @@
 /* Grasp.c - three fingers grasp a ball, lift it from the table, hold it and put it down.
 
    The hand is that of grasp.toml. The fingertips are springs. Their anchors are set inside the ball, and the springs
-   then press the tips against it. Friction carries the weight. The exit status is 0 if the ball is lifted, does not
-   creep while it is held, and is back on the table at the end. The program works with the simulated hand only, because
-   GetObject gives the pose of the ball. C99. */
+   then press the tips against it. Friction carries the weight. The fingers press so little that the ball is about to
+   slip when they lift it. Reflexes tighten the grasp then: each finger presses harder when its contact or that of
+   another finger is about to slip. A call that moves the anchors ends what the reflexes have added, and they add it
+   again. The exit status is 0 if the grasp tightens, the ball is lifted, does not creep while it is held, and is back on
+   the table at the end. The program works with the simulated hand only, because GetObject gives the pose of the ball.
+   C99. */
 
 #include <math.h>
 #include <stdio.h>
@@ -13,7 +16,9 @@
 
 #define RADIUS 1.5                      /* of the ball, cm */
 #define CLEAR 0.4                       /* between the open fingertips and the ball, cm */
-#define SQUEEZE 0.8                     /* depth of the anchors below the surface of the ball, cm */
+#define SQUEEZE 0.25                    /* depth of the anchors below the surface of the ball, cm */
+#define TIGHTEN 0.05                    /* increase of the force of each finger with each slip, N */
+#define STRONGEST 4.0                   /* largest force of a finger, N */
 #define LIFT 1.5                        /* cm */
 #define HOLD 2.0                        /* s */
 #define HALF 0.5
@@ -77,6 +82,28 @@ static void anchor(double up, double distance)
     check(SendGroup(3, Group));
 }
 
+/* Each finger presses harder toward the axis of the ball when the contact of any finger is about to slip. */
+static void tighten_on_slip(void)
+{
+    struct Reflex Rule = {0};
+    int i, slipping;
+
+    Rule.Size = sizeof Rule;
+    Rule.Event = EVENT_SLIP;
+    Rule.Reaction = THEN_GRIP;
+    Rule.Value = TIGHTEN;
+    Rule.Most = STRONGEST;
+    for (i = 0; i < 3; i++)
+        for (slipping = 0; slipping < 3; slipping++) {
+            Rule.Condition = slipping == i ? WHEN_EVENT : WHEN_OTHER_FINGER;
+            Rule.Finger = slipping + 1;
+            Rule.Pos[0] = -Turned[i] * Contact[i][0];
+            Rule.Pos[1] = -Turned[i] * Contact[i][1];
+            if (InstallReflex(i + 1, &Rule) < 0)
+                check(-1);
+        }
+}
+
 /* Moves the anchors in small steps. */
 static void glide(double up, double distance, double to_up, double to_distance)
 {
@@ -89,16 +116,22 @@ static void glide(double up, double distance, double to_up, double to_distance)
     pass(0.5);
 }
 
-static void show(const char *doing)
+/* Shows the ball. Returns the sum of the forces toward its axis, N. */
+static double show(const char *doing)
 {
     struct ObjectState Object = object();
+    double force, sum = 0.0;
     int i;
 
     printf("%-10s  ball at %6.3f %6.3f %6.3f cm, pressed with", doing, Object.Position[0], Object.Position[1],
            Object.Position[2]);
-    for (i = 0; i < 3; i++)
-        printf(" %4.2f", sqrt(pow(Object.Force[i][0], 2) + pow(Object.Force[i][1], 2) + pow(Object.Force[i][2], 2)));
+    for (i = 0; i < 3; i++) {
+        force = -Object.Force[i][0] * Contact[i][0] - Object.Force[i][1] * Contact[i][1];
+        printf(" %4.2f", force);
+        sum += force;
+    }
     printf(" N\n");
+    return sum;
 }
 
 /* Mean position of the ball over 0.1 s. The fingers vibrate by some micrometres. */
@@ -128,7 +161,7 @@ static double hold(double seconds)
 
 int main(void)
 {
-    double lifted, crept, back;
+    double grasped, tightened, lifted, crept, back;
 
     check(OpenHand());
     show("opened");
@@ -136,9 +169,10 @@ int main(void)
     pass(1.0);
     show("open");
     glide(0.0, RADIUS + CLEAR, 0.0, RADIUS - SQUEEZE);
-    show("grasped");
+    grasped = show("grasped");
+    tighten_on_slip();
     glide(0.0, RADIUS - SQUEEZE, LIFT, RADIUS - SQUEEZE);
-    show("lifted");
+    tightened = show("lifted");
     lifted = Start[2] - object().Position[2];
     crept = hold(HOLD);
     printf("held for %g s: moved by %.4f cm\n", HOLD, crept);
@@ -147,5 +181,5 @@ int main(void)
     show("released");
     back = fabs(object().Position[2] - Start[2]);
     CloseHand();
-    return lifted > LIFT - 0.3 && crept < 0.01 && back < 0.1 ? 0 : 1;
+    return tightened > 1.05 * grasped && lifted > LIFT - 0.3 && crept < 0.01 && back < 0.1 ? 0 : 1;
 }
