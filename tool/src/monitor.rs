@@ -18,6 +18,7 @@ use ratatui::crossterm::event::Event;
 use show::Controls;
 use source::{Source, Wanted};
 use std::path::PathBuf;
+use sun2xp::telemetry::{self, AttachError};
 use terminal::Screen;
 use view::View;
 
@@ -43,13 +44,19 @@ pub struct Arguments {
 /// Shows the hand until a key ends it. Waits for a hand if there is none.
 ///
 /// # Errors
-/// Returns an error if there is no terminal, if the terminal fails, or if the page cannot be served.
+/// Returns an error if there is no terminal, if the terminal fails, if several hands are open and none is named, or if
+/// the page cannot be served.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.web {
         return web::serve(&arguments.address, web::Source::Named(arguments.name.clone()), None);
     }
     if !Screen::available() {
         return Err("the monitor needs a terminal: use `sun2xp status` for a file, a pipe or a script".into());
+    }
+    // A person who has to choose needs the names and the shell.
+    let names = telemetry::hands()?;
+    if arguments.name.is_none() && names.len() > 1 {
+        return Err(Box::new(AttachError::Several(names)));
     }
     let source = Source::start(Wanted::Named(arguments.name.clone()))?;
     let mut view = View::new("looking for the hand".into());

@@ -44,19 +44,25 @@ struct Hands {
 /// # Errors
 /// Returns an error if there is no such hand.
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let names = match &arguments.name {
-        Some(name) => vec![name.clone()],
-        None => telemetry::hands()?,
-    };
+    let names = telemetry::hands()?;
     let mut hands = Vec::new();
-    if names.is_empty() {
-        // This reports that no hand is open, with the remedy, or finds one that was opened just now.
-        hands.push(state(None)?);
+    let mut failed = false;
+    if arguments.name.is_some() || names.is_empty() {
+        // Without any hand this fails, and the reason names the remedy.
+        hands.push(state(arguments.name.as_deref())?);
+    } else {
+        for name in &names {
+            match state(Some(name)) {
+                Ok(hand) => hands.push(hand),
+                // A hand that ends or does not answer does not hide the others.
+                Err(failure) => {
+                    eprintln!("sun2xp: {failure}");
+                    failed = true;
+                }
+            }
+        }
     }
-    for name in &names {
-        hands.push(state(Some(name))?);
-    }
-    let faulted = hands.iter().any(HandState::faulted);
+    let well = !failed && !hands.iter().any(HandState::faulted);
     if arguments.json {
         print::json(&Hands { hands })?;
     } else {
@@ -66,7 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         output.write_all(text.join("\n").as_bytes())?;
         output.flush()?;
     }
-    Ok(if faulted { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+    Ok(if well { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 /// Reads a hand until the state of every finger is known.

@@ -86,8 +86,13 @@ fn draw_hand(frame: &mut Frame, area: Rect, view: &View, palette: &Palette, hand
     if lower.height == 0 {
         return;
     }
-    let timing_width = if area.width < SIDE_BY_SIDE { 0 } else { (area.width * 2 / 5).clamp(30, 60) };
-    let [left, right] = Layout::horizontal([Constraint::Min(0), Constraint::Length(timing_width)]).areas(lower);
+    let [left, right] = if area.width >= SIDE_BY_SIDE {
+        let width = (area.width * 2 / 5).clamp(30, 60);
+        Layout::horizontal([Constraint::Min(0), Constraint::Length(width)]).areas(lower)
+    } else {
+        let height = if lower.height < 2 * BOTTOM { 0 } else { lower.height / 2 };
+        Layout::vertical([Constraint::Min(0), Constraint::Length(height)]).areas(lower)
+    };
     events::draw(frame, left, palette, hand, time);
     timing::draw(frame, right, palette, hand);
 }
@@ -95,7 +100,8 @@ fn draw_hand(frame: &mut Frame, area: Rect, view: &View, palette: &Palette, hand
 /// Divides the height: fingers, faults, and events with timing.
 fn split(area: Rect, view: &View, faults: u16) -> [Rect; 3] {
     let room = area.height - faults;
-    let compact = FRAME + finger::COMPACT;
+    // The names of the fingers have a line where not all fingers are shown.
+    let compact = FRAME + finger::COMPACT + u16::from(area.width < SIDE_BY_SIDE);
     // The panel with the detail is below the fingers where there is room for both, and otherwise in their place.
     let (least, complete) = match view.selected {
         None => (compact, FRAME + finger::COMPLETE),
@@ -186,13 +192,18 @@ fn footer(view: &View, palette: &Palette, width: usize) -> Vec<Line<'static>> {
         lines.extend(wrap(notice, inner).into_iter().map(|line| Line::styled(format!(" {line}"), palette.title)));
     }
     let keys: &[(&str, &str)] = match &view.jog {
-        None => &[("q", "quit"), ("space", "freeze"), ("1 2 3 tab", "finger"), ("s", "snapshot"), ("?", "help")],
-        Some(_) => &[("SPACE", "EMERGENCY STOP"), ("q", "quit"), ("1 2 3 tab", "finger"), ("?", "all keys")],
+        None => &[("q", "quit"), ("?", "help"), ("space", "freeze"), ("1 2 3 tab", "finger"), ("s", "snapshot")],
+        Some(_) => &[("SPACE", "EMERGENCY STOP"), ("q", "quit"), ("?", "all keys"), ("1 2 3 tab", "finger")],
     };
     let mut spans = Vec::new();
+    let mut used = 0;
     for (key, effect) in keys {
-        spans.push(Span::styled(format!(" {key} "), palette.selected));
-        spans.push(Span::styled(format!("{effect} "), palette.dim));
+        let needed = key.len() + effect.len() + 3;
+        if used + needed <= width + 1 {
+            used += needed;
+            spans.push(Span::styled(format!(" {key} "), palette.selected));
+            spans.push(Span::styled(format!("{effect} "), palette.dim));
+        }
     }
     lines.push(Line::from(spans));
     lines

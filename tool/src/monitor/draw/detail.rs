@@ -17,6 +17,9 @@ pub const HEIGHT: u16 = 16;
 /// Width of the numbers at the right.
 const NUMBERS: u16 = 37;
 
+/// Largest width of a bar.
+const LONGEST_BAR: usize = 60;
+
 /// Width of the texts beside the bars.
 const BESIDE: usize = 26;
 
@@ -35,8 +38,8 @@ pub fn draw(frame: &mut Frame, area: Rect, palette: &Palette, finger: &FingerSta
         return;
     };
     let numbers = if inner.width > NUMBERS + 34 { NUMBERS } else { 0 };
-    let [left, _, right] =
-        Layout::horizontal([Constraint::Min(0), Constraint::Length(1), Constraint::Length(numbers)]).areas(inner);
+    let bars = Constraint::Max((LONGEST_BAR + BESIDE) as u16 + 4);
+    let [left, _, right] = Layout::horizontal([bars, Constraint::Length(1), Constraint::Length(numbers)]).areas(inner);
     let lines = bar_rows(palette, finger, sample, left.width.into()).fitting(left.height.into());
     frame.render_widget(Paragraph::new(lines), left);
     if numbers > 0 {
@@ -46,7 +49,7 @@ pub fn draw(frame: &mut Frame, area: Rect, palette: &Palette, finger: &FingerSta
 }
 
 fn bar_rows(palette: &Palette, finger: &FingerState, sample: &Sample, width: usize) -> Rows {
-    let bar = width.saturating_sub(BESIDE).clamp(8, 60);
+    let bar = width.saturating_sub(BESIDE).clamp(8, LONGEST_BAR);
     let mut rows = Rows::default();
     rows.push(3, Line::styled(format!("{:width$} measured     wanted", "joints", width = bar + 4), palette.dim));
     for joint in 0..3 {

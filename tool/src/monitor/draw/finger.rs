@@ -17,6 +17,9 @@ const WIDE: usize = 32;
 /// Width from which the frame has a margin inside.
 const PADDED: u16 = 38;
 
+/// Inner width from which numbers have more distance.
+const SPACIOUS: usize = 36;
+
 /// Width of a number with its sign and two decimals.
 const NUMBER: usize = 6;
 
@@ -175,9 +178,10 @@ pub fn three(palette: &Palette, label: &str, values: [f64; 3], unit: &str, width
     let label_width = if width >= WIDE { 10 } else { 3 };
     // Without the minus sign of zero, which would flicker.
     let rounded = values.map(|value| if value.abs() < 0.005 { 0.0 } else { value });
-    let numbers: String = rounded.iter().map(|value| format!("{value:NUMBER$.2}")).collect();
+    let number = if width >= SPACIOUS { NUMBER + 1 } else { NUMBER };
+    let numbers: String = rounded.iter().map(|value| format!("{value:number$.2}")).collect();
     let mut spans = vec![Span::styled(format!("{label:label_width$}"), palette.dim), Span::raw(numbers)];
-    if label_width + 3 * NUMBER + 1 + unit.len() <= width {
+    if label_width + 3 * number + 1 + unit.len() <= width {
         spans.push(Span::styled(format!(" {unit}"), palette.dim));
     }
     Line::from(spans)
