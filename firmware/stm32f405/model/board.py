@@ -8,7 +8,7 @@ from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_MODE_MCLASS, UC_MODE_THUMB, U
 from unicorn.arm_const import UC_ARM_REG_LR, UC_ARM_REG_PRIMASK, UC_ARM_REG_SP, UC_CPU_ARM_CORTEX_M4
 
 from cycles import REFILL, Program
-from registers import MEGAHERTZ, Registers, bus_wait
+from registers import MEGAHERTZ, SYSTICK, Registers, bus_wait
 
 FLASH, SRAM, SYSTEM = 0x08000000, 0x20000000, 0x1FFF7000
 UNIQUE = bytes(range(0xA0, 0xAC))
@@ -37,6 +37,7 @@ class Board:
         self.until = None
         self.instructions = 0
         self.longest_handler = 0
+        self.rounds = 0
         self.uc = Uc(UC_ARCH_ARM, UC_MODE_THUMB | UC_MODE_MCLASS)
         self.uc.ctl_set_cpu_model(UC_CPU_ARM_CORTEX_M4)
         self.uc.mem_map(FLASH, 0x100000)
@@ -64,7 +65,7 @@ class Board:
         registers = self.registers
         while self.arrivals and self.arrivals[0][0] <= registers.now:
             registers.receive(self.arrivals.pop(0)[1])
-        if not self.handling and (self.until() or self.interrupted()):
+        if not self.handling and (self.until() or self.interrupted() or self.clock_wrapped()):
             self.pc = address | 1
             uc.emu_stop()
             return
@@ -94,12 +95,20 @@ class Board:
     def interrupted(self):
         return self.registers.interrupts() and not self.uc.reg_read(UC_ARM_REG_PRIMASK)
 
+    def clock_wrapped(self):
+        """Whether SysTick requests its interrupt."""
+        reload = self.registers.values.get(SYSTICK + 4, 0)
+        return reload != 0 and self.registers.now // (reload + 1) > self.rounds
+
     def run(self, until):
         """Runs the firmware until the condition holds."""
         self.until = until
         while True:
             self.uc.emu_start(self.pc, 0xFFFFFFFE)
-            if self.interrupted():
+            if self.clock_wrapped():
+                self.rounds += 1
+                self.call("systick_interrupt")
+            elif self.interrupted():
                 self.call("serial_interrupt")
             if until():
                 return

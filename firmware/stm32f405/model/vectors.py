@@ -1,0 +1,103 @@
+"""Runs the conversations of protocol/vectors.json with the image of the board, and then noise.
+
+    vectors.py stm32f405.elf stm32f405.bin protocol/vectors.json"""
+
+import json
+import random
+import struct
+import sys
+
+from board import Board, unwrap, wrap
+
+TYPES = {0x9: "Identity", 0xA: "Configured", 0xB: "Reply", 0xC: "Stopped", 0xD: "Refused", 0xE: "TactileEvent"}
+STATUS_AT = {0xA: 58, 0xB: 2, 0xC: 2}
+STOP, SUPPLY, DRIVER = 1 << 6, 1 << 7, 1 << 8
+ZERO_VALID = 1 << 5
+# Waits that take longer in the model than they are worth, ms.
+LONGEST = 200
+STREAMS = 60
+
+
+def started():
+    board = Board(sys.argv[1], open(sys.argv[2], "rb").read())
+    board.run_for(150)
+    return board
+
+
+def answer_of(board, wire):
+    """The frame that the board sends within 0.3 ms of the last byte, or None."""
+    board.registers.sent.clear()
+    board.registers.byte_cycles = 840
+    last = board.send(wire, 2_000_000)
+    board.run(lambda: board.registers.now >= last + 168 * 600)
+    sent = bytes(byte for _, byte in board.registers.sent)
+    return unwrap(sent) if sent else None
+
+
+def check(board, step):
+    frame = answer_of(board, bytes.fromhex(step["send"]))
+    if step["answer"] == "none":
+        assert frame is None, frame.hex()
+        return
+    assert frame is not None, "no answer"
+    kind = frame[0] >> 4
+    assert TYPES[kind] == step["answer"], frame.hex()
+    if "status" in step:
+        status = struct.unpack_from("<H", frame, STATUS_AT[kind])[0]
+        assert (status ^ step["status"]) & ~ZERO_VALID == 0, f"status {status:#x}"
+    if "reason" in step:
+        assert (frame[3], frame[4] | frame[5] << 8) == (step["reason"], step["detail"]), frame.hex()
+
+
+def possible(step):
+    """Sensor faults cannot be injected within the millisecond that a step has."""
+    return step.get("wait_ms", 0) <= LONGEST and step.get("faults", 0) & ~(STOP | SUPPLY | DRIVER) == 0
+
+
+def converse(conversation):
+    board = started()
+    for step in conversation["steps"]:
+        if "wait_ms" in step:
+            board.run_for(1000 * step["wait_ms"])
+        elif "faults" in step:
+            registers, faults = board.registers, step["faults"]
+            registers.supply, registers.driver_fault = not faults & SUPPLY, bool(faults & DRIVER)
+            registers.stop = False
+            if faults & STOP:
+                registers.press_stop()
+            board.run_for(50)
+        elif "torques" in step:
+            assert board.registers.enabled() == (any(step["torques"]),) * 2, step
+        else:
+            check(board, step)
+
+
+def noise():
+    """Random bytes and damaged frames: the board answers the next good frame, and no motor ever has torque."""
+    board, any_byte = started(), random.Random(1)
+    for _ in range(STREAMS):
+        good = bytearray(wrap(0x11, any_byte.randrange(256), bytes([1, 1])))
+        good[any_byte.randrange(len(good))] ^= 1 << any_byte.randrange(8)
+        other = bytes(any_byte.randrange(256) for _ in range(any_byte.randrange(200)))
+        # A damaged frame may still be a good one with another delimiter. Answers to it are dropped here.
+        answer_of(board, bytes(good) if any_byte.random() < 0.5 else other)
+        sequence = any_byte.randrange(256)
+        frame = answer_of(board, b"\0" + wrap(0x11, sequence, bytes([1, 1])))
+        assert frame is not None and frame[:2] == bytes([0x91, sequence])
+        assert board.registers.enabled() == (False, False) and board.registers.overruns == 0
+
+
+if __name__ == "__main__":
+    with open(sys.argv[3]) as file:
+        conversations = json.load(file)["conversations"]
+    left_out = 0
+    for conversation in conversations:
+        if not all(map(possible, conversation["steps"])):
+            left_out += 1
+            continue
+        try:
+            converse(conversation)
+        except AssertionError as failure:
+            sys.exit(f"{conversation['name']}: {failure}")
+    noise()
+    print(f"{len(conversations) - left_out} of {len(conversations)} conversations, and {STREAMS} streams of noise")
