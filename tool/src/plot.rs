@@ -55,6 +55,9 @@ pub struct Arguments {
     width: u32,
 }
 
+/// A curve has a gap where the controller has not run for this time, s. A busy servo skips single periods.
+const LONGEST_PAUSE: f64 = 0.05;
+
 /// What a picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Kind {

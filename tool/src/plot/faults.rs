@@ -5,7 +5,7 @@ use super::figure::{Figure, Sign, subtitle};
 use super::palette::{BLUE, Colour, GREEN, INK, ORANGE, PAPER, PURPLE, SKY, SOFT_INK, VERMILION};
 use super::panel::{HEADING, LABEL, Mark, NUMBER, Panel};
 use super::svg::{Anchor, Font, Svg, text_width};
-use super::{Plot, Selection};
+use super::{LONGEST_PAUSE, Plot, Selection};
 use crate::failure::Failure;
 use crate::trace::{Item, Mark as Happened, MarkKind, Row};
 
@@ -18,16 +18,17 @@ const ROW: f64 = 0.8;
 const ROWS: [(&str, Colour); 4] =
     [("stage", SOFT_INK), ("touching", GREEN), ("saturated", ORANGE), ("lost replies", VERMILION)];
 
+/// The row of the lost replies.
+const LOST: usize = 3;
+
 /// Height of a line of the list below, pixels, and the largest number of lines.
 const LINE: f64 = 23.0;
 const MOST_LINES: usize = 18;
 
-/// Width of a text in the list, pixels, and the largest number of its lines. A fault has more to say.
+/// Width of a text in the list, pixels, and the largest number of its lines. Faults and warnings have more to say.
 const TEXT: f64 = 880.0;
 const LINES_OF_FAULT: usize = 4;
-
-/// The stage of a finger does not change in periods that its servo skips. They take at most this time, s.
-const SKIPPED: f64 = 0.1;
+const LINES_OF_WARNING: usize = 3;
 
 /// A time of a finger, from its first cycle to the end of its last one, s, and its name.
 struct Span {
@@ -126,8 +127,8 @@ impl Lane {
         ];
         for (index, (spans, state)) in self.rows.iter_mut().zip(states).enumerate() {
             let Some(name) = state else { continue };
-            // Periods differ a little from their nominal length.
-            let near = if index == 0 { SKIPPED } else { 0.5 * period };
+            // Only replies are lost one by one. Periods differ a little from their nominal length.
+            let near = if index < LOST { LONGEST_PAUSE } else { 0.5 * period };
             match spans.last_mut().filter(|last| last.name == name && seconds - last.to < near) {
                 Some(last) => last.to = seconds + period,
                 None => spans.push(Span { from: seconds, to: seconds + period, name: name.into() }),
@@ -198,8 +199,11 @@ fn stage_colour(stage: &str) -> Colour {
 
 /// Breaks a text at spaces into lines of the list. The last one ends with an ellipsis if the text is longer.
 fn lines(mark: &Happened) -> Vec<String> {
-    let fault = mark.kind == MarkKind::Fault;
-    let (most, bold) = if fault { (LINES_OF_FAULT, 1.15) } else { (1, 1.0) };
+    let (most, bold) = match mark.kind {
+        MarkKind::Fault => (LINES_OF_FAULT, 1.15),
+        MarkKind::Warning => (LINES_OF_WARNING, 1.0),
+        _ => (1, 1.0),
+    };
     let fits = |line: &str| bold * text_width(line, LABEL.size) <= TEXT;
     let mut lines = vec![String::new()];
     for word in mark.text.split_whitespace() {
@@ -230,7 +234,7 @@ fn list(svg: &mut Svg, [left, top]: [f64; 2], listed: &[(f64, &Happened)], texts
         svg.circle([left + 9.0, y - 4.5], 9.0, colour(mark.kind));
         let inside = Font { colour: PAPER, anchor: Anchor::Middle, bold: true, size: 11.5 };
         svg.text([left + 9.0, y - 0.5], &(number + 1).to_string(), inside);
-        svg.text([left + 100.0, y], &format!("{time:.3} s"), Font { anchor: Anchor::End, ..LABEL });
+        svg.text([left + 100.0, y], &format!("{:.3} s", time.max(0.0)), Font { anchor: Anchor::End, ..LABEL });
         let finger = mark.finger.map_or("hand".to_owned(), |finger| format!("finger {finger}"));
         svg.text([left + 118.0, y], &finger, Font { colour: SOFT_INK, ..LABEL });
         for line in &texts[number] {

@@ -5,7 +5,7 @@ use super::figure::{Figure, Sign, subtitle};
 use super::palette::{BLUE, INK};
 use super::panel::{Mark, Panel};
 use super::svg::Stroke;
-use super::{Plot, Selection};
+use super::{LONGEST_PAUSE, Plot, Selection};
 use crate::failure::Failure;
 use crate::trace::Item;
 
@@ -43,18 +43,19 @@ impl Plot for Step {
     fn take(&mut self, item: &Item, seconds: f64) {
         match item {
             Item::Finger(finger) => self.rate = finger.rate,
-            Item::Cycle(row) => {
+            Item::Cycle(row) if row.sample.computed => {
                 let sample = &row.sample;
                 let none = [f64::NAN; 3];
-                let given = |value: Option<[f64; 3]>| value.filter(|_| sample.computed).unwrap_or(none);
-                let (set_point, tip) = (given(sample.joint_set_point), given(sample.tip_set_point));
-                let shown = |value: f64| if sample.computed { value } else { f64::NAN };
-                let joint = |axis: usize| [shown(sample.joints[axis]), set_point[axis]].map(f64::to_degrees);
-                let axis = |axis: usize| [shown(sample.tip[axis]), tip[axis]];
+                let (set_point, tip) = (sample.joint_set_point.unwrap_or(none), sample.tip_set_point.unwrap_or(none));
+                let joint = |axis: usize| [sample.joints[axis], set_point[axis]].map(f64::to_degrees);
+                let axis = |axis: usize| [sample.tip[axis], tip[axis]];
+                if self.points.last().is_some_and(|last| seconds - last.time > LONGEST_PAUSE) {
+                    self.points.push(Point { time: seconds, values: [[f64::NAN; 2]; 6] });
+                }
                 let values = [joint(0), joint(1), joint(2), axis(0), axis(1), axis(2)];
                 self.points.push(Point { time: seconds, values });
             }
-            Item::Mark(_) => {}
+            Item::Cycle(_) | Item::Mark(_) => {}
         }
     }
 

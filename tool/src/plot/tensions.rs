@@ -5,7 +5,7 @@ use super::figure::{Figure, Sign, subtitle};
 use super::palette::{BLUE, PERMITTED, SOFT_INK, VERMILION};
 use super::panel::{Mark, Panel};
 use super::svg::Stroke;
-use super::{Plot, Selection};
+use super::{LONGEST_PAUSE, Plot, Selection};
 use crate::failure::Failure;
 use crate::trace::Item;
 
@@ -36,14 +36,17 @@ impl Plot for Tensions {
     fn take(&mut self, item: &Item, seconds: f64) {
         match item {
             Item::Finger(finger) => self.rate = finger.rate,
-            Item::Cycle(row) => {
+            Item::Cycle(row) if row.sample.computed => {
                 let sample = &row.sample;
                 self.bounds = (sample.t_min, sample.t_max);
-                let shown = |values: [f64; 4]| if sample.computed { values } else { [f64::NAN; 4] };
-                let (measured, wanted) = (shown(sample.tensions), shown(sample.desired_tensions));
+                let (measured, wanted) = (sample.tensions, sample.desired_tensions);
+                if self.points.last().is_some_and(|last| seconds - last.time > LONGEST_PAUSE) {
+                    let none = [f64::NAN; 4];
+                    self.points.push(Point { time: seconds, measured: none, wanted: none });
+                }
                 self.points.push(Point { time: seconds, measured, wanted });
             }
-            Item::Mark(_) => {}
+            Item::Cycle(_) | Item::Mark(_) => {}
         }
     }
 
