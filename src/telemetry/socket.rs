@@ -141,7 +141,7 @@ impl Socket {
             let mut header = libc::CMSG_FIRSTHDR(&message);
             while let Some(found) = header.as_ref() {
                 if found.cmsg_level == libc::SOL_SOCKET && found.cmsg_type == libc::SCM_RIGHTS {
-                    let payload = found.cmsg_len as usize - libc::CMSG_LEN(0) as usize;
+                    let payload = found.cmsg_len - libc::CMSG_LEN(0) as usize;
                     for place in 0..payload / size_of::<RawFd>() {
                         let number = libc::CMSG_DATA(header).cast::<RawFd>().add(place).read_unaligned();
                         // A second descriptor is closed at once.

@@ -11,7 +11,7 @@ use counts::Counts;
 use display::Display;
 use files::{Files, Limits};
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use sun2xp::model::FingerNumber;
@@ -124,7 +124,7 @@ fn report(path: &files::Written, took: Duration, counts: &Counts, reason: Option
 }
 
 /// Converts a black box.
-fn convert(black_box: &PathBuf, arguments: &Arguments, limits: Limits) -> Result<ExitCode, Failure> {
+fn convert(black_box: &Path, arguments: &Arguments, limits: Limits) -> Result<ExitCode, Failure> {
     let recording = Recording::open(black_box)?;
     let description: Description = recording.description().clone();
     let output = arguments.output.clone().unwrap_or_else(|| black_box.with_extension("mcap"));

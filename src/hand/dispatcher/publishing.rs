@@ -89,8 +89,8 @@ impl Publishing {
                 }
             }
         }
-        for place in 0..fingers.len() {
-            self.publish_finger(place, &fingers[place]);
+        for (place, finger) in fingers.iter().enumerate() {
+            self.publish_finger(place, finger);
         }
         for _ in 0..MOST_EVENTS {
             let Next::Event(event) = self.events.next(now()) else { break };

@@ -128,7 +128,8 @@ impl Files {
         for message in self.controllers.values().flatten() {
             self.file.explain(|writer| writer.write(message))?;
         }
-        if let Some(path) = self.paths.pop_front_if(|_| self.limits.keep.is_some_and(|keep| self.begun > keep)) {
+        let superfluous = self.limits.keep.is_some_and(|keep| self.begun > keep);
+        if let Some(path) = superfluous.then(|| self.paths.pop_front()).flatten() {
             fs::remove_file(&path).map_err(|error| format!("cannot delete {}: {error}", ShownPath(&path)))?;
         }
         Ok(true)
