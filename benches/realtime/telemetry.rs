@@ -69,8 +69,8 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
     }
     let of_sides = with.median_of(|wake| wake.p999) / without.median_of(|wake| wake.p999);
     println!(
-        "\nMedians over three fingers and {} turns of {} s for each side, which alternate. 99.9 % with readers relative \
-         to without (goal: 0.9 to 1.1): {of_sides:.3}; median of the ratios of neighbouring turns: {:.3}.\n",
+        "\nMedians over three fingers and {} turns of {} s for each side, which alternate. 99.9 % with readers \
+         relative to without (goal: 0.9 to 1.1): {of_sides:.3}; median of the ratios of neighbouring turns: {:.3}.\n",
         turns.repeats,
         turns.seconds,
         median(ratios),

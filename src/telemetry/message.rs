@@ -176,10 +176,10 @@ mod tests {
             assert!(Message::decode(&bytes[..bytes.len() - 1]).is_err());
             assert!(Message::decode(&[&bytes[..], &[0]].concat()).is_err());
         };
-        check(
-            Outgoing::Controller { finger, source: &source, hand },
-            &|message| matches!(message, Message::Controller { source: read, hand: of, .. } if **read == source && **of == *hand),
-        );
+        check(Outgoing::Controller { finger, source: &source, hand }, &|message| {
+            matches!(message, Message::Controller { source: read, hand: of, .. }
+                    if **read == source && **of == *hand)
+        });
         check(Outgoing::Keyframe { finger, cycle: 9, state: &state }, &|message| {
             matches!(message, Message::Keyframe { cycle: 9, state: read, .. }
                 if format!("{read:?}") == format!("{state:?}"))

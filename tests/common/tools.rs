@@ -1,7 +1,7 @@
 //! The tools that tests need besides Rust, and the list of tests that were skipped because one is missing.
-//! `tests/tools.txt` names the tools and their Debian packages, and `tests/requirements.txt` the Python packages. Without
-//! a tool, the tests that need it pass, and tests/zz_left_out.rs lists them at the end of `cargo test`. With CI=true they
-//! fail.
+//! `tests/tools.txt` names the tools and their Debian packages, and `tests/requirements.txt` the Python packages.
+//! Without a tool, the tests that need it pass, and tests/zz_left_out.rs lists them at the end of `cargo test`. With
+//! CI=true they fail.
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -47,8 +47,8 @@ pub fn available(name: &str, part: &str) -> bool {
     false
 }
 
-/// Returns the Python interpreter that has the packages of `tests/requirements.txt`. If they are not installed, `part` of
-/// the current test is listed as skipped. With CI=true the test fails instead.
+/// Returns the Python interpreter that has the packages of `tests/requirements.txt`. If they are not installed, `part`
+/// of the current test is listed as skipped. With CI=true the test fails instead.
 pub fn python(part: &str) -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("python");
     // tests/run writes this copy after it has installed the packages.

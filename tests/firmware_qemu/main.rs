@@ -37,7 +37,8 @@ fn alone() -> Option<MutexGuard<'static, ()>> {
     usable.then(|| ONE.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Returns the configuration of a hand on one port, or on a port for each finger. `keys` are added to the table `[hand]`.
+/// Returns the configuration of a hand on one port, or on a port for each finger. `keys` are added to the table
+/// `[hand]`.
 fn configuration(ports: &[PathBuf], keys: &str) -> Configuration {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let path = folder.path().join("sun2xp.toml");

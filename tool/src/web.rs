@@ -41,8 +41,8 @@ pub struct Address {
     bind: IpAddr,
 }
 
-/// Serves the page until SIGINT, SIGTERM or SIGHUP. Prints its address. With a `control`, pages may move the hand, and they need
-/// the token on loopback too.
+/// Serves the page until SIGINT, SIGTERM or SIGHUP. Prints its address. With a `control`, pages may move the hand, and
+/// they need the token on loopback too.
 ///
 /// # Errors
 /// Returns an error if the address cannot be used.

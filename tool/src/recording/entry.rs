@@ -5,6 +5,10 @@ use sun2xp::telemetry::Message;
 
 /// What a recording contains, in its order.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "most values are of the large variant, and a box is an allocation for each"
+)]
 pub enum Item {
     /// A message of telemetry. The status has no last cycle.
     Message(Message),

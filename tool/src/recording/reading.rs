@@ -46,6 +46,10 @@ struct Mcap {
 }
 
 /// A record that this program reads.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "most values are of the large variant, and a box is an allocation for each"
+)]
 enum Found {
     Description(Box<Description>),
     Format { version: String, library: String },

@@ -98,7 +98,11 @@ fn a_recording_that_ends_anywhere_is_readable_up_to_its_last_chunk() {
     for part in [30, 60, 90, 99] {
         fs::write(&path, &whole[..whole.len() * part / 100]).expect("written");
         let mut recording = Recording::open(&path).expect("a recording");
-        let count = recording.by_ref().map(|entry| entry.expect("readable")).count();
+        let mut count = 0;
+        for entry in recording.by_ref() {
+            entry.expect("readable");
+            count += 1;
+        }
         assert!(!recording.is_complete() || part == 99);
         read.push(count);
     }
