@@ -30,8 +30,9 @@ double GetFault(double), GetJacobian(double), GetJointTorques(double), GetObject
 double GetStatus(double), GetTiming(double), GetTip(double), GetTouch(double), IdentifyFinger(double);
 double InstallReflex(double), NextEvent(double), OnEvent(double), PushFinger(double), RecoverHand(double);
 double RemoveReflex(double), SendContact(double), SendDamping(double), SendGroup(double), SendPath(double);
-double SendPosFor(double), SendTip(double), SetGravity(double), StopFinger(double), StopHand(double);
-double TareTouch(double), WaitEvent(double), WaitFingers(double), WriteBlackBox(double), ZeroFinger(double);
+double SendJointStiffness(double), SendJointTorque(double), SendPosFor(double), SendTip(double), SetGravity(double);
+double StopFinger(double), StopHand(double), TareTouch(double), WaitEvent(double), WaitFingers(double);
+double WriteBlackBox(double), ZeroFinger(double);
 
 OWN(AdjustFinger)
 OWN(EventDescriptor)
@@ -57,6 +58,8 @@ OWN(RemoveReflex)
 OWN(SendContact)
 OWN(SendDamping)
 OWN(SendGroup)
+OWN(SendJointStiffness)
+OWN(SendJointTorque)
 OWN(SendPath)
 OWN(SendPosFor)
 OWN(SendTip)
