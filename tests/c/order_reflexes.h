@@ -7,7 +7,7 @@ static void wrong_reflexes(void)
     Touch.Size = sizeof Touch;
     Rule.Size = sizeof Rule;
     REFUSED("GetTouch", GetTouch(9, 9, &Touch), NO_FINGER);
-    REFUSED("GetTouch", GetTouch(2, 9, &Touch), "element 9");
+    REFUSED("GetTouch", GetTouch(2, 9, &Touch), "the number 9");
     REFUSED("TareTouch", TareTouch(9), NO_FINGER);
     REFUSED("RemoveReflex", RemoveReflex(9, 9), NO_FINGER);
     REFUSED("RemoveReflex", RemoveReflex(2, 9), "reflex 9");
