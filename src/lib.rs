@@ -81,8 +81,8 @@ pub use hand::{
 pub use model::configuration::{
     Configuration, ConfiguredController, ConfiguredEncoder, ConfiguredFinger, ConfiguredFriction, ConfiguredGauge,
     ConfiguredGeometry, ConfiguredHand, ConfiguredJoints, ConfiguredLinks, ConfiguredMonitors, ConfiguredMotor,
-    ConfiguredSimulation, ConfiguredStiffness, ConfiguredTelemetry, ConfiguredTendon, ConfiguredZeroing, EndState,
-    GaugeReference, Law, OnFault, OutOfRange, PeriodClock, RealTime, Scheme, Surface, ZeroingMethod,
+    ConfiguredSimulation, ConfiguredStiffness, ConfiguredTendon, ConfiguredZeroing, EndState, GaugeReference, Law,
+    OnFault, OutOfRange, PeriodClock, RealTime, Scheme, Surface, ZeroingMethod,
 };
 pub use model::{Contact, ContactError, FingerNumber, Part};
 pub use realtime::Distribution;
@@ -90,6 +90,11 @@ pub use realtime::Distribution;
 /// Contact without touch sensors: the thresholds of `[finger.contact]`.
 pub mod contact {
     pub use crate::model::configuration::ConfiguredContact;
+}
+
+/// What other processes of the same user may see of an open hand: `[telemetry]`. They use the tool `sun2xp`.
+pub mod monitoring {
+    pub use crate::model::configuration::ConfiguredTelemetry;
 }
 
 /// Commands to several fingers that take effect in the same cycle, and waiting until fingers have arrived or settled.
