@@ -59,8 +59,12 @@ impl Machine {
     pub fn start(emulated: Emulated, folder: &Path) -> Self {
         let plants = Arc::new(std::array::from_fn(|index| Mutex::new(Finger::new(index))));
         let fingers = 3 / emulated.images.len();
+        // One emulator of three fingers needs more than one processor. If it stays on one, its measurements are so old
+        // that the fingers oscillate while they come under tension.
+        let stays = emulated.images.len() > 1;
         let start = |(index, image)| {
-            Emulator::start(emulated.board, &folder.join(image), index, plants.clone(), fingers * index)
+            let processor = stays.then_some(index);
+            Emulator::start(emulated.board, &folder.join(image), processor, plants.clone(), fingers * index)
         };
         Self { emulators: emulated.images.iter().enumerate().map(start).collect(), plants }
     }
@@ -94,12 +98,24 @@ struct Emulator {
 }
 
 impl Emulator {
-    /// `index` counts the boards, and `first` is the index of the first finger of this one.
-    fn start(board: &str, image: &Path, index: usize, plants: Arc<[Mutex<Finger>; 3]>, first: usize) -> Self {
+    /// `processor` counts the processors on which an emulator stays, and `first` is the index of the board's first
+    /// finger.
+    fn start(
+        board: &str,
+        image: &Path,
+        processor: Option<usize>,
+        plants: Arc<[Mutex<Finger>; 3]>,
+        first: usize,
+    ) -> Self {
         let folder = tempfile::tempdir().expect("a scratch folder");
         let [to_plant, from_plant] = ["plant_to", "plant_from"].map(|name| pipe(&folder.path().join(name)));
         let mut command = Command::new("qemu-system-arm");
-        let mut process = stays_on_processor(index, runs_first(&mut command))
+        let command = runs_first(&mut command);
+        let command = match processor {
+            Some(index) => stays_on_processor(index, command),
+            None => command,
+        };
+        let mut process = command
             .args(["-M", board, "-display", "none", "-monitor", "none", "-serial", "pty"])
             .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
             .arg(image)
