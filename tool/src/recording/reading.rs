@@ -159,8 +159,9 @@ impl Mcap {
     fn next(&mut self) -> Result<Option<Found>, Failure> {
         loop {
             let found = match self.reader.next_event() {
-                None => return Ok(Some(Found::End)),
-                Some(Err(mcap::McapError::UnexpectedEof)) => return Ok(None),
+                // The file ends between two records, or within one. A complete file has a footer, which ends the
+                // reading before.
+                None | Some(Err(mcap::McapError::UnexpectedEof)) => return Ok(None),
                 Some(Err(error)) => return Err(error.into()),
                 Some(Ok(LinearReadEvent::ReadRequest(count))) => {
                     let count = count.min(LARGEST_RECORD);

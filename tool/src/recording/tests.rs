@@ -88,6 +88,33 @@ fn a_recording_has_every_message_with_every_bit() {
 }
 
 #[test]
+fn a_recording_that_ends_between_two_records_has_no_end() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hand.mcap");
+    let (reader, messages) = messages("between", Duration::from_millis(200));
+    write(&path, &reader, &messages);
+    let whole = fs::read(&path).expect("the file");
+    // After 8 bytes that name the format, each record has a byte for its kind and 8 for its length.
+    let (mut end, mut ends) = (8, Vec::new());
+    while whole[end] != mcap::records::op::FOOTER {
+        let length = u64::from_le_bytes(whole[end + 1..end + 9].try_into().expect("8 bytes"));
+        end += 9 + usize::try_from(length).expect("a length");
+        ends.push(end);
+    }
+    let mut readable = 0;
+    for end in ends {
+        fs::write(&path, &whole[..end]).expect("written");
+        let Ok(mut recording) = Recording::open(&path) else { continue };
+        for entry in recording.by_ref() {
+            entry.expect("readable");
+        }
+        assert!(!recording.is_complete(), "{end} of {} bytes", whole.len());
+        readable += 1;
+    }
+    assert!(readable > 5);
+}
+
+#[test]
 fn a_recording_that_ends_anywhere_is_readable_up_to_its_last_chunk() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("hand.mcap");
