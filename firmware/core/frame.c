@@ -2,7 +2,6 @@
 #include "crc32.h"
 #include "stuffing.h"
 #include <string.h>
-#include <string.h>
 
 uint8_t frame_type(const struct frame *frame)
 {

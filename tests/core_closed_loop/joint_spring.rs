@@ -1,22 +1,9 @@
 //! Springs in joint angles and constant joint torques: the finger has the stiffness and the torque that were sent.
 
-use super::rig::{Loop, SCHEMES, poses, quiet};
+use super::rig::{Loop, SCHEMES, poses, quiet, smooth};
 use nalgebra::{Matrix3, Vector3};
 use sun2xp::control::{Activity, AdmissibleDamping, SetPoint};
-use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
-
-/// A finger at `degrees` without friction.
-fn smooth(scheme: Scheme, degrees: [f64; 3]) -> ConfiguredFinger {
-    let mut finger = quiet(scheme);
-    finger.friction.motor_coulomb = [0.0; 4];
-    finger.friction.conduit = [0.0; 4];
-    finger.friction.joint_coulomb = [0.0; 3];
-    finger.simulation.motor_coulomb_friction = [0.0; 4];
-    finger.simulation.shaft_friction = 0.0;
-    finger.simulation.joint_coulomb_friction = [0.0; 3];
-    finger.simulation.start_degrees = degrees;
-    finger
-}
+use sun2xp::model::configuration::ConfiguredFinger;
 
 fn k_theta() -> Matrix3<f64> {
     Matrix3::new(80.0, 10.0, 0.0, 10.0, 70.0, 15.0, 0.0, 15.0, 50.0)

@@ -203,3 +203,16 @@ pub fn quiet(scheme: Scheme) -> ConfiguredFinger {
     finger.controller.dither = Some(0.0);
     finger
 }
+
+/// A finger at `degrees` without friction.
+pub fn smooth(scheme: Scheme, degrees: [f64; 3]) -> ConfiguredFinger {
+    let mut finger = quiet(scheme);
+    finger.friction.motor_coulomb = [0.0; 4];
+    finger.friction.conduit = [0.0; 4];
+    finger.friction.joint_coulomb = [0.0; 3];
+    finger.simulation.motor_coulomb_friction = [0.0; 4];
+    finger.simulation.shaft_friction = 0.0;
+    finger.simulation.joint_coulomb_friction = [0.0; 3];
+    finger.simulation.start_degrees = degrees;
+    finger
+}

@@ -1,6 +1,6 @@
 //! The stiffness that a pushed fingertip has is the one that is reported, near limits and for every contact, too.
 
-use super::rig::{Loop, SCHEMES, quiet};
+use super::rig::{Loop, SCHEMES, smooth};
 use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3, Vector4};
 use sun2xp::control::{Activity, JointSprings, Law, SetPoint, spatial};
 use sun2xp::model::Contact;
@@ -10,19 +10,6 @@ use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 const TWICE_THE_BOUND: f64 = 12.0;
 
 const LAWS: [Law; 2] = [Law::Exact, Law::Report];
-
-/// A finger at `degrees` without friction.
-fn smooth(scheme: Scheme, degrees: [f64; 3]) -> ConfiguredFinger {
-    let mut finger = quiet(scheme);
-    finger.friction.motor_coulomb = [0.0; 4];
-    finger.friction.conduit = [0.0; 4];
-    finger.friction.joint_coulomb = [0.0; 3];
-    finger.simulation.motor_coulomb_friction = [0.0; 4];
-    finger.simulation.shaft_friction = 0.0;
-    finger.simulation.joint_coulomb_friction = [0.0; 3];
-    finger.simulation.start_degrees = degrees;
-    finger
-}
 
 /// A finger that holds its pose with a stiffness, against a force on its tip, N.
 struct Held {

@@ -50,10 +50,8 @@ impl Detectors {
         self.tensions.observe(&mut state.tensions, report, &mut observations);
         self.joints.observe(&mut state.joints, report, &mut observations);
         self.arrival.observe(&mut state.arrival, report, set_point, &mut observations);
-        if self.slip.is_on() {
-            let settled = state.arrival().settled;
-            self.slip.observe(&mut state.slip, &report.contact, settled, &mut observations);
-        }
+        let settled = state.arrival().settled;
+        self.slip.observe(&mut state.slip, &report.contact, settled, &mut observations);
         observations
     }
 }

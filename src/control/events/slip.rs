@@ -46,12 +46,6 @@ impl SlipDetector {
         }
     }
 
-    /// Returns whether friction is configured. Otherwise nothing is detected.
-    #[inline]
-    pub fn is_on(&self) -> bool {
-        self.friction.is_some()
-    }
-
     /// `settled` tells whether the joints have come to rest since the set point changed.
     pub fn observe(
         &self,

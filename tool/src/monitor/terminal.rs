@@ -1,10 +1,9 @@
 //! The terminal in raw mode. It is restored when the program ends, also by a panic or a signal.
 
+use crate::interrupt::Interrupt;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event};
 use std::io::{self, IsTerminal};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
@@ -13,7 +12,7 @@ use std::time::Duration;
 pub struct Screen {
     /// The terminal for drawing.
     pub terminal: DefaultTerminal,
-    ended: Arc<AtomicBool>,
+    interrupt: Interrupt,
     events: Receiver<io::Result<Event>>,
 }
 
@@ -29,11 +28,7 @@ impl Screen {
     /// # Errors
     /// Returns an error if the terminal does not permit raw mode.
     pub fn open(urgent: impl Fn(&Event) + Send + 'static) -> io::Result<Self> {
-        use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
-        let ended = Arc::new(AtomicBool::new(false));
-        for signal in [SIGHUP, SIGINT, SIGQUIT, SIGTERM] {
-            signal_hook::flag::register(signal, ended.clone())?;
-        }
+        let interrupt = Interrupt::watch()?;
         // This also installs a panic hook that restores the terminal before the message of the panic is printed.
         let terminal = ratatui::try_init()?;
         // A thread of its own reads the keys. If the terminal is gone, crossterm does not return from reading. The
@@ -48,7 +43,7 @@ impl Screen {
                 }
             }
         });
-        let screen = Self { terminal, ended, events };
+        let screen = Self { terminal, interrupt, events };
         // Dropping the screen restores the terminal.
         reading.map(|_| screen)
     }
@@ -67,7 +62,7 @@ impl Screen {
 
     /// Returns whether a signal asks the program to end.
     pub fn ended(&self) -> bool {
-        self.ended.load(Ordering::Relaxed)
+        self.interrupt.requested()
     }
 }
 

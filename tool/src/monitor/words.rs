@@ -25,14 +25,17 @@ pub fn event_text(event: &Event) -> String {
 fn value_text(meaning: ValueKind, values: &[f64]) -> Option<String> {
     let first = *values.first()?;
     Some(match (meaning, values) {
-        (ValueKind::Force, &[x, y, z]) => format!("force {x:.2} {y:.2} {z:.2} N"),
+        (ValueKind::Force, values) => {
+            let parts: Vec<_> = values.iter().map(|part| fixed(*part, 2)).collect();
+            format!("force {} N", parts.join(" "))
+        }
         (ValueKind::Joints, values) => {
-            let degrees: Vec<_> = values.iter().map(|angle| format!("{:.1}", angle.to_degrees())).collect();
+            let degrees: Vec<_> = values.iter().map(|angle| fixed(angle.to_degrees(), 1)).collect();
             format!("joints {} deg", degrees.join(" "))
         }
-        (ValueKind::Angle, _) => format!("{:.1} deg", first.to_degrees()),
-        (ValueKind::Limit, _) => format!("limit {:.1} deg", first.to_degrees()),
-        (ValueKind::Tension, _) => format!("{first:.1} N"),
+        (ValueKind::Angle, _) => format!("{} deg", fixed(first.to_degrees(), 1)),
+        (ValueKind::Limit, _) => format!("limit {} deg", fixed(first.to_degrees(), 1)),
+        (ValueKind::Tension, _) => format!("{} N", fixed(first, 1)),
         (ValueKind::Bound, _) => format!("bound {first:.1} N"),
         (ValueKind::FaultNumber, _) => {
             let kind = FaultKind::from_number(first as i32)?;
@@ -44,6 +47,15 @@ fn value_text(meaning: ValueKind, values: &[f64]) -> Option<String> {
         (ValueKind::Age, _) => format!("after {first:.0} ms"),
         _ => return None,
     })
+}
+
+/// Returns a value with this number of decimals, without the sign of a negative zero.
+fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.bytes().all(|byte| matches!(byte, b'0' | b'.')) => digits.to_owned(),
+        _ => text,
+    }
 }
 
 /// Returns a time span with a unit that suits it, in at most eight characters.

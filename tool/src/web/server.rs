@@ -6,6 +6,7 @@ use super::files::{self, POLICY};
 use super::hub::Hub;
 use super::listener::Limited;
 use super::session::{LARGEST_MESSAGE, Session};
+use crate::interrupt::Interrupt;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::ws::WebSocketUpgrade;
@@ -16,13 +17,15 @@ use axum::routing::get;
 use serde::Deserialize;
 use std::io;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::net::TcpListener;
-use tokio::signal::ctrl_c;
-use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::Semaphore;
 
 /// Largest number of pages.
 const PAGES: usize = 16;
+
+/// Time between two looks for a request to end.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
 /// What the server serves.
 #[derive(Clone)]
@@ -47,11 +50,12 @@ struct Credentials {
 }
 
 impl Server {
-    /// Serves until SIGINT, SIGTERM or SIGHUP.
+    /// Serves until the end is requested.
     ///
     /// # Errors
-    /// Returns an error if the listener fails.
+    /// Returns an error if the listener fails, or if the system refuses to watch the signals.
     pub async fn run(self, listener: std::net::TcpListener) -> io::Result<()> {
+        let interrupt = Interrupt::watch()?;
         listener.set_nonblocking(true)?;
         let limited = Limited::new(TcpListener::from_std(listener)?);
         let access = Arc::clone(&self.access);
@@ -63,19 +67,15 @@ impl Server {
             .with_state(shared);
         tokio::select! {
             result = axum::serve(limited, router) => result,
-            result = ended() => result,
+            () = ended(interrupt) => Ok(()),
         }
     }
 }
 
-/// Waits for SIGINT, SIGTERM or SIGHUP.
-async fn ended() -> io::Result<()> {
-    let mut terminate = signal(SignalKind::terminate())?;
-    let mut hangup = signal(SignalKind::hangup())?;
-    tokio::select! {
-        result = ctrl_c() => result,
-        _ = terminate.recv() => Ok(()),
-        _ = hangup.recv() => Ok(()),
+/// Waits for the request to end.
+async fn ended(interrupt: Interrupt) {
+    while !interrupt.requested() {
+        tokio::time::sleep(BETWEEN_LOOKS).await;
     }
 }
 

@@ -69,7 +69,7 @@ impl Recorded {
     pub fn write(&self, messages: &[Message]) -> NamedTempFile {
         let file = NamedTempFile::with_suffix(".mcap").expect("a file");
         let output = BufWriter::new(File::create(file.path()).expect("created"));
-        let options = WriteOptions::new().chunk_size(Some(CHUNK)).library("sun2xp test");
+        let options = WriteOptions::new().disable_seeking(true).chunk_size(Some(CHUNK)).library("sun2xp test");
         let mut writer = Writer::with_options(output, options).expect("written");
         let metadata = [("version", "1"), ("library", &self.description.library)];
         let metadata = metadata.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
