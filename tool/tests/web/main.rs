@@ -9,6 +9,11 @@ mod program;
 mod refusals;
 mod slow_pages;
 mod socket;
+mod wake_up;
+
+#[allow(dead_code)]
+#[path = "../terminal/screen.rs"]
+mod screen;
 
 #[allow(dead_code)]
 #[path = "../../../tests/common/tools.rs"]
