@@ -11,6 +11,7 @@ mod export;
 mod failure;
 mod interrupt;
 mod jog;
+mod manual;
 mod model;
 mod monitor;
 mod plot;
@@ -46,6 +47,7 @@ enum Tool {
     Doctor(doctor::Arguments),
     Export(export::Arguments),
     Jog(jog::Arguments),
+    Manual(manual::Arguments),
     Model(model::Arguments),
     Monitor(monitor::Arguments),
     Plot(plot::Arguments),
@@ -66,6 +68,7 @@ fn main() -> ExitCode {
         Tool::Doctor(arguments) => doctor::run(&arguments),
         Tool::Export(arguments) => export::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Jog(arguments) => jog::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Manual(arguments) => manual::run(&arguments, command()).map(|()| ExitCode::SUCCESS),
         Tool::Model(arguments) => model::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Monitor(arguments) => monitor::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Plot(arguments) => plot::run(&arguments).map(|()| ExitCode::SUCCESS),

@@ -1,0 +1,44 @@
+# Builds and installs the C library, the tool, the manual pages and the shell completions.
+#
+#   make                     builds them in target/dist, with cargo
+#   make install             installs what was built, below /usr/local
+#   make uninstall           removes exactly the files that make install has installed
+#   make deb                 builds a Debian package, target/dist/sun2xp_VERSION_ARCHITECTURE.deb
+#   make check-installed     installs into an empty folder, and uses the result with every compiler and build system
+#   make clean               removes what was built
+#
+# Variables: prefix (default /usr/local), exec_prefix, bindir, libdir, includedir, datarootdir, mandir, docdir, DESTDIR;
+# CARGOFLAGS for cargo, such as --offline. `make install` does not build, so that root needs no cargo.
+
+prefix ?= /usr/local
+exec_prefix ?= $(prefix)
+bindir ?= $(exec_prefix)/bin
+libdir ?= $(exec_prefix)/lib
+includedir ?= $(prefix)/include
+datarootdir ?= $(prefix)/share
+mandir ?= $(datarootdir)/man
+docdir ?= $(datarootdir)/doc/sun2xp
+export prefix bindir libdir includedir datarootdir mandir docdir DESTDIR
+
+TARGET := $(or $(CARGO_TARGET_DIR),target)
+export BUILT := $(TARGET)/dist
+
+all:
+	BUILT=$(BUILT) packaging/build --target-dir $(TARGET) $(CARGOFLAGS)
+
+install:
+	packaging/install
+
+uninstall:
+	packaging/uninstall
+
+deb: all
+	packaging/deb
+
+check-installed: all
+	packaging/check-installed
+
+clean:
+	rm -rf $(BUILT)
+
+.PHONY: all install uninstall deb check-installed clean

@@ -1,0 +1,140 @@
+//! `sun2xp manual`: the manual pages of the tool, of every C call and of the configuration file. The calls are
+//! documented in the C headers, and the keys in docs/sun2xp.toml, so that each text exists once.
+
+mod body;
+mod calls;
+mod configuration;
+
+use crate::failure::Failure;
+use clap::Command;
+use clap_mangen::roff::Roff;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const CONFIGURATION: &str = include_str!("../../docs/sun2xp.toml");
+
+/// Writes the manual pages of the tool (section 1), the C calls (3) and the configuration file (5).
+#[derive(clap::Args)]
+#[command(hide = true)]
+pub struct Arguments {
+    /// The folder of the pages. man1, man3 and man5 are created in it.
+    folder: PathBuf,
+    /// The C headers, such as include/Sun2Xp.h.
+    headers: Vec<PathBuf>,
+}
+
+/// A C header.
+struct Header {
+    /// The name without .h, such as Sun2Xp.
+    name: String,
+    text: String,
+}
+
+/// A manual page.
+struct Page {
+    name: String,
+    section: u8,
+    /// The page without its first line, which names it.
+    text: Roff,
+}
+
+pub fn run(arguments: &Arguments, command: Command) -> Result<(), Failure> {
+    let tool = arguments.folder.join("man1");
+    fs::create_dir_all(&tool)?;
+    clap_mangen::generate_to(command, &tool)?;
+    let mut pages = vec![configuration::page(CONFIGURATION)];
+    for path in &arguments.headers {
+        let header = Header::read(path)?;
+        pages.extend(calls::pages(&header));
+        pages.push(calls::chapters(&header));
+    }
+    for page in pages {
+        page.write(&arguments.folder)?;
+    }
+    Ok(())
+}
+
+impl Header {
+    fn read(path: &Path) -> Result<Self, Failure> {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self { name, text: fs::read_to_string(path)? })
+    }
+}
+
+impl Page {
+    fn write(self, folder: &Path) -> Result<(), Failure> {
+        let Self { name, section, text } = self;
+        let folder = folder.join(format!("man{section}"));
+        fs::create_dir_all(&folder)?;
+        let version = concat!("sun2xp ", env!("CARGO_PKG_VERSION"));
+        let mut page = Roff::new();
+        page.control("TH", [name.as_str(), &section.to_string(), "", version, "sun2xp"]);
+        page.extend([text]);
+        Ok(fs::write(folder.join(format!("{name}.{section}")), page.render())?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The headers of the library.
+    fn headers() -> Vec<Header> {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../include");
+        let files = fs::read_dir(folder).expect("the headers").map(|entry| entry.expect("a header").path());
+        let headers = files.filter(|path| path.extension().is_some_and(|ending| ending == "h"));
+        headers.map(|path| Header::read(&path).expect("text")).collect()
+    }
+
+    fn page(name: &str) -> String {
+        let pages = headers().into_iter().flat_map(|header| calls::pages(&header));
+        pages.into_iter().find(|page| page.name == name).expect("a page").text.render()
+    }
+
+    #[test]
+    fn every_call_of_the_headers_has_a_page() {
+        let mut count = 0;
+        for header in headers() {
+            let pages = calls::pages(&header);
+            let names: Vec<&str> = pages.iter().map(|page| page.name.as_str()).collect();
+            let declared = header.text.lines().filter(|line| {
+                let starts = ["int ", "unsigned ", "const char *", "struct ", "sun2xp_hand *"];
+                starts.iter().any(|kind| line.starts_with(kind)) && line.ends_with(");") && !line.contains(" Sun2Xp")
+            });
+            for line in declared {
+                let name = line.split('(').next().and_then(|start| start.rsplit([' ', '*']).next()).expect("a name");
+                assert!(names.contains(&name), "{name} of the line {line}");
+                count += 1;
+            }
+        }
+        assert!(count > 40, "{count} calls");
+    }
+
+    #[test]
+    fn a_page_of_a_call_has_its_prototype_and_errors() {
+        let page = page("GetPos");
+        for part in [
+            "GetPos \\- read the joint angles of a finger",
+            "#include <Sun2Xp.h>",
+            "int GetPos(int i, float *Pos);",
+            ".SH PARAMETERS",
+            ".SH \"RETURN VALUE\"",
+            "the finger is faulted",
+            ".SH EXAMPLES",
+        ] {
+            assert!(page.contains(part), "{part} is not in\n{page}");
+        }
+    }
+
+    #[test]
+    fn the_page_of_the_configuration_has_every_table_and_key() {
+        let page = configuration::page(CONFIGURATION).text.render();
+        let keys = CONFIGURATION.lines().filter_map(configuration::key);
+        let keys: Vec<_> = keys.collect();
+        assert!(keys.len() > 100, "{} keys", keys.len());
+        for (key, _) in keys {
+            assert!(page.contains(&key.replace('-', "\\-")), "{key}");
+        }
+        assert!(page.contains("[finger.tendon]"), "{page}");
+    }
+}
