@@ -120,10 +120,10 @@ fn exit_handlers_command_the_hand_only_while_it_is_open() {
 }
 
 #[test]
-fn locked_memory_is_what_the_readme_says_and_is_unlocked_at_close() {
-    let readme = fs::read_to_string(c::root().join("README.md")).expect("README.md");
-    let readme: String = readme.split_whitespace().collect::<Vec<_>>().join(" ");
-    let (before, _) = readme.split_once(" MiB in all at 1000 Hz until CloseHand").expect("README.md states the size");
+fn locked_memory_is_what_the_documentation_says_and_is_unlocked_at_close() {
+    let page = fs::read_to_string(c::root().join("docs/real-time.md")).expect("the page");
+    let page: String = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    let (before, _) = page.split_once(" MiB in all at 1000 Hz until CloseHand").expect("the page states the size");
     let mebibytes = before.rsplit(' ').next().expect("a number");
     let bench = bench();
     let program = bench.build(c_compiler(), STRICT, &["locked_memory.c"]);

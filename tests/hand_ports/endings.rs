@@ -186,7 +186,6 @@ fn the_documentation_says_what_an_emergency_stop_holds() {
             "docs/sun2xp.toml",
             after(&read("docs/sun2xp.toml"), "# What the motors do when commands stop", "hold_time_ms ="),
         ),
-        ("README.md", after(&read("README.md"), "## When something fails", "## The tool")),
         ("docs/faults.md", after(&read("docs/faults.md"), "## Stopping and recovering", "## All faults")),
     ] {
         assert!(text.contains("StopHand") && text.contains("hold_time_ms"), "{place}: {text}");

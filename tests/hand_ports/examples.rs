@@ -6,15 +6,14 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use sun2xp::hand::{Configured, Hand, read_configuration};
 
-const PAGE: &str = include_str!("../../docs/configurations.md");
-const README: &str = include_str!("../../README.md");
+const PAGE: &str = include_str!("../../docs/configuration.md");
 
 /// Within the limits of every example, and clear of every surface.
 const POSE: [f64; 3] = [0.2, 0.5, 1.0];
 
 /// The examples of the page with their headings.
 fn examples() -> Vec<(&'static str, &'static str)> {
-    PAGE.split("\n## ")
+    PAGE.split("\n### ")
         .skip(1)
         .map(|section| {
             let (heading, rest) = section.split_once('\n').expect("a heading");
@@ -84,9 +83,9 @@ fn every_example_of_the_page_works_as_printed() {
     }
 }
 
-/// The indented blocks of a section of the README, in order.
+/// The indented blocks of a section of the page, in order.
 fn blocks(heading: &str) -> Vec<String> {
-    let (_, section) = README.split_once(&format!("\n{heading}\n")).expect("the heading");
+    let (_, section) = PAGE.split_once(&format!("\n{heading}\n")).expect("the heading");
     let section = section.split("\n#").next().unwrap_or_default();
     let code = |paragraph: &str| paragraph.lines().all(|line| line.starts_with("    "));
     let paragraphs: Vec<&str> = section.trim_matches('\n').split("\n\n").collect();
@@ -95,15 +94,15 @@ fn blocks(heading: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_example_of_readme_works_as_printed() {
-    let blocks = blocks("## Configuration");
+fn the_example_of_the_format_works_as_printed() {
+    let blocks = blocks("## The format");
     let [example] = &blocks[..] else { panic!("{blocks:?}") };
-    works("README", example);
+    works("the format", example);
 }
 
 #[test]
-fn the_recipe_of_readme_for_a_board_at_a_port_works_as_printed() {
-    let blocks = blocks("### A board at a port");
+fn the_recipe_for_a_board_at_a_port_works_as_printed() {
+    let blocks = blocks("## A board at a port");
     let [board, example, planner] = &blocks[..] else { panic!("{blocks:?}") };
     let options = board.trim().strip_prefix("cargo run --release -- board ").expect("a board");
     let link = options.strip_prefix("--link ").expect("its link");
@@ -116,5 +115,5 @@ fn the_recipe_of_readme_for_a_board_at_a_port_works_as_printed() {
     let options = options.replace(link, own_link);
     let options: Vec<&str> = PATIENT.into_iter().chain(options.split(' ')).collect();
     let _board = Board::start_with(&options, &[]);
-    moves("README", &folder.path().join("hand.toml"), &replaced(example, link, own_link));
+    moves("a board at a port", &folder.path().join("hand.toml"), &replaced(example, link, own_link));
 }

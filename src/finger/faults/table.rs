@@ -78,8 +78,8 @@ faults! {
     16 Watchdog "WATCHDOG" Fault Finger Status "watchdog",
         "the watchdog of the board stopped the motors because commands came too late",
         "the servo does not run in real time, or the machine is overloaded or was suspended",
-        "Permit real-time scheduling (README) or reduce the load of the machine, then recover the finger; or raise \
-         hand.watchdog_ms", [Recover];
+        "Permit real-time scheduling (run sun2xp doctor) or reduce the load of the machine, then recover the \
+         finger; or raise hand.watchdog_ms", [Recover];
     17 BoardStopped "BOARD_STOPPED" Fault Finger Status "board stopped",
         "the board stopped the motors and reports no fault",
         "another program sent the board a Stop frame, or the firmware of the board stopped by itself",
@@ -175,11 +175,12 @@ faults! {
     39 Overrun "OVERRUN" Warning Finger Share "overrun",
         "the servo misses its deadlines and skips periods",
         "the machine is overloaded, or the rate is too high for it",
-        "Permit real-time scheduling (README), give the servo a core of its own (finger.core), or lower hand.rate", [];
+        "Permit real-time scheduling (run sun2xp doctor), give the servo a core of its own (finger.core), or \
+         lower hand.rate", [];
     40 RealtimeRefused "REALTIME_REFUSED" Warning Finger Nothing "no real time",
         "the system does not permit the servo to run in real time",
         "CAP_SYS_NICE or an rtprio limit is missing",
-        "Grant the permission (README), or set finger.priority = 0 to run without real time", [];
+        "Grant the permission (run sun2xp doctor), or set finger.priority = 0 to run without real time", [];
     41 ServoPanic "SERVO_PANIC" Fault Finger Nothing "servo failed",
         "the servo thread has failed",
         "a defect of this library",
@@ -212,8 +213,8 @@ faults! {
         "not all tendons were under tension at the end of hand.open_timeout_ms, because the servo ran too few of its \
          cycles",
         "the machine is overloaded, or the board's replies are lost",
-        "Reduce the load of the machine, permit real-time scheduling (README) or raise hand.open_timeout_ms; then \
-         recover the finger", [Recover];
+        "Reduce the load of the machine, permit real-time scheduling (run sun2xp doctor) or raise \
+         hand.open_timeout_ms; then recover the finger", [Recover];
     49 SameNumber "SAME_NUMBER" Refusal Finger Nothing "same number",
         "the boards at two ports report the same unique number, so they cannot be distinguished",
         "their firmware gives every board the same number",

@@ -11,7 +11,7 @@ pub enum RecoveryError {
     /// The servo thread does not run, so it does not release its port.
     #[error(
         "the servo thread of finger {0} gets no processor time: reduce the load of the machine or permit \
-         real-time scheduling (README), then recover the finger again"
+         real-time scheduling (run sun2xp doctor), then recover the finger again"
     )]
     ServoStalled(FingerNumber),
     /// The servo thread has ended.

@@ -11,7 +11,7 @@ const LOCKED: u64 = 6 << 20;
 const CAP_IPC_LOCK: u32 = 14;
 const CAP_SYS_NICE: u32 = 23;
 
-/// The limits file that README recommends.
+/// The limits file that docs/real-time.md recommends.
 const LIMITS: &str = "/etc/security/limits.d/sun2xp.conf";
 
 pub(super) fn findings(configuration: &Configuration, root: &Path) -> Vec<Finding> {

@@ -100,7 +100,7 @@ fn latency(subject: String, timer_ms: Option<u32>) -> Finding {
             subject,
             format!("opened; its adapter delays bytes by {milliseconds} ms"),
             "Every reply waits for the adapter's latency timer. Write 1 to latency_timer under \
-             /sys/bus/usb-serial/devices, or install the udev rule of README",
+             /sys/bus/usb-serial/devices, or install the udev rule of docs/real-time.md",
         ),
         Some(_) => Finding::good(subject, "opened; its adapter has the shortest latency timer"),
         None => Finding::good(subject, "opened, and no other program uses it; no latency timer"),
