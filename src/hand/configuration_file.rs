@@ -57,6 +57,18 @@ pub fn read_configuration(path: &Path) -> Result<Configuration, ConfigurationErr
     Configured::read(path).map(|configured| configured.configuration)
 }
 
+/// Checks a configuration that a program has as text, in the format of a configuration file.
+///
+/// # Errors
+/// Returns [`ConfigurationError::Invalid`], with line and reason, if the text is wrong.
+pub fn parse_configuration(text: &str) -> Result<Configuration, ConfigurationError> {
+    parse(text).map_err(|wrong| ConfigurationError::Invalid {
+        file: "the text of the configuration".into(),
+        line: wrong.line(text),
+        reason: wrong.to_string(),
+    })
+}
+
 /// Reads and checks the text of a configuration file.
 pub(super) fn parse(text: &str) -> Result<Configuration, Wrong> {
     text::parse(text).map(|(configuration, _)| configuration)
@@ -144,6 +156,13 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_wrong_text_is_refused_with_its_line() {
+        assert_eq!(parse_configuration("[hand]\nrate = 500\n").expect("usable").hand.rate, 500.0);
+        let refusal = parse_configuration("[hand]\nrate = 1\n").expect_err("refused");
+        assert!(refusal.to_string().starts_with("the text of the configuration:2: hand.rate: "), "{refusal}");
     }
 
     #[test]

@@ -41,7 +41,9 @@ pub use crate::finger::stop_all;
 pub use black_box_file::save_recording;
 pub use calibrating::{Calibrating, CalibrationState};
 pub use calibration_file::store_findings;
-pub use configuration_file::{Configured, Wrong, deserialize, find_configuration, read_configuration};
+pub use configuration_file::{
+    Configured, Wrong, deserialize, find_configuration, parse_configuration, read_configuration,
+};
 pub(crate) use error::ErrorKind;
 pub use error::{ConfigurationError, HandError, PathError, RecoveryError, ReflexError, SetPointError};
 pub use events::{EventListener, EventQueue};

@@ -1,0 +1,71 @@
+"""The parallel stiffness controller of the Stanford/JPL hand.
+
+Lengths are in cm, forces in N, torques in N cm, angles in rad, stiffnesses in N/cm, times in s. Fingers are numbered
+1 to 3, joints 0 to 2, tendons 1 to 4.
+
+    import sun2xp
+
+    with sun2xp.simulated() as hand:
+        hand.send_position(1, [0.1, 0.5, 0.9])
+        print(hand.position(1))
+"""
+
+from . import then, when
+from ._errors import Closed, ConfigurationError, Error, Fault, Refused, TimedOut
+from ._events import Events
+from ._hand import Hand, open, simulated
+from ._sun2xp import stop_all
+from ._sun2xp import version as __version__
+from ._types import (
+    Distribution,
+    Event,
+    EventKind,
+    FaultDescription,
+    FingerFault,
+    Identified,
+    JointTorques,
+    Limits,
+    Losses,
+    ObjectState,
+    PalmPose,
+    SetPoint,
+    Signs,
+    Status,
+    Tip,
+    TouchReading,
+    Zeros,
+)
+
+__all__ = [
+    "Closed",
+    "ConfigurationError",
+    "Distribution",
+    "Error",
+    "Event",
+    "EventKind",
+    "Events",
+    "Fault",
+    "FaultDescription",
+    "FingerFault",
+    "Hand",
+    "Identified",
+    "JointTorques",
+    "Limits",
+    "Losses",
+    "ObjectState",
+    "PalmPose",
+    "Refused",
+    "SetPoint",
+    "Signs",
+    "Status",
+    "TimedOut",
+    "Tip",
+    "TouchReading",
+    "Zeros",
+    "__version__",
+    "open",
+    "simulated",
+    "stop_all",
+    "then",
+    "when",
+]

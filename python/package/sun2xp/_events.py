@@ -1,0 +1,54 @@
+"""Events as iterators."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import AsyncIterator, Iterator, Optional
+
+from . import _sun2xp
+from ._types import Event
+
+
+class Events(_sun2xp.Queue):
+    """A queue of all events of a hand, from `Hand.events`. Iteration waits for each event, and ends when the hand is
+    closed.
+
+    Every queue gets all events. A queue that is not read keeps the newest 4096 of each finger, and counts in `lost` how
+    many it has lost.
+    """
+
+    def __iter__(self) -> Iterator[Event]:
+        while (event := self.wait()) is not None:
+            yield event
+
+    def __aiter__(self) -> AsyncIterator[Event]:
+        return self._follow()
+
+    async def next(self, timeout: Optional[float] = None) -> Optional[Event]:
+        """Waits for an event in asyncio for at most `timeout` s, or without a limit, and takes it. Returns None after
+        this time, and if the hand is closed."""
+        loop = asyncio.get_running_loop()
+        deadline = None if timeout is None else loop.time() + timeout
+        while (event := self.take()) is None and not self.closed:
+            left = None if deadline is None else deadline - loop.time()
+            if left is not None and left <= 0:
+                return None
+            await self._ready(loop, left)
+        # The last events of a hand may come just before it is closed.
+        return self.take() if event is None else event
+
+    async def _follow(self) -> AsyncIterator[Event]:
+        while (event := await self.next()) is not None:
+            yield event
+
+    async def _ready(self, loop: asyncio.AbstractEventLoop, timeout: Optional[float]) -> None:
+        ready = asyncio.Event()
+        descriptor = self.fileno()
+        # The loop watches the descriptor only during the wait, because it is readable as long as there are events.
+        loop.add_reader(descriptor, ready.set)
+        try:
+            await asyncio.wait_for(ready.wait(), timeout)
+        except asyncio.TimeoutError:
+            pass
+        finally:
+            loop.remove_reader(descriptor)

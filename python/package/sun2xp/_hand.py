@@ -1,0 +1,124 @@
+"""The hand, and the functions that open it."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, AsyncIterator, Callable, Dict, Iterable, Optional, Union
+
+from . import _sun2xp
+from ._events import Events
+from ._types import Event, Identified, Signs, Zeros
+
+#: Called during a calibration with the part that is done, 0 to 1, and the current activity.
+Progress = Callable[[float, str], None]
+
+
+class Hand(_sun2xp.Hand):
+    """An open hand: three fingers, numbered 1 to 3, whose servo threads run without Python.
+
+    Open one with `sun2xp.open()` or `sun2xp.simulated()`. A process can have several. All methods may be called from
+    several threads. Methods that wait release the interpreter lock, and Ctrl-C ends them. Leaving a `with` block closes
+    the hand.
+
+    All methods raise Closed if the hand is closed, Refused if there is no such finger or if an argument is wrong, and
+    Fault if the finger is faulted and the method needs it to run.
+    """
+
+    def events(self) -> Events:
+        """Returns a queue of the hand's events from now on. `for event in hand.events()` waits for each event, and
+        `async for` does so in asyncio."""
+        events = Events(self)
+        events.clear()
+        return events
+
+    async def events_async(self) -> AsyncIterator[Event]:
+        """Yields the hand's events from now on in asyncio, until the hand is closed."""
+        async for event in self.events():
+            yield event
+
+    def wait(
+        self,
+        fingers: Union[int, Iterable[int]] = (1, 2, 3),
+        condition: str = "arrived",
+        timeout: Optional[float] = None,
+    ) -> None:
+        """Waits until the condition holds for these fingers at the same time, for the set points that were sent last.
+
+        Args:
+            fingers: a finger, or several.
+            condition: "arrived": every joint is at the set point. "settled": every joint is at rest.
+            timeout: time limit, s.
+
+        Raises:
+            TimedOut: the time limit is over.
+            Fault: a finger is faulted.
+        """
+        self._wait([fingers] if isinstance(fingers, int) else list(fingers), condition, timeout)
+
+    def configuration(self, finger: int) -> Dict[str, Any]:
+        """The configuration of a finger in force, with calibrations and adjustments: the keys of `[finger]`."""
+        return json.loads(self._configuration(finger))
+
+    def zero(self, finger: int, progress: Optional[Progress] = None, *, store: bool = True) -> Zeros:
+        """Zeros gauges and encoders of a finger. Its joints move between their stops, if `zeroing.method` says so.
+
+        Args:
+            progress: called with the part that is done and the current activity.
+            store: whether to store the zeros in the configuration file with which the hand was opened.
+
+        Raises:
+            Error: the calibration failed. The previous one is in force.
+        """
+        return self._calibrated(finger, "zero", progress, store)
+
+    def identify(self, finger: int, progress: Optional[Progress] = None, *, store: bool = True) -> Identified:
+        """Measures gauge gains, friction and tendon stiffness of a finger, which must have been zeroed. Its joints move
+        between their stops, and it presses. Arguments and errors are those of `zero`."""
+        return self._calibrated(finger, "identify", progress, store)
+
+    def find_signs(self, finger: int, progress: Optional[Progress] = None, *, store: bool = True) -> Signs:
+        """Finds the directions in which motors, encoders and gauges of a finger count. The finger stays limp. Arguments
+        and errors are those of `zero`."""
+        return self._calibrated(finger, "signs", progress, store)
+
+    def _calibrated(self, finger: int, task: str, progress: Optional[Progress], store: bool) -> Any:
+        found = self._calibrate(finger, task, progress)
+        if store:
+            self.store_calibration(finger)
+        return found
+
+
+def open(path: Union[str, os.PathLike[str], None] = None, *, text: Optional[str] = None) -> Hand:
+    """Opens a hand, and returns when every finger holds its pose at its initial stiffness.
+
+    Args:
+        path: the configuration file. Without path and text, the library looks for it: the file that SUN2XP_CONFIG
+            names, or sun2xp.toml in the working directory or in the configuration folders. Without a file the hand is
+            simulated.
+        text: the text of a configuration, instead of a file.
+
+    Raises:
+        ConfigurationError: the configuration cannot be read or used. The text names file, line and reason.
+        Fault: a finger has faulted. Then every motor is in its end state.
+        Error: a port or a board does not work.
+    """
+    if text is None:
+        return Hand(_sun2xp.open_file(path))
+    if path is not None:
+        raise TypeError("open() takes a path or a text, not both")
+    return Hand(_sun2xp.open_text(text))
+
+
+def simulated(name: str = "nominal", *, rate: float = 1000.0, text: str = "") -> Hand:
+    """Opens a simulated hand, which needs no hardware.
+
+    Args:
+        name: "nominal", or a hand that differs from its configuration: "worn", "sheathed" or "cheap".
+        rate: rate of the servos, Hz, 500 to 5000.
+        text: further configuration. Name, rate and ports of this text are ignored.
+
+    Raises:
+        ConfigurationError: there is no such name or rate, or the text is wrong.
+    """
+    return Hand(_sun2xp.open_simulated(name, rate, text))

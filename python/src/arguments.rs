@@ -1,0 +1,57 @@
+//! Conversion of arguments to numbers: numpy arrays, lists, and everything else that numpy converts.
+
+use crate::errors::Refusal;
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::intern;
+use pyo3::prelude::*;
+
+/// Returns the numbers of an array with this shape, row by row.
+pub fn numbers(object: &Bound<'_, PyAny>, name: &str, shape: &[usize]) -> PyResult<Vec<f64>> {
+    let array = as_array(object)?;
+    if array.shape() != shape {
+        let (wanted, found) = (tuple(shape), tuple(array.shape()));
+        let text = format!("{name} has the shape {found}: pass an array with the shape {wanted}");
+        return Err(Refusal::Argument(text).raise(object.py()));
+    }
+    let array = array.try_readonly()?;
+    Ok(array.as_array().iter().copied().collect())
+}
+
+/// Returns three numbers.
+pub fn vector(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
+    // A list of three numbers needs no array.
+    if !object.is_instance_of::<PyArrayDyn<f64>>()
+        && let Ok(numbers) = object.extract::<[f64; 3]>()
+    {
+        return Ok(numbers);
+    }
+    let numbers = numbers(object, name, &[3])?;
+    Ok([numbers[0], numbers[1], numbers[2]])
+}
+
+/// Returns the rows of a 3 x 3 matrix.
+pub fn rows(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3]; 3]> {
+    let numbers = numbers(object, name, &[3, 3])?;
+    Ok(std::array::from_fn(|row| std::array::from_fn(|column| numbers[3 * row + column])))
+}
+
+/// Returns the array itself, or a new one with the same numbers as `float64`.
+pub fn as_array<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    if let Ok(array) = object.cast::<PyArrayDyn<f64>>() {
+        return Ok(array.clone());
+    }
+    let py = object.py();
+    let array = py.import("numpy")?.call_method1(intern!(py, "asarray"), (object, intern!(py, "float64")))?;
+    Ok(array.cast_into::<PyArrayDyn<f64>>()?)
+}
+
+fn tuple(shape: &[usize]) -> String {
+    let sizes = shape.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    if shape.len() == 1 { format!("({sizes},)") } else { format!("({sizes})") }
+}
+
+/// Returns an attribute; none if it is None.
+pub fn optional<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let value = object.getattr(name)?;
+    Ok(if value.is_none() { None } else { Some(value) })
+}

@@ -1,0 +1,119 @@
+//! The exceptions of refused calls.
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use sun2xp::finger::{Fault, FaultKind};
+use sun2xp::{ConfigurationError, HandError};
+
+/// Why a call is refused.
+#[derive(Debug)]
+pub enum Refusal {
+    /// The hand is closed.
+    Closed,
+    /// This process was forked from the process that has opened the hand.
+    Forked,
+    /// An argument has a wrong shape or value.
+    Argument(String),
+    /// The library has failed.
+    Defect,
+    /// The hand refuses the call.
+    Hand(HandError),
+}
+
+impl From<HandError> for Refusal {
+    fn from(error: HandError) -> Self {
+        Self::Hand(error)
+    }
+}
+
+impl Refusal {
+    /// Returns the exception.
+    pub fn raise(&self, py: Python<'_>) -> PyErr {
+        self.exception(py).unwrap_or_else(|error| error)
+    }
+
+    fn exception(&self, py: Python<'_>) -> PyResult<PyErr> {
+        let details = PyDict::new(py);
+        details.set_item("number", self.number())?;
+        details.set_item("remedy", self.remedy())?;
+        if let Some((finger, fault)) = self.fault() {
+            details.set_item("finger", finger)?;
+            details.set_item("fault", fault.kind.number())?;
+        }
+        let class = py.import("sun2xp._errors")?.getattr(self.class())?;
+        Ok(PyErr::from_value(class.call((self.text(),), Some(&details))?))
+    }
+
+    /// The class of sun2xp/_errors.py. A program treats errors of different classes differently.
+    fn class(&self) -> &'static str {
+        match self {
+            Self::Closed => "Closed",
+            Self::Argument(_) => "Refused",
+            Self::Forked | Self::Defect => "Error",
+            Self::Hand(error) => match error {
+                HandError::Faulted { .. } | HandError::FaultedAtOpening { .. } => "Fault",
+                HandError::Configuration(ConfigurationError::Permanent { .. }) => "Refused",
+                HandError::Configuration(_) | HandError::NotStored { .. } => "ConfigurationError",
+                HandError::NotThereInTime(_) => "TimedOut",
+                HandError::NoSuchFinger(_)
+                | HandError::NotOpened(_)
+                | HandError::NoSuchElement { .. }
+                | HandError::SetPoint(_)
+                | HandError::Path(_)
+                | HandError::Reflex(_)
+                | HandError::NoRecord { .. }
+                | HandError::TooMuchForce { .. }
+                | HandError::NotSimulated(_)
+                | HandError::NoObject
+                | HandError::Busy(_) => "Refused",
+                _ => "Error",
+            },
+        }
+    }
+
+    fn number(&self) -> i32 {
+        match self {
+            Self::Closed => 19,      // ENODEV
+            Self::Forked => 1,       // EPERM
+            Self::Argument(_) => 22, // EINVAL
+            Self::Defect => 5,       // EIO
+            Self::Hand(error) => error.errno(),
+        }
+    }
+
+    fn text(&self) -> String {
+        match self {
+            Self::Closed => "the hand is closed: open it again".into(),
+            Self::Forked => "this process was forked from the process that has opened the hand, and only that process \
+                             has the servo threads: make the call in that process, or start processes with the \
+                             method \"spawn\""
+                .into(),
+            Self::Argument(text) => text.clone(),
+            Self::Defect => "the library failed: please report this defect of the library".into(),
+            Self::Hand(error) => error.to_string(),
+        }
+    }
+
+    fn fault(&self) -> Option<(i32, Fault)> {
+        match self {
+            Self::Hand(HandError::Faulted { finger, fault } | HandError::FaultedAtOpening { finger, fault }) => {
+                Some((finger.get(), *fault))
+            }
+            _ => None,
+        }
+    }
+
+    /// What the caller should do. The texts of the library end with the remedy, after the last colon.
+    fn remedy(&self) -> String {
+        if let Some((_, fault)) = self.fault() {
+            return remedy(fault.kind).into();
+        }
+        let text = self.text();
+        text.rsplit_once(": ").map_or(String::new(), |(_, remedy)| remedy.into())
+    }
+}
+
+/// The remedy for a fault.
+pub fn remedy(kind: FaultKind) -> &'static str {
+    kind.description().remedy
+}

@@ -1,0 +1,27 @@
+//! Detects forked children. A child has the memory of the hand, but not its threads, and a thread of the parent may hold
+//! its locks.
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// Number of forks between the start of the first process and this one.
+static GENERATION: AtomicU32 = AtomicU32::new(0);
+
+#[pyfunction]
+fn forked() {
+    GENERATION.fetch_add(1, Ordering::Relaxed);
+}
+
+/// Counts forks by Python from now on.
+pub fn watch(py: Python<'_>) -> PyResult<()> {
+    let handlers = PyDict::new(py);
+    handlers.set_item("after_in_child", pyo3::wrap_pyfunction!(forked, py)?)?;
+    py.import("os")?.call_method("register_at_fork", (), Some(&handlers))?;
+    Ok(())
+}
+
+/// Returns the generation of this process. It is greater in a child than in its parent.
+pub fn generation() -> u32 {
+    GENERATION.load(Ordering::Relaxed)
+}

@@ -1,0 +1,139 @@
+//! The class `Hand`: an open hand, until it is closed.
+
+use crate::errors::Refusal;
+use crate::fork;
+use crate::records;
+use parking_lot::{Mutex, RwLock};
+use pyo3::prelude::*;
+use std::sync::{Arc, Weak};
+
+/// All hands that may be open, for the end of the interpreter.
+static HANDS: Mutex<Vec<Weak<Shared>>> = Mutex::new(Vec::new());
+
+/// A hand, as the Python object and the threads of its slow calls share it.
+pub struct Shared {
+    /// None: closed. Locked for writing only to take the hand out.
+    hand: RwLock<Option<sun2xp::Hand>>,
+    /// The process that has opened the hand.
+    generation: u32,
+}
+
+impl Shared {
+    /// Calls `action` with the open hand. The lock is free again when this returns, so that the caller may run Python
+    /// code, which may close the hand.
+    pub fn with<R>(&self, action: impl FnOnce(&sun2xp::Hand) -> Result<R, sun2xp::HandError>) -> Result<R, Refusal> {
+        self.check_process()?;
+        let hand = self.hand.read();
+        let hand = hand.as_ref().ok_or(Refusal::Closed)?;
+        Ok(action(hand)?)
+    }
+
+    pub fn is_open(&self) -> bool {
+        self.check_process().is_ok() && self.hand.read().is_some()
+    }
+
+    fn check_process(&self) -> Result<(), Refusal> {
+        if self.generation == fork::generation() { Ok(()) } else { Err(Refusal::Forked) }
+    }
+
+    /// Closes the hand, if it is open: waits until every finger is in its end state.
+    fn close(&self) {
+        if self.check_process().is_ok() {
+            let hand = self.hand.write().take();
+            drop(hand);
+        }
+    }
+}
+
+/// An open hand: three fingers, numbered 1 to 3, whose servo threads run without Python.
+///
+/// Open one with `sun2xp.open()` or `sun2xp.simulated()`. All methods may be called from several threads.
+#[pyclass(frozen, subclass, module = "sun2xp")]
+pub struct Hand(pub Arc<Shared>);
+
+impl Hand {
+    /// Makes a quick call. It holds the interpreter lock, because it takes less time than its release.
+    pub fn quick<R>(
+        &self,
+        py: Python<'_>,
+        action: impl FnOnce(&sun2xp::Hand) -> Result<R, sun2xp::HandError>,
+    ) -> PyResult<R> {
+        self.0.with(action).map_err(|refusal| refusal.raise(py))
+    }
+
+    /// Makes a call that computes or waits for some time. Other Python threads run meanwhile.
+    pub fn slow<R: Send>(
+        &self,
+        py: Python<'_>,
+        action: impl FnOnce(&sun2xp::Hand) -> Result<R, sun2xp::HandError> + Send,
+    ) -> PyResult<R> {
+        py.detach(|| self.0.with(action)).map_err(|refusal| refusal.raise(py))
+    }
+}
+
+#[pymethods]
+impl Hand {
+    /// Takes over the hand of another object, for subclasses.
+    #[new]
+    fn new(opened: &Bound<'_, Opened>) -> PyResult<Self> {
+        let hand = opened.get().0.lock().take();
+        let hand = hand.ok_or_else(|| Refusal::Closed.raise(opened.py()))?;
+        let shared = Arc::new(Shared { hand: RwLock::new(Some(hand)), generation: fork::generation() });
+        let mut hands = HANDS.lock();
+        hands.retain(|hand| hand.strong_count() > 0);
+        hands.push(Arc::downgrade(&shared));
+        Ok(Self(shared))
+    }
+
+    /// Whether the hand is closed.
+    #[getter]
+    fn closed(&self) -> bool {
+        !self.0.is_open()
+    }
+
+    /// Brings every finger to its configured end state (`hand.end_state`), and closes the ports. Waits until this is
+    /// done, 0.2 s by default. Does nothing if the hand is closed.
+    fn close(&self, py: Python<'_>) {
+        py.detach(|| self.0.close());
+    }
+
+    fn __enter__(slf: Bound<'_, Self>) -> Bound<'_, Self> {
+        slf
+    }
+
+    #[pyo3(signature = (*_exception))]
+    fn __exit__(&self, py: Python<'_>, _exception: &Bound<'_, PyAny>) {
+        self.close(py);
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let stages = (1..=3).map(|finger| match self.0.with(|hand| hand.report(finger)) {
+            Ok(report) => records::stage(&report.stage),
+            Err(_) => "absent",
+        });
+        let _ = py;
+        if self.0.is_open() {
+            format!("<sun2xp.Hand: {}>", stages.collect::<Vec<_>>().join(", "))
+        } else {
+            "<sun2xp.Hand: closed>".into()
+        }
+    }
+}
+
+impl Drop for Hand {
+    fn drop(&mut self) {
+        // Closing waits, so other threads of Python must run meanwhile.
+        Python::attach(|py| py.detach(|| self.0.close()));
+    }
+}
+
+/// A hand on its way from a function that opens it into a `Hand`.
+#[pyclass(frozen, module = "sun2xp._sun2xp")]
+pub struct Opened(pub Mutex<Option<sun2xp::Hand>>);
+
+/// Closes all hands at the end of the interpreter, so that their fingers reach their end states.
+#[pyfunction]
+pub fn close_all(py: Python<'_>) {
+    let hands = std::mem::take(&mut *HANDS.lock());
+    py.detach(|| hands.iter().filter_map(Weak::upgrade).for_each(|hand| hand.close()));
+}

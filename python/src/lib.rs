@@ -1,0 +1,40 @@
+//! The extension module of the Python package `sun2xp`. The Python files of the package add what needs no Rust.
+
+mod arguments;
+mod commands;
+mod errors;
+mod events;
+mod fork;
+mod hand;
+mod opening;
+mod queries;
+mod records;
+mod reflexes;
+mod supervision;
+mod waiting;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _sun2xp {
+    #[pymodule_export]
+    use super::events::{Queue, event_kinds};
+    #[pymodule_export]
+    use super::hand::Hand;
+    #[pymodule_export]
+    use super::hand::close_all;
+    #[pymodule_export]
+    use super::opening::{open_file, open_simulated, open_text};
+    #[pymodule_export]
+    use super::supervision::stop_all;
+    use super::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("version", env!("CARGO_PKG_VERSION"))?;
+        fork::watch(module.py())?;
+        // Handlers of the program that are registered later run earlier, and can still use their hands.
+        module.py().import("atexit")?.call_method1("register", (module.getattr("close_all")?,))?;
+        Ok(())
+    }
+}

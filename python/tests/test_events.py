@@ -1,0 +1,82 @@
+"""Events as a queue, as an iterator and in asyncio."""
+
+import asyncio
+import select
+
+import pytest
+
+import sun2xp
+from sun2xp import _sun2xp
+
+AWAY = [0.2, 0.6, 0.9]
+
+
+def test_the_kinds_are_those_of_the_library():
+    assert [(kind.value, kind.name) for kind in sun2xp.EventKind] == _sun2xp.event_kinds()
+
+
+def test_a_queue_has_the_arrival(hand):
+    events = hand.events()
+    assert events.take() is None and events.wait(0) is None
+    hand.send_position(1, AWAY)
+    for event in events:
+        if event.kind == sun2xp.EventKind.ARRIVED:
+            break
+    assert event.finger == 1 and event.part == "finger" and event.text == "arrived" and event.cycle > 0
+    assert abs(hand.position(1) - event.values).max() < 0.05
+    assert events.lost == 0
+
+
+def test_the_descriptor_is_readable_while_there_are_events(hand):
+    events = hand.events()
+    assert select.select([events], [], [], 0)[0] == []
+    hand.stop(3)
+    assert select.select([events], [], [], 20)[0] == [events]
+    assert events.wait(5).kind == sun2xp.EventKind.FAULT
+    hand.close()
+    assert select.select([events], [], [], 20)[0] == [events]
+    assert events.closed and events.wait() is None
+    with pytest.raises(sun2xp.Closed):
+        hand.events()
+
+
+def test_asyncio_follows_events_until_the_hand_is_closed(hand):
+    async def follow():
+        kinds, ticks = [], 0
+
+        async def tick():
+            nonlocal ticks
+            while True:
+                ticks += 1
+                await asyncio.sleep(0.01)
+
+        ticking = asyncio.create_task(tick())
+        # The generator begins with its first step, so the queue is made before the command.
+        events = hand.events()
+        hand.send_position(1, AWAY)
+        async for event in events:
+            kinds.append(event.kind)
+            if event.kind == sun2xp.EventKind.ARRIVED:
+                await asyncio.get_running_loop().run_in_executor(None, hand.close)
+        ticking.cancel()
+        return kinds, ticks
+
+    kinds, ticks = asyncio.run(asyncio.wait_for(follow(), 60))
+    assert sun2xp.EventKind.ARRIVED in kinds and ticks > 5
+
+
+def test_asyncio_waits_with_a_limit(hand):
+    async def wait():
+        events = hand.events()
+        assert await events.next(timeout=0.05) is None
+        hand.stop(2)
+        event = await events.next(timeout=20)
+        stops = hand.events_async()
+        first = asyncio.ensure_future(stops.__anext__())
+        await asyncio.sleep(0.05)
+        hand.stop(3)
+        return event, await asyncio.wait_for(first, 20)
+
+    event, first = asyncio.run(wait())
+    assert (event.kind, event.finger) == (sun2xp.EventKind.FAULT, 2) and "stop" in event.text
+    assert (first.kind, first.finger) == (sun2xp.EventKind.FAULT, 3)
