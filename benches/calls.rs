@@ -15,6 +15,7 @@ unsafe extern "C" {
     fn SendKx(i: c_int, kx: *const f32) -> c_int;
     fn SendKxD(i: c_int, kx: *const f64) -> c_int;
     fn GetPos(i: c_int, pos: *mut f32) -> c_int;
+    fn SetGravity(gravity: *const f64) -> c_int;
 }
 
 /// Number of attempts to open the hand. Other work on the machine can prevent it from opening in time.
@@ -64,4 +65,13 @@ fn send_kx_double(bencher: Bencher) {
     let kx = [3.0f64, 0.2, 0.1, 0.2, 4.0, 0.3, 0.1, 0.3, 2.0];
     // SAFETY: `kx` has nine values, which the call reads before it returns.
     bencher.bench_local(|| unsafe { SendKxD(1, black_box(kx.as_ptr())) });
+}
+
+/// SetGravity sends gravity to three servos and three simulated fingers. A simulated finger may keep the call waiting
+/// while it computes.
+#[divan::bench]
+fn set_gravity(bencher: Bencher) {
+    let gravity = [0.0, 6.0, 7.8];
+    // SAFETY: `gravity` has three values, which the call reads before it returns.
+    bencher.bench_local(|| unsafe { SetGravity(black_box(gravity.as_ptr())) });
 }

@@ -149,10 +149,11 @@ fn gravity_turns_while_the_hand_is_open() {
     let at = |hand: &Hand, finger| Vector3::from(hand.position(finger).expect("a position"));
     let before = [1, 2, 3].map(|finger| at(&hand, finger));
     let unloaded = Vector3::from(hand.joint_torques(1).expect("torques").commanded);
-    for step in 0..100 {
-        let angle = f64::from(step) * 0.02;
+    for step in 0..250 {
+        // Once a second.
+        let angle = f64::from(step) * 0.002 * std::f64::consts::TAU;
         hand.set_gravity([9.81 * angle.sin(), 0.0, 9.81 * angle.cos()]).expect("a gravity");
-        std::thread::sleep(Duration::from_millis(5));
+        std::thread::sleep(Duration::from_millis(2));
     }
     hand.set_gravity([0.0, 9.81, 0.0]).expect("a gravity");
     hand.wait(&[1, 2, 3], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
@@ -160,7 +161,9 @@ fn gravity_turns_while_the_hand_is_open() {
     for finger in 1..=3 {
         let moved = (at(&hand, finger) - before[finger as usize - 1]).amax();
         assert!(moved < 0.03, "finger {finger} moved by {moved} rad");
-        let replayed = hand.recording(finger).expect("a recording").replay().expect("replayable");
+        let recording = hand.recording(finger).expect("a recording");
+        assert_eq!(recording.origin.controllers.len(), 1, "gravity does not replace controllers");
+        let replayed = recording.replay().expect("replayable");
         assert!(replayed.different == 0 && replayed.cycles > 500, "{replayed:?}");
     }
     let loaded = Vector3::from(hand.joint_torques(1).expect("torques").commanded);

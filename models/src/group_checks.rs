@@ -28,7 +28,7 @@ pub fn a_group_takes_effect_in_one_period() {
 /// A servo that sees a posted group has the set point of its finger.
 pub fn a_posted_group_has_its_set_points() {
     let report = running();
-    let (planner, mut servo, mut memory) = mailbox(report, &Adjustable { number: 0 });
+    let (planner, mut servo, mut memory) = mailbox(report, &Adjustable { number: 0 }, &[0.0; 3]);
     let gate = GroupGate::new();
     servo.set_gate(gate.clone(), &mut memory);
     let thread = thread::spawn(move || {

@@ -25,7 +25,7 @@ fn cycle(servo: &mut ServoEnd, report: &mut FingerReport) -> Option<Order> {
 /// A servo that has the order to restart also has the data to restart with. Every order that was accepted is taken.
 pub fn an_order_comes_after_its_data() {
     let mut report = running();
-    let (planner, mut servo, _) = mailbox(report, &Adjustable { number: 0 });
+    let (planner, mut servo, _) = mailbox(report, &Adjustable { number: 0 }, &[0.0; 3]);
     let thread = thread::spawn(move || {
         let mut accepted = 0;
         for number in 1..=2 {
@@ -47,7 +47,7 @@ pub fn an_order_comes_after_its_data() {
 /// A set point for an earlier spring is never used. A planner that knows of the new spring is served.
 pub fn a_set_point_is_for_one_spring() {
     let mut report = running();
-    let (planner, mut servo, _) = mailbox(report, &Adjustable { number: 0 });
+    let (planner, mut servo, _) = mailbox(report, &Adjustable { number: 0 }, &[0.0; 3]);
     let thread = thread::spawn(move || {
         planner.send(|set_point| set_point.damping += 1.0).expect("the finger is healthy");
         planner
@@ -68,7 +68,7 @@ pub fn a_set_point_is_for_one_spring() {
 /// A request to close arrives, and so does the report of the end.
 pub fn a_request_to_close_is_answered() {
     let mut report = running();
-    let (planner, mut servo, _) = mailbox(report, &Adjustable { number: 0 });
+    let (planner, mut servo, _) = mailbox(report, &Adjustable { number: 0 }, &[0.0; 3]);
     let thread = thread::spawn(move || {
         while !servo.closing() {
             thread::yield_now();

@@ -92,6 +92,9 @@ pub struct State {
     state_feedback: Option<StateFeedbackState>,
     heat: Heat,
     contact: ContactState,
+    /// Gravity in the finger's frame, m/s^2, if it was set after the controller was constructed.
+    #[serde(default)]
+    gravity: Option<Vector3<f64>>,
     report: Report,
 }
 
@@ -141,6 +144,7 @@ impl Controller {
             state_feedback: self.state_feedback.as_ref().map(|law| law.start(&measured)),
             heat: Heat::default(),
             contact: ContactState::default(),
+            gravity: None,
             report,
         }
     }
@@ -169,6 +173,13 @@ impl Controller {
         self.cycle(state, feedback, activity)
     }
 
+    /// Changes the gravity that the next cycles compensate to `gravity`, m/s^2 in the finger's frame. This value is an
+    /// input of every cycle, like the set point: a hand on a moving arm changes it all the time. A large change is
+    /// spread over some cycles, so that it is no jump in torque. The first value after a start takes effect at once.
+    pub fn approach_gravity(&self, state: &mut State, gravity: &Vector3<f64>) {
+        self.gravity.approach(&mut state.gravity, gravity);
+    }
+
     /// Runs one cycle. Without feedback (the reply was lost), the last command is repeated and all integrators keep
     /// their values. Two activities continue without feedback: a release, and state feedback, which uses its
     /// predictions for some cycles.
@@ -194,7 +205,8 @@ impl Controller {
         let observed = self.observe(state, measured);
         if matches!(activity, Activity::Follow(_)) {
             if measured.is_some() {
-                self.contact.follow(&mut state.contact, &mut state.report, elapsed);
+                let weight = |joints: &Vector3<f64>| self.gravity.weight(&state.gravity, joints);
+                self.contact.follow(&mut state.contact, &mut state.report, weight, elapsed);
             }
         } else {
             self.contact.end(&mut state.contact, &mut state.report);

@@ -3,6 +3,7 @@
 
 use crate::control::{Activity, Controller, Feedback, MotorCommand, Report, State};
 use crate::finger::Fading;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// The input of a controller in one cycle, except the reply.
@@ -17,6 +18,10 @@ pub struct ControlInput {
     pub skipped: u64,
     /// Present if so many replies in a row were lost that the motor torques are faded to their rest value.
     pub fading: Option<Fading>,
+    /// Gravity in the finger's frame that planners have set, m/s^2. Recordings of older libraries do not have it. Their
+    /// controllers compensate the gravity with which they were constructed.
+    #[serde(default)]
+    pub gravity: Option<Vector3<f64>>,
 }
 
 impl ControlInput {
@@ -31,6 +36,9 @@ impl ControlInput {
     ) -> (MotorCommand, Report) {
         if let Some(found) = &self.anew_from {
             *state = previous.unwrap_or(controller).start(found);
+        }
+        if let Some(gravity) = &self.gravity {
+            controller.approach_gravity(state, gravity);
         }
         let (mut command, mut report) = match previous {
             None => controller.cycle(state, feedback, &self.activity),

@@ -6,6 +6,7 @@
 //! lock exists only among the planners. The set points of groups are in a ring instead, because each of them must take
 //! effect in all of its fingers, even if a newer set point follows.
 
+mod adjustments;
 pub(super) mod groups;
 mod paths;
 mod requests;
@@ -43,6 +44,7 @@ struct PlannersEnd {
     /// Number of the last path.
     path: u32,
     adjustments: Input<Adjustable>,
+    gravity: Input<[f64; 3]>,
     orders: Input<Order>,
     ordered: u32,
     reports: Output<FingerReport>,
@@ -64,6 +66,7 @@ pub(super) struct ServoEnd {
     gate: GroupGate,
     paths: Output<PathBuffer>,
     adjustments: Output<Adjustable>,
+    gravity: Output<[f64; 3]>,
     orders: Output<Order>,
     reports: Input<FingerReport>,
     requests: SharedPages<Requests>,
@@ -71,9 +74,13 @@ pub(super) struct ServoEnd {
     stops_seen: u32,
 }
 
-/// Creates a mailbox with `report`, its set point and `adjustable` at both ends. Also returns the memory that both ends
-/// share.
-pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox, ServoEnd, LockedMemory) {
+/// Creates a mailbox with `report`, its set point, `adjustable` and `gravity` at both ends. Also returns the memory that
+/// both ends share.
+pub(super) fn mailbox(
+    report: FingerReport,
+    adjustable: &Adjustable,
+    gravity: &[f64; 3],
+) -> (Mailbox, ServoEnd, LockedMemory) {
     let mut memory = LockedMemory::default();
     let sent = SentSetPoint::held(&report);
     let (set_points_in, set_points_out) = shared(&sent, &mut memory);
@@ -82,6 +89,7 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
     let (paths_in, paths_out) = triple_buffer_of(|| PathBuffer::new(&mut memory));
     paths_in.add_to(&mut memory);
     let (adjustments_in, adjustments_out) = shared(adjustable, &mut memory);
+    let (gravity_in, gravity_out) = shared(gravity, &mut memory);
     let (reports_in, reports_out) = shared(&report, &mut memory);
     let (orders_in, orders_out) = shared(&Order::Nothing, &mut memory);
     let requests = Requests { closing: AtomicBool::new(false), stops: AtomicU32::new(0) };
@@ -94,6 +102,7 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
         paths: paths_in,
         path: 0,
         adjustments: adjustments_in,
+        gravity: gravity_in,
         orders: orders_in,
         ordered: 0,
         reports: reports_out,
@@ -107,6 +116,7 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
         gate: GroupGate::new(),
         paths: paths_out,
         adjustments: adjustments_out,
+        gravity: gravity_out,
         orders: orders_out,
         reports: reports_in,
         requests: requests.clone(),
@@ -198,19 +208,6 @@ impl Mailbox {
         (planners.sent.number == report.set_point_number, report)
     }
 
-    /// Replaces the data that the servo computes with, unless the finger is faulted.
-    ///
-    /// # Errors
-    /// Returns the fault if the finger is faulted. Nothing is changed in that case.
-    pub fn adjust(&self, adjustable: Adjustable) -> Result<(), Fault> {
-        let mut planners = self.planners.lock();
-        if let Stage::Faulted(fault) = planners.reports.read().stage {
-            return Err(fault);
-        }
-        planners.adjustments.write(adjustable);
-        Ok(())
-    }
-
     /// Gives an order to the servo, and returns the number of the order. [`FingerReport::orders`] reaches this number
     /// when the servo takes the order. Returns none, and gives no order, if the servo has not yet taken the previous
     /// order, or if the finger is neither a spring nor limp.
@@ -272,11 +269,6 @@ impl ServoEnd {
         self.held = sent.group > self.in_effect;
         // A group that was sent later and is in effect already includes this set point.
         (sent.group == self.in_effect).then_some(*sent)
-    }
-
-    /// Returns the data to compute with, if a planner has replaced it since the last call.
-    pub fn new_adjustable(&mut self) -> Option<&Adjustable> {
-        self.adjustments.update().then(|| self.adjustments.output_buffer())
     }
 
     /// Returns the order, if a planner has given one since the last call.

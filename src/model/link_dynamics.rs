@@ -5,7 +5,7 @@
 //! finger's plane. The normal is a principal axis of every link, and the centres of mass are in the plane, so the
 //! inertia matrix does not couple joint 0 with the other joints.
 
-use crate::model::{LinkMomentum, Links};
+use crate::model::{LinkMomentum, LinkWeight, Links};
 use nalgebra::{Matrix3, Vector3};
 
 /// A link as a rigid body.
@@ -34,9 +34,7 @@ pub struct LinkDynamics {
     tip_mass: f64,
     /// Gravity in the finger's frame, m/s^2.
     gravity: Vector3<f64>,
-    /// One entry for each link and one for the tip: the mass of this body, kg, and the link lengths, m, of a shorter
-    /// finger. The tip of the shorter finger is at the centre of mass of this body.
-    centres: [(f64, Links); 4],
+    weight: LinkWeight,
 }
 
 impl LinkDynamics {
@@ -44,15 +42,8 @@ impl LinkDynamics {
     /// in the finger's frame, m/s^2.
     pub fn new(links: Links, mass: [f64; 4], radii: [f64; 3], gravity: Vector3<f64>) -> Self {
         let length = links.0.map(|cm| cm * 0.01);
-        let [l0, l1, l2] = length;
         let link = std::array::from_fn(|i| Cylinder::new(mass[i], radii[i], length[i]));
-        let centres = [
-            (mass[0], Links([l0 / 2.0, 0.0, 0.0])),
-            (mass[1], Links([l0, l1 / 2.0, 0.0])),
-            (mass[2], Links([l0, l1, l2 / 2.0])),
-            (mass[3], Links([l0, l1, l2])),
-        ];
-        Self { length, link, tip_mass: mass[3], gravity, centres }
+        Self { length, link, tip_mass: mass[3], gravity, weight: LinkWeight::new(links, mass) }
     }
 
     /// Sets gravity in the finger's frame, m/s^2.
@@ -104,16 +95,12 @@ impl LinkDynamics {
 
     /// Returns the joint torques that gravity exerts, N m.
     pub fn gravity_torque(&self, theta: &Vector3<f64>) -> Vector3<f64> {
-        if self.gravity == Vector3::zeros() {
-            return Vector3::zeros();
-        }
-        self.centres.iter().map(|(mass, chain)| chain.jacobian(theta).transpose() * self.gravity * *mass).sum()
+        self.weight.torques(&self.gravity, theta)
     }
 
     /// Returns the kinetic energy of the links plus their potential energy in gravity, J.
     pub fn energy(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> f64 {
-        let potential: f64 = self.centres.iter().map(|(mass, chain)| -mass * self.gravity.dot(&chain.tip(theta))).sum();
-        self.kinetic_energy(theta, rate) + potential
+        self.kinetic_energy(theta, rate) - self.gravity.dot(&self.weight.moment(theta))
     }
 
     /// Returns the kinetic energy of the links, J.

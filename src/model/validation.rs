@@ -103,8 +103,16 @@ impl ConfiguredHand {
             return unusable("watchdog_ms", reason);
         }
         path("black_box", self.black_box.as_deref().unwrap_or_default())?;
-        each("gravity", &self.gravity, -100.0, 100.0, "m/s^2")?;
+        self.check_gravity()?;
         self.check_simulated_object()
+    }
+
+    /// Checks `gravity`, which can change while the hand is open.
+    ///
+    /// # Errors
+    /// Returns an error if a component is unusable.
+    pub fn check_gravity(&self) -> Result<(), Unusable> {
+        each("gravity", &self.gravity, -100.0, 100.0, "m/s^2")
     }
 }
 

@@ -15,3 +15,4 @@ mod slack_hands;
 mod state_feedback;
 mod switching;
 mod tip_stiffness;
+mod turning_gravity;

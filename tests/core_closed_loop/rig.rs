@@ -19,6 +19,8 @@ pub struct Loop {
     /// The controller that is replaced in the next cycle.
     previous: Option<Controller>,
     state: State,
+    /// Gravity that a planner has set, m/s^2.
+    pub set_gravity: Option<Vector3<f64>>,
     command: MotorCommand,
     /// Fraction of the replies that are lost, and the random numbers that select them.
     loss: f64,
@@ -63,6 +65,7 @@ impl Loop {
             controller,
             previous: None,
             state,
+            set_gravity: None,
             command: MotorCommand { motor_torques },
             loss: 0.0,
             random: Pcg64::seed_from_u64(5),
@@ -121,6 +124,9 @@ impl Loop {
         }
         let lost = (self.random.next_u32() as f64) < self.loss * 4294967296.0;
         let feedback = if lost { None } else { Some(&feedback) };
+        if let Some(gravity) = &self.set_gravity {
+            self.controller.approach_gravity(&mut self.state, gravity);
+        }
         let (command, report) = match self.previous.take() {
             None => self.controller.cycle(&mut self.state, feedback, activity),
             Some(previous) => self.controller.take_over(&previous, &mut self.state, feedback, activity),

@@ -1,7 +1,9 @@
-//! The memory that the servo locks: the pages of values that exist, each of them once.
+//! The memory that the servo locks: the pages of values that exist, each of them once; and the size of the records.
 
 use crate::rig::Bench;
 use std::ops::Range;
+use sun2xp::control::State;
+use sun2xp::finger::CycleRecord;
 
 /// The mapped memory of this process. Neighbouring ranges are joined.
 fn mapped() -> Vec<Range<usize>> {
@@ -36,5 +38,21 @@ fn every_range_to_lock_is_mapped_and_belongs_to_one_value() {
     ranges.sort_by_key(|range| range.start);
     for pair in ranges.windows(2) {
         assert!(pair[0].end <= pair[1].start, "{:x?} and {:x?} overlap", pair[0], pair[1]);
+    }
+}
+
+/// The sizes are those of a 64-bit machine, on which the page was written.
+#[test]
+#[cfg(target_pointer_width = "64")]
+fn the_sizes_of_records_are_those_of_the_page() {
+    let page = include_str!("../../docs/architecture.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    let (record, state) = (size_of::<CycleRecord>(), size_of::<State>());
+    let kept = (2000 * record) as f64 * 1e-6;
+    for sentence in [
+        format!("A record has {record} bytes."),
+        format!("The two seconds that are kept need {kept:.1} MB for each kilohertz and finger."),
+        format!("the state of the controller, which has {state} bytes."),
+    ] {
+        assert!(page.contains(&sentence), "docs/architecture.md does not contain: {sentence}");
     }
 }

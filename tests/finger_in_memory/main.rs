@@ -9,6 +9,7 @@ mod events;
 #[path = "../common/finger_on_a_cable.rs"]
 mod finger_on_a_cable;
 mod floods;
+mod gravity;
 mod kinds;
 mod limits;
 mod locked_memory;

@@ -10,8 +10,9 @@
 //!
 //! r = K (p - integral of (R t + C^T theta_dot + g - friction + r)).
 //!
-//! The joint rates are the differences of the joint angles. Tensions and rates first pass a low-pass filter with the
-//! bandwidth K. Without this filter, the noise of the rates would exceed the torques that must be detected.
+//! The joint rates are the differences of the joint angles. Tensions, rates and the torque of gravity first pass a
+//! low-pass filter with the bandwidth K. Without this filter, the noise of the rates would exceed the torques that must
+//! be detected. All of them need the same delay, because gravity changes while a finger moves or the hand turns.
 //!
 //! The tensions are measured between motors and joints, so the friction and the inertia of the motors do not matter.
 
@@ -46,6 +47,8 @@ pub(super) struct MomentumState {
     tensions: Vector4<f64>,
     /// Low-pass filtered tensions, N.
     filtered: Vector4<f64>,
+    /// Low-pass filtered torque of gravity, N cm.
+    pub weight: Vector3<f64>,
     /// Low-pass filtered joint rates, rad/s.
     pub rates: Vector3<f64>,
     /// p at the last sample, N cm s.
@@ -66,18 +69,20 @@ impl MomentumObserver {
         }
     }
 
-    /// Returns the state of a finger at rest at these joint angles, rad, with these tensions, N, on which nothing acts.
-    pub fn start(&self, joints: &Vector3<f64>, tensions: &Vector4<f64>) -> MomentumState {
-        MomentumState { joints: *joints, tensions: *tensions, filtered: *tensions, ..MomentumState::default() }
+    /// Returns the state of a finger at rest at these joint angles, rad, with these tensions, N, on which only the
+    /// torque of gravity `weight`, N cm, acts.
+    pub fn start(&self, joints: &Vector3<f64>, tensions: &Vector4<f64>, weight: &Vector3<f64>) -> MomentumState {
+        let (joints, tensions, weight) = (*joints, *tensions, *weight);
+        MomentumState { joints, tensions, filtered: tensions, weight, ..MomentumState::default() }
     }
 
     /// Advances the residual to a sample with these joint angles, rad, and tensions, N. `links` has the unit N cm s^2.
-    /// `gravity` is the torque of gravity, N cm, and `elapsed` the time since the previous sample, s.
+    /// `weight` is the torque of gravity, N cm, and `elapsed` the time since the previous sample, s.
     pub fn advance(
         &self,
         state: &mut MomentumState,
         links: &LinkMomentum,
-        gravity: &Vector3<f64>,
+        weight: &Vector3<f64>,
         (joints, tensions): (&Vector3<f64>, &Vector4<f64>),
         elapsed: f64,
     ) {
@@ -87,10 +92,11 @@ impl MomentumObserver {
         // A difference of angles is the rate in the middle between the two samples. So is the mean of two tensions.
         state.rates = state.rates * keeps + (joints - state.joints) * (self.bandwidth * keeps);
         state.filtered = state.filtered * keeps + (tensions + state.tensions) * (0.5 * passes);
+        state.weight = state.weight * keeps + weight * passes;
         (state.joints, state.tensions) = (*joints, *tensions);
         let rates = &state.rates;
         let momentum = links.of(rates);
-        let known = self.r * state.filtered + links.energy_gradient(rates) + gravity - self.friction(rates);
+        let known = self.r * state.filtered + links.energy_gradient(rates) + state.weight - self.friction(rates);
         let gained = (momentum - state.momentum) * (self.bandwidth * keeps);
         state.inertial = state.inertial * keeps + gained;
         state.residual = state.residual * keeps + gained - known * passes;

@@ -22,7 +22,6 @@ const REFRESH: u8 = 4;
 #[derive(Clone, Debug)]
 pub(in crate::control) struct ContactObserver {
     links: Links,
-    /// The links with gravity.
     dynamics: LinkDynamics,
     observer: MomentumObserver,
     detection: Detection,
@@ -50,10 +49,8 @@ struct Following {
     sample: u8,
     /// The links, N cm s^2.
     links: LinkMomentum,
-    /// Torque of gravity, N cm.
-    gravity: Vector3<f64>,
     /// Torque of gravity for which the error of the torques has been learned, N cm.
-    learned_gravity: Vector3<f64>,
+    learned_weight: Vector3<f64>,
     /// Torque that friction of the tendons and the uncertain weight of the links can cause, N cm.
     allowed: Vector3<f64>,
     tip: TipForce,
@@ -62,13 +59,13 @@ struct Following {
 }
 
 impl ContactObserver {
-    /// Constructs the estimate of a finger in `gravity`, m/s^2 in the finger's frame, at `rate`, Hz.
-    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, gravity: &Vector3<f64>, rate: f64) -> Self {
+    /// Constructs the estimate of a finger at `rate`, Hz.
+    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, rate: f64) -> Self {
         let links = &finger.links;
         let pulley = finger.friction.pulley;
         Self {
             links: finger.links(),
-            dynamics: LinkDynamics::new(finger.links(), links.masses, links.radii, *gravity),
+            dynamics: LinkDynamics::new(finger.links(), links.masses, links.radii, Vector3::zeros()),
             observer: MomentumObserver::new(finger, tendons),
             detection: Detection::new(finger),
             // The learned error contains the friction of one direction of motion, and the other direction reverses it.
@@ -81,17 +78,24 @@ impl ContactObserver {
     }
 
     /// Advances the estimate to the sample of `report`, of a finger that follows a set point, and writes the estimate
-    /// to the report. `elapsed` is the time since the previous sample, s.
-    pub fn follow(&self, state: &mut ContactState, report: &mut Report, elapsed: f64) {
+    /// to the report. `weight` returns the torques of gravity at joint angles, N cm. `elapsed` is the time since the
+    /// previous sample, s.
+    pub fn follow(
+        &self,
+        state: &mut ContactState,
+        report: &mut Report,
+        weight: impl Fn(&Vector3<f64>) -> Vector3<f64>,
+        elapsed: f64,
+    ) {
         let Report { joints, tensions, .. } = &*report;
-        let now = state.following.get_or_insert_with(|| self.start(joints, tensions));
+        let now = state.following.get_or_insert_with(|| self.start(joints, tensions, &weight(joints)));
         now.waited += elapsed;
         if now.waited < self.interval {
             return;
         }
         let elapsed = std::mem::take(&mut now.waited);
         self.refresh(now, joints, tensions);
-        self.observer.advance(&mut now.momentum, &now.links, &now.gravity, (joints, tensions), elapsed);
+        self.observer.advance(&mut now.momentum, &now.links, &weight(joints), (joints, tensions), elapsed);
         let MomentumState { residual, inertial, rates, .. } = &now.momentum;
         let torques = residual - now.detection.error;
         let force = now.tip.of(&torques);
@@ -108,17 +112,16 @@ impl ContactObserver {
         report.contact = ContactEstimate::default();
     }
 
-    fn start(&self, joints: &Vector3<f64>, tensions: &Vector4<f64>) -> Following {
-        let gravity = self.gravity(joints);
+    /// `weight` is the torque of gravity, N cm.
+    fn start(&self, joints: &Vector3<f64>, tensions: &Vector4<f64>, weight: &Vector3<f64>) -> Following {
         Following {
             waited: 0.0,
             sample: 0,
             links: self.momentum(joints),
-            gravity,
-            learned_gravity: gravity,
+            learned_weight: *weight,
             allowed: self.rubbing * tensions,
             tip: TipForce::at(&self.links, joints),
-            momentum: self.observer.start(joints, tensions),
+            momentum: self.observer.start(joints, tensions, weight),
             detection: DetectionState::default(),
         }
     }
@@ -128,23 +131,19 @@ impl ContactObserver {
         match now.sample {
             0 => now.links = self.momentum(joints),
             1 => now.tip = TipForce::at(&self.links, joints),
-            2 => now.gravity = self.gravity(joints),
-            _ => {
-                let change = now.gravity - now.learned_gravity;
+            2 => {
+                let change = now.momentum.weight - now.learned_weight;
                 now.allowed = self.rubbing * tensions + change.abs() * self.mass_tolerance;
                 if !now.detection.touching {
-                    now.learned_gravity += change * self.learned;
+                    now.learned_weight += change * self.learned;
                 }
             }
+            _ => {}
         }
     }
 
     fn momentum(&self, joints: &Vector3<f64>) -> LinkMomentum {
         self.dynamics.momentum(joints).scaled(100.0)
-    }
-
-    fn gravity(&self, joints: &Vector3<f64>) -> Vector3<f64> {
-        self.dynamics.gravity_torque(joints) * 100.0
     }
 }
 

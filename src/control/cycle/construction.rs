@@ -34,8 +34,9 @@ impl Controller {
         Self::in_gravity(finger, &Vector3::zeros(), rate)
     }
 
-    /// Constructs a controller of `finger` that compensates `gravity`, m/s^2 in the finger's frame. Otherwise it equals
-    /// the controller that [`Controller::new`] constructs.
+    /// Constructs a controller of `finger` that compensates `gravity`, m/s^2 in the finger's frame, until
+    /// [`Controller::approach_gravity`] changes it. Otherwise it equals the controller that [`Controller::new`]
+    /// constructs.
     pub fn in_gravity(finger: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Result<Self, Unusable> {
         Self::construct(finger, gravity, rate, None)
     }
@@ -79,9 +80,9 @@ impl Controller {
             spring_transition: SpringTransition::new(rate),
             soft_limits: SoftLimits::new(finger, &admissible.of_joints()),
             admissible,
-            gravity: GravityCompensation::new(finger, gravity),
+            gravity: GravityCompensation::new(finger, gravity, rate),
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
-            contact: ContactObserver::new(finger, &tendons, gravity, rate),
+            contact: ContactObserver::new(finger, &tendons, rate),
             monitors: Monitors::new(finger, &tendons, rate, dither_period),
             period: 1.0 / rate,
             sensors: SensorScales::new(finger)?,

@@ -11,7 +11,7 @@ impl Controller {
     /// Runs one cycle of taking up slack. The motors hold the joints where they are.
     pub(super) fn take_up_slack(&self, state: &mut State) {
         let now = self.slackness(state, &Vector4::zeros());
-        let gravity = self.gravity.torques(&state.report.joints);
+        let gravity = self.gravity.torques(&state.gravity, &state.report.joints);
         let (mut slack, starts) = match state.doing {
             Doing::TakingUpSlack(slack) => (slack, false),
             _ => (self.slack.start(&now), true),

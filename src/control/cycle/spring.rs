@@ -41,7 +41,7 @@ impl Controller {
         }
         let torques = torques - spring.damper(&(joint_rates - rates));
         let damped = push.stiffness.component_mul(joint_rates) * LIMIT_DAMPING;
-        let torques = torques + push.torque - damped + self.gravity.torques(joints);
+        let torques = torques + push.torque - damped + self.gravity.torques(&state.gravity, joints);
         let limit = self.heating.limit(&state.heat);
         let DistributedTensions { tensions: desired, scale } = self.reachable(&limit).distribute(&torques);
         self.control_tensions(state, desired, &limit, begins);
@@ -66,8 +66,9 @@ impl Controller {
         state.doing = Doing::Following(elastic.joints);
         let distribution = self.reachable(&(limit - law.upper_reserve));
         let springs = (spring, joint_spring, &set_point.motion);
+        let gravity = (&self.gravity, &state.gravity);
         let Decision { pulls, against_friction, joint_torques, desired_tensions, torque_scale } =
-            law.decide(elastic, springs, begins, &self.soft_limits, &self.gravity, &distribution);
+            law.decide(elastic, springs, begins, &self.soft_limits, gravity, &distribution);
         state.against_friction = against_friction;
         self.command_pulls(state, &pulls, &limit, false);
         state.report.joint_torques = joint_torques;

@@ -1,23 +1,85 @@
 //! Joint torques that hold the links against gravity.
 
-use crate::model::LinkDynamics;
+use crate::model::LinkWeight;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 
+/// Fastest change of the compensated gravity, m/s^3. A step of gravity then causes no jump in torque. Gravity that
+/// turns once a second changes by 62 m/s^3.
+const FASTEST: f64 = 2000.0;
+
 /// tau = - sum of J_i^T m_i g over the centres of mass.
 #[derive(Clone, Debug)]
-pub(crate) struct GravityCompensation(Option<LinkDynamics>);
+pub(crate) struct GravityCompensation {
+    weight: LinkWeight,
+    /// Whether gravity is compensated.
+    wanted: bool,
+    /// Gravity for which the controller was constructed, m/s^2 in the finger's frame. It acts until the servo has
+    /// another value.
+    initial: Vector3<f64>,
+    /// Whether `initial` is zero, as on a hand whose planner does not set gravity.
+    weightless: bool,
+    /// Largest change of gravity in a cycle, m/s^2.
+    step: f64,
+}
 
 impl GravityCompensation {
-    /// Constructs the compensation of `gravity`, m/s^2 in the finger's frame.
-    pub fn new(finger: &ConfiguredFinger, gravity: &Vector3<f64>) -> Self {
-        let wanted = finger.controller.gravity_compensation && *gravity != Vector3::zeros();
-        let links = &finger.links;
-        Self(wanted.then(|| LinkDynamics::new(finger.links(), links.masses, links.radii, *gravity)))
+    /// Constructs the compensation of `gravity`, m/s^2 in the finger's frame, at `rate`, Hz.
+    pub fn new(finger: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Self {
+        Self {
+            weight: LinkWeight::new(finger.links(), finger.links.masses),
+            wanted: finger.controller.gravity_compensation,
+            initial: *gravity,
+            weightless: *gravity == Vector3::zeros(),
+            step: FASTEST / rate,
+        }
     }
 
-    /// Returns the torques, N cm, at joint angles, rad.
-    pub fn torques(&self, joints: &Vector3<f64>) -> Vector3<f64> {
-        self.0.as_ref().map_or_else(Vector3::zeros, |links| links.gravity_torque(joints) * -100.0)
+    /// Moves `gravity` to `target` by at most the largest change of a cycle. Both are in m/s^2. The first value takes
+    /// effect at once.
+    pub fn approach(&self, gravity: &mut Option<Vector3<f64>>, target: &Vector3<f64>) {
+        let now = gravity.get_or_insert(*target);
+        if now != target {
+            let way = *target - *now;
+            let distance = way.norm();
+            *now = if distance > self.step { *now + way * (self.step / distance) } else { *target };
+        }
+    }
+
+    /// Returns the torques, N cm, at joint angles, rad, that compensate gravity. `changed` is the value that has
+    /// replaced the initial one, m/s^2.
+    pub fn torques(&self, changed: &Option<Vector3<f64>>, joints: &Vector3<f64>) -> Vector3<f64> {
+        if !self.wanted || (self.weightless && changed.is_none()) {
+            return Vector3::zeros();
+        }
+        self.weight.torques(changed.as_ref().unwrap_or(&self.initial), joints) * -100.0
+    }
+
+    /// Returns the torques of gravity on the joints, N cm, whether they are compensated or not.
+    pub fn weight(&self, changed: &Option<Vector3<f64>>, joints: &Vector3<f64>) -> Vector3<f64> {
+        self.weight.torques(changed.as_ref().unwrap_or(&self.initial), joints) * 100.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_of_gravity_is_spread_over_cycles_and_a_turn_is_followed_at_once() {
+        let down = Vector3::new(0.0, 9.81, 0.0);
+        let compensation = GravityCompensation::new(&ConfiguredFinger::default(), &down, 1000.0);
+        let mut gravity = None;
+        compensation.approach(&mut gravity, &down);
+        assert_eq!(gravity, Some(down));
+        for cycle in 1..=10 {
+            compensation.approach(&mut gravity, &-down);
+            let expected = 9.81 - f64::from(cycle) * 2.0;
+            assert!(gravity.is_some_and(|now| (now.y - expected.max(-9.81)).abs() < 1e-12), "{gravity:?}");
+        }
+        assert_eq!(gravity, Some(-down));
+        let turned = Vector3::new(9.81 * 0.1f64.sin(), -9.81 * 0.1f64.cos(), 0.0);
+        compensation.approach(&mut gravity, &turned);
+        assert_eq!(gravity, Some(turned));
     }
 }

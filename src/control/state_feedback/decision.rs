@@ -45,14 +45,14 @@ struct Shake {
 impl StateFeedback {
     /// Returns the pulls that make the fingertip the spring `spring` from the next sample on, and the joints the spring
     /// `joint_spring`. The anchor of both springs has the motion `motion`. If `begins` is true, the springs start
-    /// without deflection.
+    /// without deflection. `gravity` is the compensation, with the gravity that planners have set, m/s^2.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,
         (spring, joint_spring, motion): (&Spring, &Option<JointSpring>, &Option<Motion>),
         begins: bool,
         limits: &SoftLimits,
-        gravity: &GravityCompensation,
+        gravity: (&GravityCompensation, &Option<Vector3<f64>>),
         distribution: &BoundedDistribution,
     ) -> Decision {
         if begins {
@@ -128,7 +128,7 @@ impl StateFeedback {
         (spring, joint_spring): (&Spring, &Option<JointSpring>),
         reference: &ReferenceMotion,
         inertia: &Matrix3<f64>,
-        (limits, gravity): (&SoftLimits, &GravityCompensation),
+        (limits, (compensation, gravity)): (&SoftLimits, (&GravityCompensation, &Option<Vector3<f64>>)),
     ) -> Vector3<f64> {
         let push = limits.push(&now.joints);
         let posed = self.joint_stiffness.posed(spring, &now.joints);
@@ -143,7 +143,7 @@ impl StateFeedback {
         let damped = self.damped_motors + inertia;
         let damping = self.damping.damping(&damped, inertia, &k_theta, spring.damping);
         let joint_friction = self.joint_friction(state, &now.rates, &reference.rates, &damping);
-        let held = sprung + push.torque + gravity.torques(&now.joints);
+        let held = sprung + push.torque + compensation.torques(gravity, &now.joints);
         let rubbing = self.pulleys.as_ref().map_or_else(Vector3::zeros, |pulleys| {
             self.r * pulleys.tensions(&self.r.tr_mul(&reference.rates), &now.tensions)
         });

@@ -6,6 +6,7 @@ use super::NotReplayable;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::{ControlInput, ControllerSource, Recording};
 use crate::model::configuration::{ConfiguredHand, Unusable};
+use nalgebra::Vector3;
 use serde::Serialize;
 use serde_json::Value;
 use std::ops::RangeInclusive;
@@ -71,7 +72,11 @@ impl Recording {
 /// Checks that a finger can have this controller. Otherwise returns the key and the reason.
 pub(super) fn check_source(source: &ControllerSource) -> Result<(), (&'static str, String)> {
     source.finger.check().map_err(|Unusable { key, reason }| (key, reason))?;
-    match source.gravity.iter().find(|part| !GRAVITY.contains(part)) {
+    check_gravity(&source.gravity)
+}
+
+fn check_gravity(gravity: &Vector3<f64>) -> Result<(), (&'static str, String)> {
+    match gravity.iter().find(|part| !GRAVITY.contains(part)) {
         None => Ok(()),
         Some(part) => {
             let reason = format!("of {part:?} m/s^2 is outside {} to {}", GRAVITY.start(), GRAVITY.end());
@@ -105,6 +110,9 @@ impl<'a> InputLimits<'a> {
             let most = self.hand.hold_torque_limit;
             let reason = format!("has `left` outside 0 to 1, or `rest` outside 0 to {most} N cm");
             return Err(("fading".into(), reason));
+        }
+        if let Some(gravity) = &input.gravity {
+            check_gravity(gravity).map_err(|(key, reason)| (key.into(), reason))?;
         }
         within_bounds(input, "").map_err(|(key, reason)| (key.trim_start_matches('.').into(), reason))
     }

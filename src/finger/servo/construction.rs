@@ -84,7 +84,7 @@ impl FingerServo {
         let link = LinkWatch::new(hand, finger.simulated());
         let initial = SetPoint { law: finger.controller.law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
         let report = FingerReport::opening(initial);
-        let (planners, servo, mut memory) = mailbox(report, &adjustable);
+        let (planners, servo, mut memory) = mailbox(report, &adjustable, &configuration.gravity(number).into());
         memory.append(&black_box.memory());
         timings.add_to(&mut memory);
         let this = Self {

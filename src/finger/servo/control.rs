@@ -21,6 +21,7 @@ impl FingerServo {
             activity: self.activity,
             skipped: if self.link.in_step() { 0 } else { skipped.min(self.link.most().into()) },
             fading: self.link.fading(),
+            gravity: Some((*self.mailbox.gravity()).into()),
         };
         let Adjustable { controller, number, .. } = match &self.calibration {
             Some(calibration) => calibration.computes_with(),

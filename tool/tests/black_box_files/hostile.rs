@@ -89,6 +89,15 @@ fn a_fade_ends_at_the_rest_torque() {
 }
 
 #[test]
+fn gravity_is_that_of_a_hand() {
+    let told = refusal(&altered(|recording| {
+        let input = &mut recording.cycles[8].control.as_mut().expect("computed").input;
+        input.gravity = Some([0.0, 0.0, 1e3].into());
+    }));
+    assert!(told.contains(", line 10: control.input.gravity "), "{told}");
+}
+
+#[test]
 fn files_that_no_black_box_writes_are_refused() {
     let text = {
         let mut text = Vec::new();
