@@ -1,7 +1,12 @@
-//! The public face of the crate: few names without the feature `internals`, and an example that runs.
+//! The public face of the crate: the names without the feature `internals`, which are listed in docs/abi/rust-names, and
+//! an example that runs. To renew the list: SUN2XP_WRITE_NAMES=1 cargo test --test public_face
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 use syn::{Item, UseTree, Visibility};
+
+/// The committed list.
+const LIST: &str = "docs/abi/rust-names";
 
 /// Largest number of names that the crate exports without the feature `internals`.
 const NAMES: usize = 60;
@@ -9,49 +14,82 @@ const NAMES: usize = 60;
 /// Largest number of names that a public module of one topic exports.
 const NAMES_OF_TOPIC: usize = 15;
 
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).into()
+}
+
+/// The items of the crate's page.
+fn items() -> Vec<Item> {
+    let page = fs::read_to_string(root().join("src/lib.rs")).expect("the crate's page");
+    syn::parse_file(&page).expect("Rust").items
+}
+
 /// The names that an item of a topic's module exports.
-fn names_of_topic(item: &Item) -> usize {
+fn names_of_topic(item: &Item) -> Vec<String> {
     match item {
         Item::Use(item) => names(&item.tree),
         _ => panic!("a module of a topic only re-exports names"),
     }
 }
 
-fn names(tree: &UseTree) -> usize {
+fn names(tree: &UseTree) -> Vec<String> {
     match tree {
         UseTree::Path(path) => names(&path.tree),
-        UseTree::Group(group) => group.items.iter().map(names).sum(),
-        UseTree::Name(_) | UseTree::Rename(_) => 1,
-        UseTree::Glob(_) => panic!("what a glob exports cannot be counted"),
+        UseTree::Group(group) => group.items.iter().flat_map(names).collect(),
+        UseTree::Name(name) => vec![name.ident.to_string()],
+        UseTree::Rename(name) => vec![name.rename.to_string()],
+        UseTree::Glob(_) => panic!("what a glob exports cannot be listed"),
     }
 }
 
-#[test]
-fn the_face_is_small() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/lib.rs");
-    let syntax = syn::parse_file(&std::fs::read_to_string(path).expect("the crate's page")).expect("Rust");
-    let exported = syntax.items.iter().map(|item| match item {
-        Item::Use(item) if matches!(item.vis, Visibility::Public(_)) => names(&item.tree),
-        // A module with a file of its own is public only with the feature. A module in the file re-exports the names of
-        // one topic.
-        Item::Mod(item) if matches!(item.vis, Visibility::Public(_)) => {
-            match &item.content {
+/// The names of the crate's root, and those of the modules of topics, each with its module.
+fn exported() -> (Vec<String>, Vec<String>) {
+    let (mut at_root, mut of_topics) = (Vec::new(), Vec::new());
+    for item in items() {
+        match item {
+            Item::Use(item) if matches!(item.vis, Visibility::Public(_)) => at_root.extend(names(&item.tree)),
+            // A module with a file of its own is public only with the feature. A module in the file re-exports the
+            // names of one topic.
+            Item::Mod(item) if matches!(item.vis, Visibility::Public(_)) => match &item.content {
                 None => assert!(
                     item.attrs.iter().any(|attribute| attribute.path().is_ident("cfg")),
                     "{} is exported",
                     item.ident
                 ),
                 Some((_, items)) => {
-                    let exported: usize = items.iter().map(names_of_topic).sum();
-                    assert!((1..=NAMES_OF_TOPIC).contains(&exported), "{}: {exported} names", item.ident);
+                    let exported: Vec<String> = items.iter().flat_map(names_of_topic).collect();
+                    let count = exported.len();
+                    assert!((1..=NAMES_OF_TOPIC).contains(&count), "{}: {count} names", item.ident);
+                    of_topics.extend(exported.iter().map(|name| format!("{}::{name}", item.ident)));
                 }
-            }
-            0
+            },
+            _ => {}
         }
-        _ => 0,
-    });
-    let exported: usize = exported.sum();
-    assert!((20..=NAMES).contains(&exported), "{exported} names");
+    }
+    (at_root, of_topics)
+}
+
+#[test]
+fn the_face_is_small() {
+    let (at_root, _) = exported();
+    assert!((20..=NAMES).contains(&at_root.len()), "{} names", at_root.len());
+}
+
+#[test]
+fn the_face_is_the_listed_one() {
+    let (at_root, of_topics) = exported();
+    let mut names = [at_root, of_topics].concat();
+    names.sort_unstable();
+    let names = names.join("\n") + "\n";
+    let list = root().join(LIST);
+    if std::env::var_os("SUN2XP_WRITE_NAMES").is_some() {
+        fs::write(&list, &names).expect("the list can be written");
+    }
+    let listed = fs::read_to_string(&list).expect("the list");
+    assert_eq!(
+        names, listed,
+        "write a line into CHANGELOG.md, and run SUN2XP_WRITE_NAMES=1 cargo test --test public_face"
+    );
 }
 
 mod spring {

@@ -209,7 +209,7 @@ impl Hand {
     }
 
     /// Writes the calibration results of finger 1, 2 or 3 since the last such call into the configuration file that the
-    /// hand was opened with, by [`store_findings`]. Returns false if there is no such file, or nothing to write.
+    /// hand was opened with, by `store_findings`. Returns false if there is no such file, or nothing to write.
     ///
     /// # Errors
     /// Returns an error if there is no such finger. Returns [`HandError::NotStored`] with the reason if the file cannot

@@ -78,7 +78,7 @@ impl Configured {
     /// Reads and checks one configuration file.
     ///
     /// # Errors
-    /// Returns the errors of [`read_configuration`].
+    /// Returns an error if the file cannot be read or used.
     pub fn read(path: &Path) -> Result<Self, ConfigurationError> {
         let file = path.to_path_buf();
         let text = read_regular_file(path, LARGEST)

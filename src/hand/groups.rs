@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 
 /// A desired pose of a finger.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Pose {
     /// Angles of joints 0, 1 and 2, rad, as in [`Hand::send_position`].
     Joints([f64; 3]),

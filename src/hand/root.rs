@@ -65,7 +65,7 @@ impl Hand {
         Self::open_as(find_configuration()?)
     }
 
-    /// Opens the hand that [`find_configuration`] has found.
+    /// Opens the hand of a configuration that was found in a file ([`Configured::read`]), or in none.
     ///
     /// # Errors
     /// Returns the errors of [`Hand::open`].

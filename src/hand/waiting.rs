@@ -12,6 +12,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
 /// A condition to wait for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Until {
     /// Every joint has been within `finger.events.arrived_degrees` of the set point that was sent last.
     Arrived,

@@ -14,10 +14,8 @@ const ROUNDING: f64 = 1e-3;
 /// between them are in N/rad.
 ///
 /// A contact with D dimensions has a D x D stiffness K and a D x 6 selection S of the tip's motion. The 6 x 6 stiffness
-/// is S^T K S. With the 6 x 3 Jacobian J of [`Links::spatial_jacobian`], the D x 3 Jacobian of eq. 6 is S J, and
+/// is S^T K S. With the 6 x 3 Jacobian J of `Links::spatial_jacobian`, the D x 3 Jacobian of eq. 6 is S J, and
 /// K_theta is (S J)^T K (S J).
-///
-/// [`Links::spatial_jacobian`]: crate::model::Links::spatial_jacobian
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact(Matrix6<f64>);
 

@@ -14,7 +14,7 @@ pub struct Fault {
     pub kind: FaultKind,
     /// Place of the fault.
     pub part: Part,
-    /// Value in the unit of the kind's [`Quantity`]; 0 if there is none.
+    /// Value in the unit of the kind's quantity; 0 if there is none.
     pub value: f64,
 }
 

@@ -24,6 +24,7 @@ pub struct ConfiguredMotion {
 
 /// The reaction to a set point that has expired.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub enum ExpiryReaction {
     /// The finger holds the pose in which it is, with a soft stiffness.
     #[default]
