@@ -9,7 +9,7 @@ use sun2xp::model::configuration::ConfiguredContact;
 
 /// The fastest joint rates of the set points, rad/s. Infinity is a set point that jumps from pose to pose, which the
 /// controller follows as fast as it can. A run has equal times of each.
-const SPEEDS: [f64; 3] = [1.0, 3.0, f64::INFINITY];
+pub const SPEEDS: [f64; 3] = [1.0, 3.0, f64::INFINITY];
 
 /// The result of a run.
 pub struct Alarms {

@@ -4,8 +4,10 @@
 //!     cargo bench --bench contact -- nominal            the hands with this word in their name
 //!     cargo bench --bench contact -- --minutes 1        shorter runs for false alarms
 //!     cargo bench --bench contact -- --alarms           only the table of false alarms
+//!     cargo bench --bench contact -- --after            only the table of contacts after a motion
 //!     cargo bench --bench contact -- --keys 'force = 0.2'   other values of [finger.contact]
 
+mod after_motion;
 mod false_alarms;
 mod finger;
 mod hands;
@@ -15,6 +17,7 @@ mod noticed;
 #[path = "../stiffness/parallel.rs"]
 mod parallel;
 
+use after_motion::{After, DELAYS, FORCE};
 use clap::Parser;
 use hands::{HANDS, Hand};
 use noticed::{FORCES, Pushes};
@@ -38,6 +41,9 @@ struct Arguments {
     /// Counts only false alarms.
     #[arg(long)]
     alarms: bool,
+    /// Measures only contacts that follow a motion.
+    #[arg(long)]
+    after: bool,
     /// `cargo bench` passes this option.
     #[arg(long, hide = true)]
     bench: bool,
@@ -47,6 +53,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::parse();
     let contact: ConfiguredContact = toml_edit::de::from_str(&arguments.keys)?;
     let hands: Vec<&Hand> = HANDS.iter().filter(|hand| hand.name.contains(&arguments.hand)).collect();
+    if arguments.after {
+        return after(&hands, &contact, arguments.seeds);
+    }
     println!("| hand | simulated time, min | false alarms | first, s | part of the time |\n|---|---|---|---|---|");
     let alarms = parallel::each(&hands, |_, hand| {
         let seconds = hand.seconds.min(arguments.minutes * 60.0);
@@ -68,6 +77,25 @@ fn main() -> Result<(), Box<dyn Error>> {
         for hand in &hands {
             for (force, pushes) in FORCES.into_iter().zip(measure(hand, &contact, arguments.seeds)?) {
                 row(hand.name, force, &pushes);
+            }
+        }
+    }
+    after(&hands, &contact, arguments.seeds)
+}
+
+/// Prints the table of contacts that follow a motion.
+fn after(hands: &[&Hand], contact: &ConfiguredContact, seeds: u64) -> Result<(), Box<dyn Error>> {
+    println!("\nA force of {FORCE} N after a motion of up to 1, 3 rad/s, or a jump of the set point:\n");
+    println!(
+        "| hand | fastest joint rate, rad/s | force begins after the motion, s | detected | error, N cm: mean, worst |"
+    );
+    println!("|---|---|---|---|---|");
+    for hand in hands {
+        for speed in false_alarms::SPEEDS {
+            for (delay, after) in DELAYS.into_iter().zip(after_motion::measure(hand, contact, seeds, speed)?) {
+                let After { pushes, noticed, sum, worst } = after;
+                let (name, mean) = (hand.name, sum / pushes as f64);
+                println!("| {name} | {speed} | {delay} | {noticed} of {pushes} | {mean:.2}, {worst:.2} |");
             }
         }
     }

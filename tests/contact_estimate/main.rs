@@ -1,6 +1,9 @@
 //! Contact without sensors: the estimate against an independent derivation of the dynamics, and a short version of
 //! `benches/contact`.
 
+#[allow(dead_code)]
+#[path = "../../benches/contact/after_motion.rs"]
+mod after_motion;
 #[path = "../core_lagrange/mod.rs"]
 mod core_lagrange;
 #[allow(dead_code)]

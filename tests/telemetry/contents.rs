@@ -194,3 +194,19 @@ fn events_status_and_object_arrive() {
     // The cycles in which a finger is faulted are not lost ones.
     assert_eq!((first.lost(), second.lost()), ([0; 3], [0; 3]));
 }
+
+/// A reader that asks to attach waits for the next publication. A fault in this time is an event of the reader.
+#[test]
+fn a_fault_while_a_reader_attaches_is_an_event() {
+    let name = name("attaching");
+    let hand = open(&name);
+    for finger in 1..=3 {
+        hand.stop(finger).expect("stopped");
+        let mut reader = reader(&name);
+        let kind = read_until(&mut reader, |message| match message {
+            Message::Event(event) if event.finger.get() == finger && event.kind == EventKind::Fault => Some(event.kind),
+            _ => None,
+        });
+        assert_eq!(kind, EventKind::Fault);
+    }
+}

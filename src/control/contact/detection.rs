@@ -10,6 +10,11 @@ const CALMING: f64 = 0.1;
 /// Duration of the first average of the error, s. No contact is reported before its end.
 const FIRST: f64 = 0.2;
 
+/// Joint rate at which the error of the torques is learned at half the speed, rad/s. A motion adds errors of its own:
+/// the friction of its direction, and the inertia of links with wrong masses. A contact that follows the motion at once
+/// would keep them. So a finger learns at rest, and in motion only slow drifts.
+const SLOW: f64 = 0.1;
+
 /// The constant part of the detection.
 #[derive(Clone, Debug)]
 pub(super) struct Detection {
@@ -30,8 +35,10 @@ pub(super) struct DetectionState {
     rate: f64,
     /// Largest inertial torque of each joint in the recent past, N cm.
     inertial: Vector3<f64>,
-    /// Time since the start, s, without contacts. It does not exceed the learning time.
+    /// Time for which the error has been learned, s. It does not exceed the learning time.
     time: f64,
+    /// Speed of the learning, 0 to 1.
+    pub learning: f64,
     pub touching: bool,
 }
 
@@ -77,9 +84,10 @@ impl Detection {
         let excess = torques.residual - state.error;
         let loaded = (excess.abs() - bounds).max() > 0.0;
         state.touching = loaded && force.norm_squared() > least * least && state.time >= FIRST;
-        if !state.touching {
-            state.time = (state.time + elapsed).min(self.learning_time);
-            state.error += excess * (elapsed / state.time);
-        }
+        let motion = if state.time < FIRST { 0.0 } else { state.rate * (1.0 / SLOW) };
+        state.learning = if state.touching { 0.0 } else { 1.0 / (1.0 + motion * motion) };
+        let learned = elapsed * state.learning;
+        state.time = (state.time + learned).min(self.learning_time);
+        state.error += excess * (learned / state.time);
     }
 }

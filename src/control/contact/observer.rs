@@ -134,9 +134,7 @@ impl ContactObserver {
             2 => {
                 let change = now.momentum.weight - now.learned_weight;
                 now.allowed = self.rubbing * tensions + change.abs() * self.mass_tolerance;
-                if !now.detection.touching {
-                    now.learned_weight += change * self.learned;
-                }
+                now.learned_weight += change * (self.learned * now.detection.learning);
             }
             _ => {}
         }

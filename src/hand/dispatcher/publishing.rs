@@ -17,6 +17,10 @@ use std::sync::Arc;
 /// Interval between two publications of a finger's status, ns.
 const STATUS_INTERVAL: u64 = 1_000_000_000;
 
+/// Age of the oldest events that a first reader gets, ns. A reader that asks to attach waits for the next publication,
+/// and must not miss what happens meanwhile.
+const EARLIER_EVENTS: u64 = 250_000_000;
+
 /// Memory for what a first reader needs besides the outlets, bytes.
 const MEMORY_OF_READER: usize = 1 << 20;
 
@@ -84,7 +88,7 @@ impl Publishing {
                     self.next_status = 0;
                 }
                 if !self.reading {
-                    self.events.clear();
+                    self.events.skip_until(now().saturating_sub(EARLIER_EVENTS));
                     self.reading = true;
                 }
             }

@@ -61,6 +61,19 @@ impl MergedEvents {
         self.fingers.iter().map(|finger| finger.reader.lost()).sum()
     }
 
+    /// Skips all events that are older than `time`, ns.
+    pub fn skip_until(&mut self, time: u64) {
+        for finger in &mut self.fingers {
+            while finger.next.is_none_or(|event| event.time < time) {
+                finger.horizon = finger.reader.horizon();
+                finger.next = finger.reader.take();
+                if finger.next.is_none() {
+                    break;
+                }
+            }
+        }
+    }
+
     /// Skips all events up to now.
     pub fn clear(&mut self) {
         for finger in &mut self.fingers {
@@ -167,6 +180,25 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn only_events_before_a_time_are_skipped() {
+        let (mut writers, source) = source();
+        let mut merged = MergedEvents::new(&source);
+        let mut written = 0;
+        for number in 1..=10 {
+            for (finger, writer) in writers.iter_mut().enumerate() {
+                let (began, events) = (number * PERIOD, usize::from(finger != 2));
+                run(writer, &Cycle { finger, number, scheduled: began, began, ended: began, events }, &mut written);
+            }
+        }
+        merged.skip_until(7 * PERIOD);
+        let left = std::iter::from_fn(|| match merged.next(20 * PERIOD) {
+            Next::Event(event) => Some(event.cycle),
+            _ => None,
+        });
+        assert_eq!(left.collect::<Vec<_>>(), [7, 7, 8, 8, 9, 9, 10, 10]);
     }
 
     #[test]
