@@ -7,10 +7,10 @@
 use clap::Parser;
 use std::error::Error;
 use std::ffi::{CStr, CString, c_char, c_int};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
-use sun2xp::hand::{Fingers, Hand, SimulatedHand, check, find_configuration};
+use sun2xp::hand::{Fingers, Hand, HandError, SimulatedHand, check, find_configuration};
 use sun2xp::realtime::now;
 
 /// Largest permitted median of loading and OpenHand together, ms.
@@ -61,7 +61,7 @@ fn built_library() -> Result<PathBuf, Box<dyn Error>> {
 }
 
 /// Runs the children and prints the table.
-fn table(library: &PathBuf, runs: usize) -> Result<(), Box<dyn Error>> {
+fn table(library: &Path, runs: usize) -> Result<(), Box<dyn Error>> {
     println!("{:<44} {:>9} {:>9} {:>9}", "ms, in a fresh process", "smallest", "median", "largest");
     let mut whole = 0.0;
     for child in ["calls", "stages"] {
@@ -95,7 +95,7 @@ fn table(library: &PathBuf, runs: usize) -> Result<(), Box<dyn Error>> {
 }
 
 /// Loads the library, and opens and closes the hand.
-fn calls(library: &PathBuf) -> Result<Vec<Row>, Box<dyn Error>> {
+fn calls(library: &Path) -> Result<Vec<Row>, Box<dyn Error>> {
     let path = CString::new(library.as_os_str().as_encoded_bytes())?;
     let mut begin = Instant::now();
     // SAFETY: the path is a C string. The library has no initializers that need preparation.
@@ -132,7 +132,7 @@ fn stages() -> Result<Vec<Row>, Box<dyn Error>> {
     let mut begin = Instant::now();
     let configured = find_configuration()?;
     let mut rows = vec![row("  find and read the configuration", &mut begin)];
-    check(&configured.configuration)?;
+    check(&configured.configuration).map_err(HandError::from)?;
     rows.push(row("  check it, with the bound of Kx", &mut begin));
     let checked = rows[1].1;
     let boards = SimulatedHand::start(&configured.configuration, Fingers::ALL)?;
