@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes packaging/third-party-licences.txt: the licences of all crates that the library and the tool contain.
+"""Writes packaging/third-party-licences.txt: the licences of all crates that the library, the tool and the Python package
+contain.
 
 Run it after a change of Cargo.lock. tool/tests/third_party.rs compares the list of crates.
 """
@@ -26,7 +27,7 @@ def contained(metadata):
     """Returns the crates that are linked, without crates that only run during the build."""
     # The metadata has the crates of all features; the tree has those of the enabled ones.
     command = ["cargo", "tree", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}"]
-    command += ["--package", "sun2xp", "--package", "sun2xp-tool", "--target", TARGET]
+    command += ["--package", "sun2xp", "--package", "sun2xp-tool", "--package", "sun2xp-python", "--target", TARGET]
     lines = subprocess.check_output(command, cwd=ROOT, text=True).splitlines()
     linked = {tuple(line.split()[:2]) for line in lines if line and "(/" not in line}
     found = [package for package in metadata["packages"] if (package["name"], "v" + package["version"]) in linked]
@@ -58,7 +59,7 @@ def main():
     command = ["cargo", "metadata", "--format-version", "1", "--locked", "--filter-platform", TARGET]
     crates = contained(json.loads(subprocess.check_output(command, cwd=ROOT)))
     licences = {}
-    lines = ["The library and the tool contain these crates:", ""]
+    lines = ["The library, the tool and the Python package contain these crates:", ""]
     for package in crates:
         name = f"{package['name']} {package['version']}"
         lines.append(f"{name}: {package['license'] or 'see the text'}")

@@ -116,7 +116,7 @@ const CLANG_AFTER_APT: (&str, &str) =
 fn nothing_is_installed_if_nothing_is_missing() {
     let (passed, output) = run_script(&[CARGO, APT, SUDO, ("looks-for-clang", "exit 0")], None);
     assert!(passed, "{output}");
-    assert_eq!(output, "CI=true: cargo test --locked --test hand\n");
+    assert_eq!(output, "CI=true: cargo test --locked --workspace --test hand\n");
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn missing_programs_are_named_and_installed() {
         "missing: clang",
         "installing the Debian packages clang libc6-dev",
         "install --yes --no-install-recommends clang libc6-dev",
-        "CI=true: cargo test --locked --test hand",
+        "CI=true: cargo test --locked --workspace --test hand",
     ];
     assert!(lines.iter().all(|line| output.contains(line)) && !output.contains("not-wanted"), "{output}");
 }
@@ -155,7 +155,9 @@ fn python_packages_of_another_list_are_replaced() {
     let (passed, output) = run_script_beside("mcap==0\n", &[CARGO, usable, python], None);
     let install = "python -m pip install --quiet --disable-pip-version-check --requirement tests/requirements.txt\n";
     assert!(
-        passed && output.contains(install) && output.ends_with("CI=true: cargo test --locked --test hand\n"),
+        passed
+            && output.contains(install)
+            && output.ends_with("CI=true: cargo test --locked --workspace --test hand\n"),
         "{output}"
     );
 

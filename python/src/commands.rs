@@ -16,15 +16,15 @@ use sun2xp::{Contact, ContactError, HandError, SetPointError};
 impl Hand {
     /// Sends the desired angles of joints 0, 1 and 2 of a finger, rad: shape (3,). They take effect within a cycle.
     /// `valid` is the time for which they are valid, s; without it the configured time.
-    #[pyo3(signature = (finger, joints, *, valid=None))]
+    #[pyo3(signature = (finger, position, *, valid=None))]
     fn send_position(
         &self,
         py: Python<'_>,
         finger: i32,
-        joints: &Bound<'_, PyAny>,
+        position: &Bound<'_, PyAny>,
         valid: Option<f64>,
     ) -> PyResult<()> {
-        let joints = vector(joints, "joints")?;
+        let joints = vector(position, "position")?;
         match duration(py, "valid", valid)? {
             None => self.quick(py, |hand| hand.send_position(finger, joints)),
             valid => self.quick(py, |hand| hand.send_position_for(finger, joints, valid)),
@@ -166,13 +166,13 @@ fn contact(
 fn command(set_point: &Bound<'_, PyAny>) -> PyResult<FingerCommand> {
     let finger: i32 = set_point.getattr("finger")?.extract()?;
     let mut command = FingerCommand::new(finger);
-    let (joints, tip) = (optional(set_point, "joints")?, optional(set_point, "tip")?);
-    if joints.is_some() && tip.is_some() {
+    let (position, tip) = (optional(set_point, "position")?, optional(set_point, "tip")?);
+    if position.is_some() && tip.is_some() {
         let refusal = HandError::SetPoint(SetPointError::TwoPoses(finger));
         return Err(Refusal::Hand(refusal).raise(set_point.py()));
     }
-    if let Some(joints) = joints {
-        command = command.joints(vector(&joints, "joints")?);
+    if let Some(position) = position {
+        command = command.joints(vector(&position, "position")?);
     }
     if let Some(tip) = tip {
         command = command.tip(vector(&tip, "tip")?);

@@ -14,6 +14,8 @@ pub enum Refusal {
     Forked,
     /// An argument has a wrong shape or value.
     Argument(String),
+    /// A recording cannot be read.
+    Recording(String),
     /// The library has failed.
     Defect,
     /// The hand refuses the call.
@@ -49,7 +51,7 @@ impl Refusal {
         match self {
             Self::Closed => "Closed",
             Self::Argument(_) => "Refused",
-            Self::Forked | Self::Defect => "Error",
+            Self::Forked | Self::Recording(_) | Self::Defect => "Error",
             Self::Hand(error) => match error {
                 HandError::Faulted { .. } | HandError::FaultedAtOpening { .. } => "Fault",
                 HandError::Configuration(ConfigurationError::Permanent { .. }) => "Refused",
@@ -73,10 +75,10 @@ impl Refusal {
 
     fn number(&self) -> i32 {
         match self {
-            Self::Closed => 19,      // ENODEV
-            Self::Forked => 1,       // EPERM
-            Self::Argument(_) => 22, // EINVAL
-            Self::Defect => 5,       // EIO
+            Self::Closed => 19,                           // ENODEV
+            Self::Forked => 1,                            // EPERM
+            Self::Argument(_) | Self::Recording(_) => 22, // EINVAL
+            Self::Defect => 5,                            // EIO
             Self::Hand(error) => error.errno(),
         }
     }
@@ -88,7 +90,7 @@ impl Refusal {
                              has the servo threads: make the call in that process, or start processes with the \
                              method \"spawn\""
                 .into(),
-            Self::Argument(text) => text.clone(),
+            Self::Argument(text) | Self::Recording(text) => text.clone(),
             Self::Defect => "the library failed: please report this defect of the library".into(),
             Self::Hand(error) => error.to_string(),
         }

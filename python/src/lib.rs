@@ -8,9 +8,11 @@ mod fork;
 mod hand;
 mod opening;
 mod queries;
+mod recording;
 mod records;
 mod reflexes;
 mod supervision;
+mod tool;
 mod waiting;
 
 use pyo3::prelude::*;
@@ -26,7 +28,11 @@ mod _sun2xp {
     #[pymodule_export]
     use super::opening::{open_file, open_simulated, open_text};
     #[pymodule_export]
+    use super::recording::read_file;
+    #[pymodule_export]
     use super::supervision::stop_all;
+    #[pymodule_export]
+    use super::tool::run_tool;
     use super::*;
 
     #[pymodule_init]

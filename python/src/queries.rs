@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 use sun2xp::realtime::CycleStage;
 
 /// The names of the stages of a cycle, in the order of `CycleStage::ALL`.
-const STAGES: [&str; CycleStage::ALL.len()] = ["wake_up", "write", "wire", "read", "decode", "compute", "whole", "age"];
+const STAGES: [&str; CycleStage::ALL.len()] = ["wake_up", "write", "wire", "read", "decode", "compute", "cycle", "age"];
 
 #[pymethods]
 impl Hand {
@@ -81,14 +81,14 @@ impl Hand {
     }
 
     /// The Jacobian of a fingertip, cm/rad, at these joint angles or at the measured ones: shape (3, 3).
-    #[pyo3(signature = (finger, joints=None))]
+    #[pyo3(signature = (finger, position=None))]
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
         finger: i32,
-        joints: Option<&Bound<'py, PyAny>>,
+        position: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let joints = joints.map(|joints| vector_of(joints, "joints")).transpose()?;
+        let joints = position.map(|position| vector_of(position, "position")).transpose()?;
         let jacobian = self.quick(py, |hand| hand.jacobian(finger, joints))?;
         matrix(py, &jacobian)
     }
@@ -98,9 +98,9 @@ impl Hand {
         &self,
         py: Python<'py>,
         finger: i32,
-        joints: &Bound<'py, PyAny>,
+        position: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let joints = vector_of(joints, "joints")?;
+        let joints = vector_of(position, "position")?;
         let tip = self.quick(py, |hand| hand.tip_at(finger, joints))?;
         Ok(vector(py, &tip))
     }
@@ -169,5 +169,14 @@ impl Hand {
     /// Makes the newest count of each tactile element of a finger its zero, and returns the zeros.
     fn tare_touch(&self, py: Python<'_>, finger: i32) -> PyResult<Vec<u16>> {
         self.quick(py, |hand| hand.tare_touch(finger))
+    }
+
+    /// Returns the time of `count` calls of the Rust function behind `position`, s. For the benchmark of the package.
+    fn _time_position(&self, py: Python<'_>, finger: i32, count: u32) -> PyResult<f64> {
+        let began = std::time::Instant::now();
+        for _ in 0..count {
+            std::hint::black_box(self.quick(py, |hand| hand.position(finger))?);
+        }
+        Ok(began.elapsed().as_secs_f64())
     }
 }

@@ -24,19 +24,19 @@ pub fn tip<'py>(py: Python<'py>, tip: &FingerTip) -> PyResult<Bound<'py, PyAny>>
     let fields = PyDict::new(py);
     fields.set_item("position", vector(py, &tip.tip))?;
     fields.set_item("force", vector(py, &tip.force))?;
-    fields.set_item("felt", tip.felt)?;
+    fields.set_item("force_directions", tip.felt)?;
     fields.set_item("tensions", vector(py, &tip.tensions))?;
     fields.set_item("stiffness", matrix(py, &tip.stiffness)?)?;
     fields.set_item("contact_force", vector(py, &tip.contact))?;
     fields.set_item("touching", tip.touching)?;
-    fields.set_item("slide", tip.slide)?;
+    fields.set_item("slide_speed", tip.slide)?;
     record(py, "Tip", &fields)
 }
 
 pub fn status<'py>(py: Python<'py>, status: &FingerStatus) -> PyResult<Bound<'py, PyAny>> {
     let fields = PyDict::new(py);
     fields.set_item("stage", stage(&status.stage))?;
-    fields.set_item("real_time", status.realtime)?;
+    fields.set_item("realtime", status.realtime)?;
     fields.set_item("memory_locked", status.memory_locked)?;
     fields.set_item("on_core", status.on_core)?;
     fields.set_item("rate", status.rate)?;
@@ -58,7 +58,7 @@ pub fn losses<'py>(py: Python<'py>, losses: &Losses) -> PyResult<Bound<'py, PyAn
     fields.set_item("late_replies", losses.late_replies)?;
     fields.set_item("duplicate_replies", losses.duplicate_replies)?;
     fields.set_item("damaged_replies", losses.damaged_frames)?;
-    fields.set_item("foreign_replies", losses.foreign_frames)?;
+    fields.set_item("foreign_frames", losses.foreign_frames)?;
     record(py, "Losses", &fields)
 }
 

@@ -30,13 +30,13 @@ def test_a_group_moves_two_fingers_and_leaves_the_third(hand):
     before = hand.position(3)
     soft = numpy.diag([2.0, 2.0, 1.0])
     hand.send_group([
-        sun2xp.SetPoint(1, joints=HOME, stiffness=soft),
+        sun2xp.SetPoint(1, position=HOME, stiffness=soft),
         sun2xp.SetPoint(2, tip=hand.forward_kinematics(2, HOME), damping=1.2),
     ])
     hand.wait((1, 2), timeout=30)
     assert abs(hand.position(3) - before).max() < 0.05
     with pytest.raises(sun2xp.Refused):
-        hand.send_group([sun2xp.SetPoint(1, joints=HOME, tip=HOME)])
+        hand.send_group([sun2xp.SetPoint(1, position=HOME, tip=HOME)])
     with pytest.raises(sun2xp.Refused):
         hand.send_group([sun2xp.SetPoint(1), sun2xp.SetPoint(1)])
 
@@ -86,7 +86,7 @@ def test_arguments_may_be_any_array(hand):
     hand.send_position(1, numbers[:, 2])
     hand.send_position(1, numpy.array(HOME, dtype=numpy.float32))
     hand.send_position(1, (0, 1, 1))
-    with pytest.raises(sun2xp.Refused, match=r"joints has the shape \(3, 6\): pass an array with the shape \(3,\)"):
+    with pytest.raises(sun2xp.Refused, match=r"position has the shape \(3, 6\): pass an array with the shape \(3,\)"):
         hand.send_position(1, numbers)
 
 
@@ -125,9 +125,7 @@ def test_results_have_their_shapes(shared):
 
 def test_the_jacobian_is_the_derivative_of_the_tip(shared):
     step = 1e-6
-    columns = [
-        (shared.forward_kinematics(1, HOME + step * axis) - shared.forward_kinematics(1, HOME - step * axis)) / (2 * step)
-        for axis in numpy.eye(3)
-    ]
+    there = lambda joints: shared.forward_kinematics(1, joints)
+    columns = [(there(HOME + step * axis) - there(HOME - step * axis)) / (2 * step) for axis in numpy.eye(3)]
     assert abs(shared.jacobian(1, HOME) - numpy.transpose(columns)).max() < 1e-6
     assert shared.jacobian(1).shape == (3, 3)

@@ -27,7 +27,8 @@ def test_a_finger_goes_where_it_is_sent():
 
 def test_wrong_arguments_are_refused():
     with sun2xp.simulated() as hand:
-        for finger, joints in [(4, [0, 0, 0]), (1, [0, 0]), (1, [0, 0, 9]), (1, [0, 0, float("nan")]), (1, [[0, 0, 0]])]:
+        nan = float("nan")
+        for finger, joints in [(4, [0, 0, 0]), (1, [0, 0]), (1, [0, 0, 9]), (1, [0, 0, nan]), (1, [[0, 0, 0]])]:
             with pytest.raises(sun2xp.Refused):
                 hand.send_position(finger, joints)
         with pytest.raises((TypeError, ValueError)):

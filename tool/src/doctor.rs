@@ -6,6 +6,7 @@ mod machine;
 mod measured;
 mod ports;
 
+use crate::failure::ExitStatus;
 use crate::failure::Failure;
 use crate::print::{self, Cell, Look, Progress, Screen, Table, painted};
 use examination::examine;
@@ -13,7 +14,6 @@ use finding::{Finding, Rating};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Duration;
 use sun2xp::hand::{self, Configured, Fingers};
 
@@ -41,7 +41,7 @@ struct Examination<'a> {
     findings: &'a [Finding],
 }
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     let configured = match &arguments.config {
         Some(path) => Configured::read(path)?,
         None => hand::find_configuration()?,
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         true => print::json(&Examination { pass, findings: &findings })?,
         false => write!(io::stdout(), "{}", report(&findings, pass, &Screen::stdout()))?,
     }
-    Ok(if pass { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if pass { ExitStatus::SUCCESS } else { ExitStatus::FAILURE })
 }
 
 /// One row for each finding, with the advice below what was found, and the verdict in the last line.

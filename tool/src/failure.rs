@@ -3,7 +3,6 @@
 use std::error::Error;
 use std::fmt::{self, Display, Formatter};
 use std::io;
-use std::process::ExitCode;
 use sun2xp::model::one_line;
 
 /// The reason why a command failed. The tool prints its text, which names cause and remedy, in one line.
@@ -12,8 +11,20 @@ pub type Failure = Box<dyn Error>;
 /// The exit statuses, for the help.
 pub const EXIT_STATUSES: &str = "Exit status: 0 if the command has done its work, 1 if it failed, 2 for wrong usage.";
 
-/// The exit status for wrong usage. clap uses it too.
-const WRONG_USAGE: u8 = 2;
+/// The exit status of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ExitStatus(pub u8);
+
+impl ExitStatus {
+    /// The command has done its work.
+    pub const SUCCESS: Self = Self(0);
+
+    /// The command has failed.
+    pub const FAILURE: Self = Self(1);
+
+    /// The command line is wrong.
+    pub const WRONG_USAGE: Self = Self(2);
+}
 
 /// An argument that is wrong in a way that clap cannot find.
 #[derive(Debug)]
@@ -34,10 +45,10 @@ pub fn wrong_usage(reason: impl Into<String>) -> Failure {
 
 /// Prints a failure, and returns the exit status. A reader that closes the pipe of standard output, such as `head`,
 /// needs no message.
-pub fn report(failure: &Failure) -> ExitCode {
+pub fn report(failure: &Failure) -> ExitStatus {
     let closed = |error: &io::Error| error.kind() == io::ErrorKind::BrokenPipe;
     if !failure.downcast_ref().is_some_and(closed) {
         eprintln!("sun2xp: {}", one_line(&failure.to_string()));
     }
-    if failure.is::<WrongUsage>() { ExitCode::from(WRONG_USAGE) } else { ExitCode::FAILURE }
+    if failure.is::<WrongUsage>() { ExitStatus::WRONG_USAGE } else { ExitStatus::FAILURE }
 }

@@ -4,6 +4,7 @@ mod counts;
 mod display;
 mod files;
 
+use crate::failure::ExitStatus;
 use crate::failure::{Failure, wrong_usage};
 use crate::interrupt::Interrupt;
 use crate::recording::{Item, Recording};
@@ -12,7 +13,6 @@ use display::Display;
 use files::{Files, Limits};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use sun2xp::model::FingerNumber;
 use sun2xp::telemetry::{Description, Ended, Message, Reader};
@@ -55,7 +55,7 @@ fn positive(text: &str) -> Result<f64, String> {
     if number.is_finite() && number > 0.0 { Ok(number) } else { Err("it must be above 0".into()) }
 }
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     let limits = Limits {
         bytes: arguments.max_size.map(|megabytes| (megabytes * 1e6) as u64),
         age: arguments.max_age.map(Duration::try_from_secs_f64).transpose()?,
@@ -70,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
 }
 
-fn record(arguments: &Arguments, limits: Limits) -> Result<ExitCode, Failure> {
+fn record(arguments: &Arguments, limits: Limits) -> Result<ExitStatus, Failure> {
     let interrupt = Interrupt::watch()?;
     let mut reader = Reader::attach(arguments.hand.as_deref())?;
     let mut files = Files::begin(arguments.output.clone(), reader.description(), limits)?;
@@ -117,14 +117,14 @@ fn note_losses(lost: [u64; 3], files: &mut Files, counts: &mut Counts, display: 
     Ok(())
 }
 
-fn report(path: &files::Written, took: Duration, counts: &Counts, reason: Option<&str>) -> Result<ExitCode, Failure> {
+fn report(path: &files::Written, took: Duration, counts: &Counts, reason: Option<&str>) -> Result<ExitStatus, Failure> {
     let reason = reason.map(|reason| format!(" ({reason})")).unwrap_or_default();
     writeln!(io::stdout(), "{path}: {:.1} s, {counts}{reason}", took.as_secs_f64())?;
-    Ok(if counts.lost == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if counts.lost == 0 { ExitStatus::SUCCESS } else { ExitStatus::FAILURE })
 }
 
 /// Converts a black box.
-fn convert(black_box: &Path, arguments: &Arguments, limits: Limits) -> Result<ExitCode, Failure> {
+fn convert(black_box: &Path, arguments: &Arguments, limits: Limits) -> Result<ExitStatus, Failure> {
     let recording = Recording::open(black_box)?;
     let description: Description = recording.description().clone();
     let output = arguments.output.clone().unwrap_or_else(|| black_box.with_extension("mcap"));

@@ -5,11 +5,11 @@ mod recording;
 mod report;
 mod tally;
 
+use crate::failure::ExitStatus;
 use crate::failure::Failure;
 use crate::print::{self, Screen};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use sun2xp::files::open_regular_file;
 use sun2xp::model::ShownPath;
 
@@ -35,14 +35,14 @@ pub struct Arguments {
 /// The first bytes of an MCAP file.
 const MCAP_MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     let file = &arguments.file;
     let report = if is_mcap(file) { recording::replay(file)? } else { black_box::replay(file)? };
     match arguments.json {
         true => print::json(&report)?,
         false => write!(io::stdout(), "{}", report.text(&Screen::stdout()))?,
     }
-    Ok(if report.pass { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if report.pass { ExitStatus::SUCCESS } else { ExitStatus::FAILURE })
 }
 
 /// Whether a file begins as an MCAP file does. The reader of black boxes reports files that cannot be read.

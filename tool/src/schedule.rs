@@ -6,6 +6,7 @@ mod measured;
 mod off_line;
 mod report;
 
+use crate::failure::ExitStatus;
 use crate::failure::Failure;
 use crate::print::{self, Screen};
 use crate::virtual_machine::is_virtual;
@@ -14,7 +15,6 @@ use off_line::{Costs, Sensor};
 use report::{Report, Source};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Duration;
 use sun2xp::files::read_regular_file;
 use sun2xp::hand;
@@ -71,7 +71,7 @@ fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     let configuration = match &arguments.config {
         Some(file) => hand::read_configuration(file)?,
         None => hand::find_configuration()?.configuration,
@@ -91,14 +91,14 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         false => report.write(&mut io::stdout().lock(), &Screen::stdout())?,
     }
     if report.pass {
-        return Ok(ExitCode::SUCCESS);
+        return Ok(ExitStatus::SUCCESS);
     }
     let rate = configuration.hand.rate;
     eprintln!(
         "sun2xp: at {rate:.0} Hz a deadline may be missed: lower hand.rate, raise finger.baud or spread the fingers \
          over cores"
     );
-    Ok(ExitCode::FAILURE)
+    Ok(ExitStatus::FAILURE)
 }
 
 fn read(file: &Path) -> Result<Costs, Failure> {

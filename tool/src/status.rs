@@ -1,5 +1,6 @@
 //! `sun2xp status`: the state of the open hands, as text or as JSON.
 
+use crate::failure::ExitStatus;
 use crate::failure::Failure;
 use crate::monitor::finger_state::FingerState;
 use crate::monitor::state::{HandState, Tracker};
@@ -7,7 +8,6 @@ use crate::monitor::words::{span, wrap};
 use crate::print::{self, Cell, Look, Screen, Table, painted};
 use serde::Serialize;
 use std::io::{self, Write};
-use std::process::ExitCode;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use sun2xp::telemetry::{self, Reader};
 
@@ -43,7 +43,7 @@ struct Hands {
 ///
 /// # Errors
 /// Returns an error if there is no such hand.
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     let names = telemetry::hands()?;
     let mut hands = Vec::new();
     let mut failed = false;
@@ -72,7 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         output.write_all(text.join("\n").as_bytes())?;
         output.flush()?;
     }
-    Ok(if well { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if well { ExitStatus::SUCCESS } else { ExitStatus::FAILURE })
 }
 
 /// Reads a hand until the state of every finger is known.

@@ -12,7 +12,7 @@ use sun2xp::finger::events::{Event, EventKind};
 use sun2xp::finger::{Fault, FaultKind, Stage};
 use sun2xp::model::configuration::FINGERS;
 use sun2xp::model::{Part, ShownPath};
-use sun2xp::telemetry::{Message, Sample, View};
+use sun2xp::telemetry::{Description, Message, Sample, View};
 
 /// Steps of the progress.
 const THOUSANDTHS: u64 = 1000;
@@ -90,6 +90,22 @@ pub type Visit<'a> = &'a mut dyn FnMut(Item) -> Result<(), Failure>;
 /// # Errors
 /// Returns an error if the file is not a recording, or if `visit` does.
 pub fn read(file: &Path, what: &str, visit: Visit) -> Result<(), Failure> {
+    let progress = Progress::new(what, THOUSANDTHS);
+    let reach = |part: f64| progress.reach((part * THOUSANDTHS as f64) as u64);
+    let (_, complete) = read_with(file, &reach, visit)?;
+    drop(progress);
+    if !complete {
+        eprintln!("sun2xp: {} has no end: its recorder was killed, or still runs", ShownPath(file));
+    }
+    Ok(())
+}
+
+/// Reads a recording or a black box, and passes its items on. Returns the description of the hand, and whether the file
+/// has its end. Calls `reach` with the part of the file that has been read, 0 to 1.
+///
+/// # Errors
+/// Returns the errors of [`read`].
+pub fn read_with(file: &Path, reach: &dyn Fn(f64), visit: Visit) -> Result<(Description, bool), Failure> {
     let mut recording = Recording::open(file)?;
     let description = recording.description().clone();
     for finger in &description.fingers {
@@ -97,10 +113,9 @@ pub fn read(file: &Path, what: &str, visit: Visit) -> Result<(), Failure> {
     }
     let mut view = View::new(&description.configuration);
     let mut changes: [Changes; FINGERS] = Default::default();
-    let progress = Progress::new(what, THOUSANDTHS);
     while let Some(entry) = recording.next() {
         let Entry { time, item } = entry?;
-        progress.reach((recording.progress() * THOUSANDTHS as f64) as u64);
+        reach(recording.progress());
         let message = match item {
             recording::Item::Message(message) => message,
             recording::Item::Lost { finger, cycles } => {
@@ -120,11 +135,7 @@ pub fn read(file: &Path, what: &str, visit: Visit) -> Result<(), Failure> {
         change.map_or(Ok(()), |mark| visit(Item::Mark(mark)))?;
         visit(Item::Cycle(Box::new(Row { sample, feedback: record.feedback, status: record.status })))?;
     }
-    drop(progress);
-    if !recording.is_complete() {
-        eprintln!("sun2xp: {} has no end: its recorder was killed, or still runs", ShownPath(file));
-    }
-    Ok(())
+    Ok((description, recording.is_complete()))
 }
 
 /// Finds the changes of a finger's stage.

@@ -9,7 +9,15 @@ fn every_crate_that_is_linked_has_its_licence_in_the_list() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace");
     let mut tree = Command::new(env!("CARGO"));
     tree.args(["tree", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}", "--package", "sun2xp"]);
-    tree.args(["--package", "sun2xp-tool", "--target", "x86_64-unknown-linux-gnu", "--manifest-path"]);
+    tree.args([
+        "--package",
+        "sun2xp-tool",
+        "--package",
+        "sun2xp-python",
+        "--target",
+        "x86_64-unknown-linux-gnu",
+        "--manifest-path",
+    ]);
     let tree = tree.arg(root.join("Cargo.toml")).output().expect("cargo runs");
     assert!(tree.status.success(), "{tree:?}");
     let tree = String::from_utf8(tree.stdout).expect("names");

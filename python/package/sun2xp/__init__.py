@@ -14,6 +14,7 @@ from . import then, when
 from ._errors import Closed, ConfigurationError, Error, Fault, Refused, TimedOut
 from ._events import Events
 from ._hand import Hand, open, simulated
+from ._recording import Recording, read_recording
 from ._sun2xp import stop_all
 from ._sun2xp import version as __version__
 from ._types import (
@@ -26,6 +27,7 @@ from ._types import (
     JointTorques,
     Limits,
     Losses,
+    Mark,
     ObjectState,
     PalmPose,
     SetPoint,
@@ -52,8 +54,10 @@ __all__ = [
     "JointTorques",
     "Limits",
     "Losses",
+    "Mark",
     "ObjectState",
     "PalmPose",
+    "Recording",
     "Refused",
     "SetPoint",
     "Signs",
@@ -64,6 +68,7 @@ __all__ = [
     "Zeros",
     "__version__",
     "open",
+    "read_recording",
     "simulated",
     "stop_all",
     "then",

@@ -8,6 +8,7 @@ from typing import Any, AsyncIterator, Callable, Dict, Iterable, Optional, Union
 
 from . import _sun2xp
 from ._events import Events
+from ._recording import Recording, black_box
 from ._types import Event, Identified, Signs, Zeros
 
 #: Called during a calibration with the part that is done, 0 to 1, and the current activity.
@@ -59,6 +60,10 @@ class Hand(_sun2xp.Hand):
     def configuration(self, finger: int) -> Dict[str, Any]:
         """The configuration of a finger in force, with calibrations and adjustments: the keys of `[finger]`."""
         return json.loads(self._configuration(finger))
+
+    def black_box(self, finger: int) -> Recording:
+        """The last two seconds of a finger; of a faulted finger, the last two seconds before the fault."""
+        return black_box(self, finger)
 
     def zero(self, finger: int, progress: Optional[Progress] = None, *, store: bool = True) -> Zeros:
         """Zeros gauges and encoders of a finger. Its joints move between their stops, if `zeroing.method` says so.

@@ -24,7 +24,7 @@ class SetPoint:
     #: Number of the finger, 1 to 3.
     finger: int
     #: Desired angles of joints 0, 1 and 2, rad: shape (3,). Not together with `tip`.
-    joints: Optional[numpy.typing.ArrayLike] = None
+    position: Optional[numpy.typing.ArrayLike] = None
     #: Desired position of the tip in the finger's frame, cm: shape (3,).
     tip: Optional[numpy.typing.ArrayLike] = None
     #: Kx in the finger's frame, N/cm: shape (3, 3).
@@ -70,7 +70,7 @@ class Losses:
     #: Byte sequences on the finger's port that were not valid frames.
     damaged_replies: int
     #: Valid frames on the finger's port that no finger waited for.
-    foreign_replies: int
+    foreign_frames: int
 
 
 @_frozen
@@ -80,7 +80,7 @@ class Status:
     #: "opening", "limp", "calibrating", "running", "closing", "closed" or "faulted".
     stage: str
     #: Whether every servo thread runs under SCHED_FIFO.
-    real_time: bool
+    realtime: bool
     #: Whether every servo thread has its memory locked.
     memory_locked: bool
     #: Whether every servo thread runs on its configured core, if one is configured.
@@ -111,7 +111,7 @@ class Tip:
     #: acceleration of the finger.
     force: Array
     #: Number of directions that the joints feel: 3, or fewer near a singular pose.
-    felt: int
+    force_directions: int
     #: Measured tensions of tendons 1 to 4, N: shape (4,).
     tensions: Array
     #: Stiffness in force, N/cm: shape (3, 3).
@@ -121,7 +121,7 @@ class Tip:
     #: Whether the finger touches something, as far as tensions and motion show it.
     touching: bool
     #: Speed of the tip perpendicular to `contact_force` while it touches something, cm/s.
-    slide: float
+    slide_speed: float
 
 
 @_frozen

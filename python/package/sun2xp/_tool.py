@@ -1,0 +1,19 @@
+"""The command `sun2xp`."""
+
+from __future__ import annotations
+
+import signal
+import sys
+
+from . import _sun2xp
+
+
+def main() -> int:
+    """Runs the tool with the arguments of the process."""
+    # Python would only note the signal, and raise KeyboardInterrupt after the tool has ended.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return _sun2xp.run_tool(["sun2xp", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,53 @@
+"""The face of the package: types, stubs and documentation."""
+
+import inspect
+import pathlib
+import subprocess
+import sys
+
+import sun2xp
+from sun2xp import _sun2xp
+
+PACKAGE = pathlib.Path(sun2xp.__file__).parent
+
+
+def test_everything_public_is_described():
+    for name in sun2xp.__all__:
+        value = getattr(sun2xp, name)
+        assert name == "__version__" or inspect.getdoc(value), name
+        if inspect.isclass(value) and value.__module__.startswith("sun2xp"):
+            for member, method in inspect.getmembers(value, callable):
+                assert member.startswith("_") or inspect.getdoc(method), f"{name}.{member}"
+
+
+def test_the_stubs_have_every_method():
+    stub = (PACKAGE / "_sun2xp.pyi").read_text()
+    for owner in (_sun2xp.Hand, _sun2xp.Queue, _sun2xp):
+        for name in vars(owner):
+            if not name.startswith("__"):
+                assert f" {name}(" in stub or f"class {name}" in stub or f"{name}:" in stub, name
+
+
+def test_mypy_accepts_the_package_and_a_program(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text(
+        "import numpy\n"
+        "import sun2xp\n"
+        "with sun2xp.simulated() as hand:\n"
+        "    hand.send_position(1, numpy.zeros(3))\n"
+        "    force: float = hand.tip(1).force[0]\n"
+        "    for event in hand.events():\n"
+        "        kind: sun2xp.EventKind = event.kind\n"
+    )
+
+
+    def check(*arguments):
+        command = [sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path / "cache"), *arguments]
+        result = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+        return result.returncode, result.stdout + result.stderr
+
+    assert check("-p", "sun2xp")[0] == 0, check("-p", "sun2xp")
+    assert check("program.py")[0] == 0, check("program.py")
+    program.write_text("import sun2xp\nsun2xp.simulated().send_position('one', [0, 0, 0])\n")
+    status, said = check("program.py")
+    assert status == 1 and "arg-type" in said, said

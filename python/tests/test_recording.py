@@ -1,0 +1,82 @@
+"""Recordings and black boxes as arrays, and the tool of the wheel."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+import numpy
+import pytest
+
+import sun2xp
+
+TOOL = pathlib.Path(sys.executable).with_name("sun2xp")
+
+
+def tool(*arguments, **options):
+    """Runs the tool of the installed package."""
+    return subprocess.run([TOOL, *arguments], capture_output=True, text=True, timeout=100, **options)
+
+
+def test_the_tool_is_installed():
+    assert tool("--version").stdout == f"sun2xp {sun2xp.__version__}\n"
+    wrong = tool("lunch")
+    assert wrong.returncode == 2 and "lunch" in wrong.stderr
+    failed = tool("replay", "/dev/null")
+    assert failed.returncode == 1 and failed.stderr.startswith("sun2xp: ")
+
+
+def test_control_c_ends_the_tool():
+    process = subprocess.Popen([TOOL, "board", "--link", "unused"], stdout=subprocess.PIPE, cwd="/tmp")
+    time.sleep(1)
+    process.send_signal(2)
+    assert process.wait(20) in (0, 1, -2)
+
+
+def test_a_black_box_has_the_last_cycles(hand):
+    hand.send_position(1, [0.1, 0.6, 0.9])
+    hand.wait(1, timeout=30)
+    box = hand.black_box(1)
+    cycles = box.cycles[1]
+    assert list(box.cycles) == [1] and box.complete and len(cycles) > 100
+    assert (numpy.diff(cycles["cycle"]) == 1).all() and (numpy.diff(cycles["time"]) > 0).all()
+    assert cycles["joints"].shape == (len(cycles), 3) and cycles["kx"].shape == (len(cycles), 3, 3)
+    assert abs(cycles["joints"][-1] - hand.position(1)).max() < 0.02
+    assert set(cycles["stage"]) <= {"opening", "running"} and cycles["stage"][-1] == "running"
+    assert box.description["configuration"]["hand"]["rate"] == 1000
+    assert "finger 1" in repr(box)
+
+
+def test_a_recording_becomes_a_table(tmp_path):
+    file = tmp_path / "hand.mcap"
+    name = f"python-{os.getpid()}"
+    with sun2xp.simulated(text=f"[telemetry]\nname = '{name}'\n") as hand:
+        recorder = subprocess.Popen([TOOL, "record", "--hand", name, "--output", file, "--seconds", "3"], cwd=tmp_path)
+        while not (file.exists() and file.stat().st_size > 10_000):
+            time.sleep(0.05)
+        hand.send_position(2, [0.2, 0.6, 0.9])
+        hand.wait(2, timeout=30)
+        hand.stop(3)
+        assert recorder.wait(60) == 0
+    recording = sun2xp.read_recording(file)
+    assert sorted(recording.cycles) == [1, 2, 3] and recording.complete
+    moved = recording.cycles[2]["joints"]
+    assert abs(moved[-1] - [0.2, 0.6, 0.9]).max() < 0.05 and abs(moved[0] - moved[-1]).max() > 0.1
+    assert {"event", "fault"} <= {mark.kind for mark in recording.marks}
+    stopped = recording.cycles[3]
+    assert stopped["stage"][-1] == "faulted" and stopped["fault"][-1] > 0
+    assert len(sun2xp.read_recording(file, fingers=[2]).cycles) == 1
+    table = recording.to_pandas(2)
+    assert len(table) == len(moved) and table.index.name == "seconds"
+    assert numpy.array_equal(table["joints_2"], moved[:, 2], equal_nan=True)
+    assert {"kx_0_1", "stage", "tensions_3"} <= set(table.columns)
+
+
+def test_what_is_no_recording_is_refused(tmp_path):
+    file = tmp_path / "hand.mcap"
+    file.write_text("no recording")
+    with pytest.raises(sun2xp.Error, match="not a recording"):
+        sun2xp.read_recording(file)
+    with pytest.raises(sun2xp.Error, match="cannot read"):
+        sun2xp.read_recording(os.fspath(tmp_path / "missing"))

@@ -1,0 +1,100 @@
+//! The command-line tool of the library, as a function for the programs that contain it: the program `sun2xp`, and the
+//! Python package. Only they use this package, so it may change with every version.
+
+#![deny(unsafe_code)]
+
+mod board;
+mod bound;
+mod calibrate;
+mod completions;
+mod doctor;
+mod export;
+mod failure;
+mod interrupt;
+mod jog;
+mod manual;
+mod model;
+mod monitor;
+mod plot;
+mod print;
+mod record;
+mod recording;
+mod replay;
+mod schedule;
+mod status;
+pub mod trace;
+mod virtual_machine;
+mod web;
+
+use crate::failure::ExitStatus;
+use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::ffi::OsString;
+
+/// Tools for a hand that the sun2xp library drives.
+#[derive(Parser)]
+#[command(name = "sun2xp", version, after_help = failure::EXIT_STATUSES)]
+struct Arguments {
+    #[command(subcommand)]
+    tool: Tool,
+}
+
+// A process has only one value of this type, so its size does not matter.
+#[allow(clippy::large_enum_variant)]
+#[derive(Subcommand)]
+enum Tool {
+    Board(board::Arguments),
+    Bound(bound::Arguments),
+    Calibrate(calibrate::Arguments),
+    Completions(completions::Arguments),
+    Doctor(doctor::Arguments),
+    Export(export::Arguments),
+    Jog(jog::Arguments),
+    Manual(manual::Arguments),
+    Model(model::Arguments),
+    Monitor(monitor::Arguments),
+    Plot(plot::Arguments),
+    Record(record::Arguments),
+    Replay(replay::Arguments),
+    Schedule(schedule::Arguments),
+    Status(status::Arguments),
+}
+
+/// Runs the tool with these arguments, the first of which is its name, and returns its exit status.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let parsed = command().try_get_matches_from(arguments).and_then(|matches| Arguments::from_arg_matches(&matches));
+    let arguments = match parsed {
+        Ok(arguments) => arguments,
+        // Help and version are errors too, with the status 0.
+        Err(error) => {
+            // If the help cannot be printed, its reader has closed the pipe.
+            let _ = error.print();
+            return if error.use_stderr() { ExitStatus::WRONG_USAGE.0 } else { ExitStatus::SUCCESS.0 };
+        }
+    };
+    let result = match arguments.tool {
+        Tool::Board(arguments) => board::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Bound(arguments) => bound::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Completions(arguments) => completions::run(&arguments, command()).map(|()| ExitStatus::SUCCESS),
+        Tool::Doctor(arguments) => doctor::run(&arguments),
+        Tool::Export(arguments) => export::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Jog(arguments) => jog::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Manual(arguments) => manual::run(&arguments, command()).map(|()| ExitStatus::SUCCESS),
+        Tool::Model(arguments) => model::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Monitor(arguments) => monitor::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Plot(arguments) => plot::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Record(arguments) => record::run(&arguments),
+        Tool::Replay(arguments) => replay::run(&arguments),
+        Tool::Schedule(arguments) => schedule::run(&arguments),
+        Tool::Status(arguments) => status::run(&arguments),
+    };
+    result.unwrap_or_else(|error| failure::report(&error)).0
+}
+
+/// The command line. The help of every command ends with its exit statuses.
+fn command() -> Command {
+    Arguments::command().mut_subcommands(|command| {
+        let described = command.get_long_about().is_some_and(|about| about.to_string().contains("Exit status:"));
+        if described { command } else { command.after_help(failure::EXIT_STATUSES) }
+    })
+}
