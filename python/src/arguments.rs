@@ -1,7 +1,7 @@
 //! Conversion of arguments to numbers: numpy arrays, lists, and everything else that numpy converts.
 
 use crate::errors::Refusal;
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
 
@@ -19,10 +19,12 @@ pub fn numbers(object: &Bound<'_, PyAny>, name: &str, shape: &[usize]) -> PyResu
 
 /// Returns three numbers.
 pub fn vector(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
-    // A list of three numbers needs no array.
-    if !object.is_instance_of::<PyArrayDyn<f64>>()
-        && let Ok(numbers) = object.extract::<[f64; 3]>()
-    {
+    // These two cases are quick. All others become an array first.
+    if let Ok(array) = object.cast::<PyArray1<f64>>() {
+        if let (3, [Some(x), Some(y), Some(z)]) = (array.len(), [0, 1, 2].map(|place| array.get_owned(place))) {
+            return Ok([x, y, z]);
+        }
+    } else if let Ok(numbers) = object.extract::<[f64; 3]>() {
         return Ok(numbers);
     }
     let numbers = numbers(object, name, &[3])?;
@@ -31,6 +33,12 @@ pub fn vector(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
 
 /// Returns the rows of a 3 x 3 matrix.
 pub fn rows(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3]; 3]> {
+    if let Ok(array) = object.cast::<PyArray2<f64>>()
+        && array.shape() == [3, 3]
+    {
+        let entry = |row, column| array.get_owned([row, column]).unwrap_or(f64::NAN);
+        return Ok(std::array::from_fn(|row| std::array::from_fn(|column| entry(row, column))));
+    }
     let numbers = numbers(object, name, &[3, 3])?;
     Ok(std::array::from_fn(|row| std::array::from_fn(|column| numbers[3 * row + column])))
 }

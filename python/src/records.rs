@@ -3,12 +3,15 @@
 use crate::errors;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 use sun2xp::{Distribution, Fault, FingerFault, FingerStatus, FingerTip, Losses, Stage};
 
 /// Returns an object of a class of sun2xp/_types.py with these fields.
 pub fn record<'py>(py: Python<'py>, class: &str, fields: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
-    py.import("sun2xp._types")?.getattr(class)?.call((), Some(fields))
+    static TYPES: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
+    let types = TYPES.get_or_try_init(py, || py.import("sun2xp._types").map(Bound::unbind))?;
+    types.bind(py).getattr(class)?.call((), Some(fields))
 }
 
 pub fn vector<'py, const N: usize>(py: Python<'py>, numbers: &[f64; N]) -> Bound<'py, PyArray1<f64>> {

@@ -40,7 +40,6 @@ def test_mypy_accepts_the_package_and_a_program(tmp_path):
         "        kind: sun2xp.EventKind = event.kind\n"
     )
 
-
     def check(*arguments):
         command = [sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path / "cache"), *arguments]
         result = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
