@@ -30,6 +30,9 @@ const MOTION: (f64, f64) = (0.3, 1.8);
 /// Number of pushes for each delay and seed.
 const PUSHES: usize = 10;
 
+/// A push: the place of its delay in [`DELAYS`], whether it was detected, and the error, N cm.
+type Push = (usize, bool, f64);
+
 /// The pushes with one delay.
 #[derive(Default)]
 pub struct After {
@@ -57,13 +60,8 @@ pub fn measure(hand: &Hand, contact: &ConfiguredContact, seeds: u64, speed: f64)
     Ok(all)
 }
 
-/// Returns the place of the delay, whether the push was detected, and the error, for each push of a finger.
-fn pushes(
-    hand: &Hand,
-    contact: &ConfiguredContact,
-    seed: u64,
-    speed: f64,
-) -> Result<Vec<(usize, bool, f64)>, Box<dyn Error>> {
+/// Returns the pushes of a finger.
+fn pushes(hand: &Hand, contact: &ConfiguredContact, seed: u64, speed: f64) -> Result<Vec<Push>, Box<dyn Error>> {
     let (finger, own) = hand.finger(contact, seed);
     let start = Vector3::from(finger.simulation.start_degrees.map(f64::to_radians));
     let mut run = Finger::new(&finger, &own, hand.gravity)?;

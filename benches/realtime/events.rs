@@ -109,7 +109,7 @@ fn turn(kind: Kind, seconds: u64) -> Result<Turn, Failure> {
     let (mut servos, mut boards, mut mailboxes) = (Vec::new(), Vec::new(), Vec::new());
     let late = Arc::new(Mutex::new(Vec::new()));
     for (finger, writer) in reach(&Configuration::default(), PERIOD, BOARD_PRIORITY)?.into_iter().zip(writers) {
-        let Finger { mailbox, port, schedule, board, uncollected } = finger;
+        let Finger { mailbox, port, schedule, board, uncollected, .. } = finger;
         boards.push(board);
         mailboxes.push(mailbox);
         let (readers, ended, late) = (readers.clone(), ended.clone(), late.clone());

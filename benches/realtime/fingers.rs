@@ -14,6 +14,8 @@ pub struct Finger {
     pub mailbox: Mailbox,
     pub port: ServedPort<Port>,
     pub schedule: Schedule,
+    /// Beginning of the first period, ns.
+    pub start: u64,
     /// The board, which lives as long as this value.
     pub board: SimulatedPort,
     /// The receivers of the servo's timings and records, which are not read.
@@ -22,6 +24,16 @@ pub struct Finger {
 
 /// Connects to all fingers of a hand, each on its own port. `period` is in ns, and the phases are staggered.
 pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> Result<Vec<Finger>, Failure> {
+    reach_with(configuration, period, board_priority, |_, servo| servo)
+}
+
+/// Like [`reach`]. `change` changes the servo of each finger.
+pub fn reach_with(
+    configuration: &Configuration,
+    period: u64,
+    board_priority: u8,
+    mut change: impl FnMut(FingerNumber, FingerServo) -> FingerServo,
+) -> Result<Vec<Finger>, Failure> {
     let first = now() + 100_000_000;
     let reach_one = |number: FingerNumber| {
         let finger = &configuration.fingers[number.index()];
@@ -38,11 +50,12 @@ pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> 
         let (servo, mailbox) =
             FingerServo::new(configuration, number, stiffness, &identity, &configured, producer, recorder)
                 .map_err(|unusable| unusable.reason)?;
-        let schedule = Schedule::new(first + period * number.index() as u64 / FINGERS as u64, period);
+        let start = first + period * number.index() as u64 / FINGERS as u64;
         Ok(Finger {
             mailbox,
-            port: ServedPort::new(link, vec![servo]),
-            schedule,
+            port: ServedPort::new(link, vec![change(number, servo)]),
+            schedule: Schedule::new(start, period),
+            start,
             board,
             uncollected: (timings, black_box),
         })

@@ -4,6 +4,7 @@
 //!     cargo bench --bench realtime -- throughput [--seconds 5] [--priority 0]
 //!     cargo bench --bench realtime -- planner [--repeats 5] [--seconds 5]
 //!     cargo bench --bench realtime -- groups [--groups 10000]
+//!     cargo bench --bench realtime -- reactions [--contacts 5000]
 //!     cargo bench --bench realtime -- events [--repeats 5] [--seconds 5]
 //!     cargo bench --bench realtime -- telemetry [--repeats 5] [--seconds 5]
 //!     cargo bench --bench realtime -- long-run [--minutes 30]
@@ -19,6 +20,7 @@ mod groups;
 mod long_run;
 mod percentiles;
 mod planner;
+mod reactions;
 mod telemetry;
 mod throughput;
 mod turns;
@@ -49,6 +51,7 @@ enum Figure {
     /// they can.
     Planner(Turns),
     Groups(groups::Arguments),
+    Reactions(reactions::Arguments),
     /// Measures the wake-up latency of the servos with and without 10 000 events a second.
     Events(Turns),
     /// Measures the wake-up latency of the servos with and without three processes that read telemetry.
@@ -65,6 +68,7 @@ fn main() -> Result<(), Failure> {
         Some(Figure::Throughput(arguments)) => throughput::run(&arguments),
         Some(Figure::Planner(turns)) => planner::run(&turns),
         Some(Figure::Groups(arguments)) => groups::run(&arguments),
+        Some(Figure::Reactions(arguments)) => reactions::run(&arguments),
         Some(Figure::Events(turns)) => events::run(&turns),
         Some(Figure::Telemetry(turns)) => telemetry::run(&turns),
         Some(Figure::Reader(arguments)) => telemetry::read(&arguments),
@@ -76,6 +80,7 @@ fn main() -> Result<(), Failure> {
                 throughput::run(&throughput::Arguments::default()),
                 planner::run(&Turns::default()),
                 groups::run(&groups::Arguments::default()),
+                reactions::run(&reactions::Arguments::default()),
                 events::run(&Turns::default()),
                 telemetry::run(&Turns::default()),
             ];

@@ -1,0 +1,263 @@
+//! Measures how soon fingers react to a contact, in real time: from the contact at a tactile element of a simulated
+//! fingertip to the first changed motor command, of the touched finger and of the fingers in other threads.
+//!
+//! The board tells which motor command is in force when the contact begins. The records of the servos tell which
+//! command is the first one with the set point of the reaction. Both are numbered by periods, so a period that a late
+//! servo skips counts.
+
+use crate::Failure;
+use crate::fingers::{Finger, reach_with};
+use clap::Args;
+use nalgebra::{Vector3, Vector4};
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread::{JoinHandle, sleep};
+use std::time::{Duration, Instant};
+use sun2xp::control::Activity;
+use sun2xp::finger::events::EventKind;
+use sun2xp::finger::{
+    BlackBox, Bulletin, Condition, ControlRecord, CycleRecord, Mailbox, Reaction, Reflex, Reflexes, Servo, Stage,
+};
+use sun2xp::model::FingerNumber;
+use sun2xp::model::configuration::{Configuration, TouchElement};
+use sun2xp::realtime::{MonotonicClock, Priority, spawn};
+use sun2xp::simulated::SimulatedPort;
+
+/// Measures the periods from a contact at a tactile element to the first changed motor command.
+#[derive(Args)]
+pub struct Arguments {
+    /// Number of contacts.
+    #[arg(long, default_value_t = Self::default().contacts)]
+    contacts: u32,
+}
+
+impl Default for Arguments {
+    fn default() -> Self {
+        Self { contacts: 5000 }
+    }
+}
+
+const PERIOD: u64 = 1_000_000;
+
+/// Priorities as in a hand.
+const PRIORITY: u8 = 80;
+const BOARD_PRIORITY: u8 = 20;
+
+/// Longest time until the fingers are under control.
+const OPENING: Duration = Duration::from_secs(30);
+
+/// The finger that is touched. It and the other two fingers react.
+const TOUCHED: FingerNumber = FingerNumber::TWO;
+
+/// Set point before each contact, rad.
+const POSE: Vector3<f64> = Vector3::new(0.0, 0.5, 0.8);
+
+/// Force along the last link that presses the element, N.
+const PRESS: f64 = 0.3;
+
+/// Duration of a contact, and of the rest after it.
+const CONTACT: Duration = Duration::from_millis(10);
+const REST: Duration = Duration::from_millis(10);
+
+/// Largest difference between a commanded torque and the torque of the board, N cm. The board's torques are rounded.
+const ROUNDING: f64 = 1e-3;
+
+/// One finger: the parts that remain outside its servo thread.
+struct Member {
+    mailbox: Mailbox,
+    board: SimulatedPort,
+    black_box: BlackBox,
+    /// Beginning of period 0, ns.
+    start: u64,
+    _reflexes: Reflexes,
+}
+
+/// The periods from contacts to reactions.
+struct Delays {
+    periods: Vec<u64>,
+    /// Longest permitted delay, periods.
+    goal: u64,
+    /// Number of longer delays in which a servo skipped a period or lost a reply, because the machine was late.
+    late: u32,
+    /// Contacts without a reaction.
+    missing: u32,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let configuration = configuration();
+    let ended = Arc::new(AtomicBool::new(false));
+    let (mut members, servos) = start(&configuration, &ended)?;
+    let measured = measure(&mut members, &configuration, arguments.contacts);
+    ended.store(true, Relaxed);
+    servos.into_iter().try_for_each(|servo| servo.join().map_err(|_| "a servo panicked"))?;
+    let (own, others) = measured?;
+    println!(
+        "| contact at a tactile element of the simulated board, until the first changed motor command | reactions | \
+         within the goal | later, because a servo or board was late | later, otherwise | 99.9 % | worst | none |\n\
+         |---|---|---|---|---|---|---|---|"
+    );
+    own.print("of the touched finger (goal: 99.9 % within 2 periods)");
+    others.print("of the other two fingers, each in its own thread (goal: 99.9 % within 3 periods)");
+    println!();
+    Ok(())
+}
+
+impl Delays {
+    fn new(goal: u64) -> Self {
+        Self { periods: Vec::new(), goal, late: 0, missing: 0 }
+    }
+
+    /// Adds the delay from period `touched` to period `reacted`. `late` is whether a servo or a board was late.
+    fn add(&mut self, touched: u64, reacted: Option<u64>, late: impl FnOnce(u64) -> bool) {
+        let Some(reacted) = reacted else {
+            self.missing += 1;
+            return;
+        };
+        self.periods.push(reacted - touched);
+        self.late += u32::from(reacted - touched > self.goal && late(reacted));
+    }
+
+    fn print(mut self, what: &str) {
+        self.periods.sort_unstable();
+        let count = self.periods.len();
+        let within = self.periods.iter().filter(|&&periods| periods <= self.goal).count();
+        let late = self.late as usize;
+        let at = |part: f64| self.periods.get((count as f64 * part) as usize).map_or("-".into(), u64::to_string);
+        let worst = self.periods.last().map_or("-".into(), u64::to_string);
+        let share = 100.0 * within as f64 / count.max(1) as f64;
+        println!(
+            "| {what} | {count} | {share:.2} % | {late} | {} | {} | {worst} | {} |",
+            count - within - late,
+            at(0.999),
+            self.missing
+        );
+    }
+}
+
+fn configuration() -> Configuration {
+    let mut configuration = Configuration::default();
+    let element = TouchElement { position: [0.0; 3], normal: [0.0, 0.0, 1.0], newton_per_count: 0.001, zero: 200 };
+    configuration.fingers[TOUCHED.index()].touch.elements = vec![element];
+    configuration
+}
+
+/// Starts a servo thread for each finger, and waits until all fingers are springs.
+fn start(
+    configuration: &Configuration,
+    ended: &Arc<AtomicBool>,
+) -> Result<(Vec<Member>, Vec<JoinHandle<()>>), Failure> {
+    let bulletin = Bulletin::new();
+    let mut rules = Vec::new();
+    let fingers = reach_with(configuration, PERIOD, BOARD_PRIORITY, |number, servo| {
+        let (servo, reflexes) = servo.with_reflexes(number, &bulletin);
+        rules.push(reflexes);
+        servo
+    })?;
+    let (mut members, mut servos) = (Vec::new(), Vec::new());
+    for ((finger, reflexes), number) in fingers.into_iter().zip(rules).zip(FingerNumber::ALL) {
+        let event = EventKind::TouchMade;
+        let condition = match number {
+            TOUCHED => Condition::Event(event),
+            _ => Condition::OtherFinger { finger: TOUCHED, event },
+        };
+        let hold = Reflex { condition, reaction: Reaction::Hold, priority: 0, refractory: 0.0, inhibition: 0.0 };
+        reflexes.install(hold).ok_or("no place for a rule")?;
+        let Finger { mailbox, port, schedule, board, uncollected: (timings, black_box), start } = finger;
+        let ended = ended.clone();
+        servos.push(spawn("servo", Priority { fifo: PRIORITY, core: None }, move |_| {
+            // As a hand does for a finger with its own line.
+            let mut servo = Servo::new(MonotonicClock, schedule, vec![port.with_requests(1)]);
+            while !ended.load(Relaxed) {
+                servo.cycle();
+            }
+            drop(timings);
+        })?);
+        members.push(Member { mailbox, board, black_box, start, _reflexes: reflexes });
+    }
+    Ok((members, servos))
+}
+
+/// Touches a finger again and again. Returns the delays of this finger, and those of the others.
+fn measure(members: &mut [Member], configuration: &Configuration, contacts: u32) -> Result<(Delays, Delays), Failure> {
+    let begun = Instant::now();
+    while members.iter().any(|member| member.mailbox.report().stage == Stage::Opening) && begun.elapsed() < OPENING {
+        sleep(REST);
+        members.iter_mut().for_each(|member| member.black_box.collect());
+    }
+    let address = configuration.address(TOUCHED);
+    let (mut own, mut others) = (Delays::new(2), Delays::new(3));
+    for contact in 0..contacts {
+        for member in members.iter() {
+            member.mailbox.send(|set_point| set_point.joints = POSE).map_err(|fault| fault.to_string())?;
+        }
+        // The contacts begin at any time within a period.
+        sleep(REST + Duration::from_micros(u64::from(contact) * 997 % 1000));
+        let acting = press(&members[TOUCHED.index()].board, address, PRESS)?;
+        sleep(CONTACT);
+        press(&members[TOUCHED.index()].board, address, 0.0)?;
+        members.iter_mut().for_each(|member| member.black_box.collect());
+        let Some(touched) = members[TOUCHED.index()].period_of(&acting) else {
+            // The records of this time were lost, because this thread did not run.
+            continue;
+        };
+        for (member, number) in members.iter().zip(FingerNumber::ALL) {
+            let delays = if number == TOUCHED { &mut own } else { &mut others };
+            let late = |reacted| [&members[TOUCHED.index()], member].iter().any(|one| one.late(touched..=reacted));
+            delays.add(touched, member.reaction(touched), late);
+        }
+    }
+    Ok((own, others))
+}
+
+/// Presses the element with a force, N, and returns the torques of the motors at this moment, N cm.
+fn press(board: &SimulatedPort, address: u8, force: f64) -> Result<Vector4<f64>, Failure> {
+    let pressed = board.with_finger(address, |finger| {
+        let acting = finger.motor_torques();
+        let turn = finger.plant().links().tip_rotation(&finger.plant().joints());
+        finger.plant().set_external_force(turn * Vector3::new(0.0, 0.0, -force));
+        acting
+    });
+    Ok(pressed.ok_or("the board has no such finger")?)
+}
+
+impl Member {
+    /// Returns the period whose command has these torques, N cm.
+    fn period_of(&self, torques: &Vector4<f64>) -> Option<u64> {
+        let distance = |control: &ControlRecord| (control.command.motor_torques - torques).amax();
+        let records = self.newest().filter_map(|record| Some((record.began, distance(&record.control?))));
+        let (began, nearest) = records.min_by(|one, other| one.1.total_cmp(&other.1))?;
+        (nearest < ROUNDING).then(|| self.period(began))
+    }
+
+    /// Returns the period of the first command after period `from` that follows another set point than [`POSE`].
+    fn reaction(&self, from: u64) -> Option<u64> {
+        let reacts = |record: &CycleRecord| {
+            record.control.is_some_and(|control| match control.input.activity {
+                Activity::Follow(set_point) => set_point.joints != POSE,
+                _ => false,
+            })
+        };
+        let later = self.newest().filter(|record| self.period(record.began) > from && reacts(record));
+        later.map(|record| self.period(record.began)).min()
+    }
+
+    /// Returns whether a period is missing, or a reply.
+    fn late(&self, periods: RangeInclusive<u64>) -> bool {
+        let records = self.newest().filter(|record| periods.contains(&self.period(record.began)));
+        let answered = records.filter(|record| record.feedback.is_some()).count() as u64;
+        answered < periods.end() - periods.start() + 1
+    }
+
+    /// Returns the records of the newest contact.
+    fn newest(&self) -> impl Iterator<Item = CycleRecord> {
+        let newest = self.black_box.record(None).map_or(0, |kept| kept.newest);
+        let length = (CONTACT.as_nanos() as u64 + REST.as_nanos() as u64) / PERIOD;
+        (newest.saturating_sub(length)..=newest).filter_map(|cycle| Some(self.black_box.record(Some(cycle))?.record))
+    }
+
+    /// Returns the number of the period that contains the time `began`, ns.
+    fn period(&self, began: u64) -> u64 {
+        began.saturating_sub(self.start) / PERIOD
+    }
+}
