@@ -1,5 +1,5 @@
 //! Names the shared library and keeps it loaded. The header is not generated here: it is committed, and
-//! `tests/header.rs` compares it with the exports.
+//! `tests/header/main.rs` compares it with the exports.
 
 /// ABI number. It rises only when programs built with an older library must be compiled again, and not with each
 /// release.

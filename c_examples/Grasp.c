@@ -5,14 +5,14 @@
    slip when they lift it. Reflexes tighten the grasp then: each finger presses harder when its contact or that of
    another finger is about to slip. A call that moves the anchors ends what the reflexes have added, and they add it
    again. The exit status is 0 if the grasp tightens, the ball is lifted, does not creep while it is held, and is back
-   on the table at the end. The program works with the simulated hand only, because GetObject gives the pose of the
+   on the table at the end. The program works with the simulated hand only, because sun2xp_object gives the pose of the
    ball. C99. */
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
-#include "Sun2Xp.h"
+#include "sun2xp.h"
 
 #define RADIUS 1.5                      /* of the ball, cm */
 #define CLEAR 0.4                       /* between the open fingertips and the ball, cm */
@@ -35,20 +35,22 @@ static const double Turned[3] = {1.0, 1.0, -1.0};
 
 static const double Kx[9] = {3.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 3.0};                  /* N/cm */
 
+static sun2xp_hand *hand;
+
 static void check(int result)
 {
     if (result != 0) {
-        fprintf(stderr, "%s\n", HandError());
+        fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
         exit(1);
     }
 }
 
-static struct ObjectState object(void)
+static struct sun2xp_object object(void)
 {
-    struct ObjectState Object;
+    struct sun2xp_object Object;
 
-    Object.Size = sizeof Object;
-    check(GetObject(&Object));
+    Object.size = sizeof Object;
+    check(sun2xp_object(hand, &Object));
     return Object;
 }
 
@@ -56,9 +58,9 @@ static struct ObjectState object(void)
 static void pass(double seconds)
 {
     const struct timespec tick = {0, 2000000};
-    const double end = object().Time + seconds;
+    const double end = object().time + seconds;
 
-    while (object().Time < end)
+    while (object().time < end)
         nanosleep(&tick, 0);
 }
 
@@ -66,7 +68,7 @@ static void pass(double seconds)
    its axis, cm. */
 static void anchor(double up, double distance)
 {
-    struct FingerCommand Group[3] = {{0}};
+    struct sun2xp_set_point Group[3] = {{0}};
     double Tip[3][3];
     int i;
 
@@ -74,32 +76,32 @@ static void anchor(double up, double distance)
         Tip[i][0] = Turned[i] * (Start[0] + distance * Contact[i][0] - Base[i][0]);
         Tip[i][1] = Turned[i] * (Start[1] + distance * Contact[i][1] - Base[i][1]);
         Tip[i][2] = Start[2] - up - Base[i][2];
-        Group[i].Size = sizeof Group[i];
-        Group[i].Finger = i + 1;
-        Group[i].Tip = Tip[i];
-        Group[i].Kx = Kx;
+        Group[i].size = sizeof Group[i];
+        Group[i].finger = i + 1;
+        Group[i].tip = Tip[i];
+        Group[i].stiffness = Kx;
     }
-    check(SendGroup(3, Group));
+    check(sun2xp_send_group(hand, 3, Group));
 }
 
 /* Each finger presses harder toward the axis of the ball when the contact of any finger is about to slip. */
 static void tighten_on_slip(void)
 {
-    struct Reflex Rule = {0};
+    struct sun2xp_reflex Rule = {0};
     int i, slipping;
 
-    Rule.Size = sizeof Rule;
-    Rule.Event = EVENT_SLIP;
-    Rule.Reaction = THEN_GRIP;
-    Rule.Value = TIGHTEN;
-    Rule.Most = STRONGEST;
+    Rule.size = sizeof Rule;
+    Rule.event = SUN2XP_EVENT_SLIP;
+    Rule.reaction = SUN2XP_THEN_GRIP;
+    Rule.value = TIGHTEN;
+    Rule.largest = STRONGEST;
     for (i = 0; i < 3; i++)
         for (slipping = 0; slipping < 3; slipping++) {
-            Rule.Condition = slipping == i ? WHEN_EVENT : WHEN_OTHER_FINGER;
-            Rule.Finger = slipping + 1;
-            Rule.Pos[0] = -Turned[i] * Contact[i][0];
-            Rule.Pos[1] = -Turned[i] * Contact[i][1];
-            if (InstallReflex(i + 1, &Rule) < 0)
+            Rule.condition = slipping == i ? SUN2XP_WHEN_EVENT : SUN2XP_WHEN_OTHER_FINGER;
+            Rule.finger = slipping + 1;
+            Rule.position[0] = -Turned[i] * Contact[i][0];
+            Rule.position[1] = -Turned[i] * Contact[i][1];
+            if (sun2xp_install_reflex(hand, i + 1, &Rule) < 0)
                 check(-1);
         }
 }
@@ -119,14 +121,14 @@ static void glide(double up, double distance, double to_up, double to_distance)
 /* Shows the ball. Returns the sum of the forces toward its axis, N. */
 static double show(const char *doing)
 {
-    struct ObjectState Object = object();
+    struct sun2xp_object Object = object();
     double force, sum = 0.0;
     int i;
 
-    printf("%-10s  ball at %6.3f %6.3f %6.3f cm, pressed with", doing, Object.Position[0], Object.Position[1],
-           Object.Position[2]);
+    printf("%-10s  ball at %6.3f %6.3f %6.3f cm, pressed with", doing, Object.position[0], Object.position[1],
+           Object.position[2]);
     for (i = 0; i < 3; i++) {
-        force = -Object.Force[i][0] * Contact[i][0] - Object.Force[i][1] * Contact[i][1];
+        force = -Object.force[i][0] * Contact[i][0] - Object.force[i][1] * Contact[i][1];
         printf(" %4.2f", force);
         sum += force;
     }
@@ -141,9 +143,9 @@ static void average(double *Mean)
 
     Mean[0] = Mean[1] = Mean[2] = 0.0;
     for (tries = 0; tries < 50; tries++) {
-        struct ObjectState Object = object();
+        struct sun2xp_object Object = object();
         for (axis = 0; axis < 3; axis++)
-            Mean[axis] += Object.Position[axis] / 50;
+            Mean[axis] += Object.position[axis] / 50;
         pass(0.002);
     }
 }
@@ -163,7 +165,7 @@ int main(void)
 {
     double grasped, tightened, lifted, crept, back;
 
-    check(OpenHand());
+    check(sun2xp_open(NULL, &hand));
     show("opened");
     anchor(0.0, RADIUS + CLEAR);
     pass(1.0);
@@ -173,13 +175,13 @@ int main(void)
     tighten_on_slip();
     glide(0.0, RADIUS - SQUEEZE, LIFT, RADIUS - SQUEEZE);
     tightened = show("lifted");
-    lifted = Start[2] - object().Position[2];
+    lifted = Start[2] - object().position[2];
     crept = hold(HOLD);
     printf("held for %g s: moved by %.4f cm\n", HOLD, crept);
     glide(LIFT, RADIUS - SQUEEZE, 0.0, RADIUS - SQUEEZE);
     glide(0.0, RADIUS - SQUEEZE, 0.0, RADIUS + CLEAR);
     show("released");
-    back = fabs(object().Position[2] - Start[2]);
-    CloseHand();
+    back = fabs(object().position[2] - Start[2]);
+    sun2xp_close(hand);
     return tightened > 1.05 * grasped && lifted > LIFT - 0.3 && crept < 0.01 && back < 0.1 ? 0 : 1;
 }

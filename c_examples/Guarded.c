@@ -7,17 +7,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "Sun2Xp.h"
+#include "sun2xp.h"
 
 #define FINGER 1
-#define PATIENCE 10000                  /* ms */
+#define PATIENCE 10.0                   /* s */
 
+static sun2xp_hand *hand;
 static double Open[3] = {0.0, 0.4, 0.8}, Bent[3] = {0.0, 0.9, 0.8};                         /* rad */
 
 static int checked(int result)
 {
     if (result < 0) {
-        fprintf(stderr, "%s\n", HandError());
+        fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
         exit(1);
     }
     return result;
@@ -26,42 +27,42 @@ static int checked(int result)
 /* Waits for an event of this kind. Returns 1 if it has come, and 0 after the time limit. */
 static int wait_for(int kind)
 {
-    struct Event Event;
+    struct sun2xp_event Event;
 
     memset(&Event, 0, sizeof Event);
-    Event.Size = sizeof Event;
-    while (checked(WaitEvent(&Event, PATIENCE)) == 1)
-        if (Event.Kind == kind && Event.Finger == FINGER)
+    Event.size = sizeof Event;
+    while (checked(sun2xp_wait_event(hand, &Event, PATIENCE)) == 1)
+        if (Event.kind == kind && Event.finger == FINGER)
             return 1;
     return 0;
 }
 
 int main(void)
 {
-    struct Reflex Guard;
-    struct FingerTip Tip;
+    struct sun2xp_reflex Guard;
+    struct sun2xp_tip Tip;
     double Pressed;
     int fired;
 
-    checked(OpenHand());
-    checked(SendPos(FINGER, Open));
-    wait_for(EVENT_SETTLED);
+    checked(sun2xp_open(NULL, &hand));
+    checked(sun2xp_send_position(hand, FINGER, Open));
+    wait_for(SUN2XP_EVENT_SETTLED);
 
     memset(&Guard, 0, sizeof Guard);
-    Guard.Size = sizeof Guard;
-    Guard.Condition = WHEN_FORCE_ABOVE;
-    Guard.Bound = 0.4;                                                                  /* N */
-    Guard.Reaction = THEN_HOLD;
-    checked(InstallReflex(FINGER, &Guard));
+    Guard.size = sizeof Guard;
+    Guard.condition = SUN2XP_WHEN_FORCE_ABOVE;
+    Guard.bound = 0.4;                                                                  /* N */
+    Guard.reaction = SUN2XP_THEN_HOLD;
+    checked(sun2xp_install_reflex(hand, FINGER, &Guard));
 
-    checked(SendPos(FINGER, Bent));
-    fired = wait_for(EVENT_REFLEX_FIRED);
-    wait_for(EVENT_SETTLED);
-    Tip.Size = sizeof Tip;
-    checked(GetTip(FINGER, &Tip));
-    Pressed = sqrt(Tip.Force[0] * Tip.Force[0] + Tip.Force[1] * Tip.Force[1] + Tip.Force[2] * Tip.Force[2]);
+    checked(sun2xp_send_position(hand, FINGER, Bent));
+    fired = wait_for(SUN2XP_EVENT_REFLEX_FIRED);
+    wait_for(SUN2XP_EVENT_SETTLED);
+    Tip.size = sizeof Tip;
+    checked(sun2xp_tip(hand, FINGER, &Tip));
+    Pressed = sqrt(Tip.force[0] * Tip.force[0] + Tip.force[1] * Tip.force[1] + Tip.force[2] * Tip.force[2]);
     printf("%s: the tip is at %.2f %.2f %.2f cm and presses with %.2f N\n", fired ? "contact" : "no contact",
-           Tip.Tip[0], Tip.Tip[1], Tip.Tip[2], Pressed);
-    CloseHand();
+           Tip.position[0], Tip.position[1], Tip.position[2], Pressed);
+    sun2xp_close(hand);
     return fired && Pressed < 1.5 ? 0 : 1;
 }

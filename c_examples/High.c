@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <unistd.h>
 #include "Sun2Xp.c"
+#include "sun2xp.h"
 
 float Pos[3][3] = {{0.10, 0.50, 0.90}, {-0.10, 0.50, 0.90}, {0.00, 0.60, 1.10}};        /* rad */
 float Kx[3][3] = {{3.0, 0.0, 0.0}, {0.0, 3.0, 0.0}, {0.0, 0.0, 3.0}};                   /* N/cm */
@@ -14,7 +15,7 @@ float Kx[3][3] = {{3.0, 0.0, 0.0}, {0.0, 3.0, 0.0}, {0.0, 0.0, 3.0}};           
 int main( )
 {
   float Now[3], off;
-  struct FingerStatus Status;
+  struct sun2xp_status Status;
   int i, joint, arrived, tries;
 
   if (OpenHand( ) != 0) {
@@ -43,15 +44,15 @@ int main( )
 
   printf("finger   joint angles, rad                servo rate   jitter: median, 99 %%, worst\n");
   for (i = 1; i <= 3; i++) {
-    Status.Size = sizeof Status;
-    if (GetPos(i, Now) != 0 || GetStatus(i, &Status) != 0) {
+    Status.size = sizeof Status;
+    if (GetPos(i, Now) != 0 || sun2xp_status(sun2xp_default_hand(), i, &Status) != 0) {
       fprintf(stderr, "%s\n", HandError( ));
       continue;
     }
     printf("%d        sent to %6.3f %6.3f %6.3f\n", i, Pos[i - 1][0], Pos[i - 1][1], Pos[i - 1][2]);
     printf("         is at   %6.3f %6.3f %6.3f      %7.1f Hz   %.0f, %.0f, %.0f us%s\n", Now[0], Now[1], Now[2],
-      Status.MeasuredRate, Status.WakeUpMedian, Status.WakeUp99, Status.WakeUpMaximum,
-      Status.Realtime ? "" : " (not real-time)");
+      Status.measured_rate, Status.wake_up_median, Status.wake_up_p99, Status.wake_up_maximum,
+      Status.realtime ? "" : " (not real-time)");
   }
   printf("%d of 3 fingers arrived\n", arrived);
   CloseHand( );

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-#include "Sun2Xp.h"
+#include "sun2xp.h"
 
 #define FINGER 1
 #define RADIUS 1.0                      /* cm */
@@ -36,44 +36,47 @@ static double turns(double seconds)
 
 int main(void)
 {
-    static struct PathPose poses[POSES];
-    struct FingerTip tip;
+    static struct sun2xp_path_pose poses[POSES];
+    struct sun2xp_tip tip;
+    sun2xp_hand *hand;
     double centre[3], angle, off, worst = 0.0;
     int pose, step;
 
-    tip.Size = sizeof tip;
-    if (OpenHand() != 0 || SendPosD(FINGER, Start) != 0 || sleep(3) != 0 || GetTip(FINGER, &tip) != 0) {
-        fprintf(stderr, "%s\n", HandError());
+    tip.size = sizeof tip;
+    if (sun2xp_open(NULL, &hand) != 0 || sun2xp_send_position(hand, FINGER, Start) != 0
+        || sun2xp_wait(hand, FINGER, SUN2XP_WAIT_SETTLED, 10.0) != 0 || sun2xp_tip(hand, FINGER, &tip) != 0) {
+        fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
         return 1;
     }
-    memcpy(centre, tip.Tip, sizeof centre);
+    memcpy(centre, tip.position, sizeof centre);
     centre[0] -= RADIUS;
     for (pose = 0; pose < POSES; pose++) {
-        poses[pose].Size = sizeof poses[pose];
-        poses[pose].IsTip = 1;
-        poses[pose].Time = (TURNS + RAMP) * (pose + 1) / POSES;
-        angle = 2.0 * PI * turns(poses[pose].Time);
-        poses[pose].Place[0] = centre[0] + RADIUS * cos(angle);
-        poses[pose].Place[1] = centre[1] + RADIUS * sin(angle);
-        poses[pose].Place[2] = centre[2];
+        poses[pose].size = sizeof poses[pose];
+        poses[pose].is_tip = 1;
+        poses[pose].time = (TURNS + RAMP) * (pose + 1) / POSES;
+        angle = 2.0 * PI * turns(poses[pose].time);
+        poses[pose].place[0] = centre[0] + RADIUS * cos(angle);
+        poses[pose].place[1] = centre[1] + RADIUS * sin(angle);
+        poses[pose].place[2] = centre[2];
     }
-    if (SendPath(FINGER, POSES, poses, 0.0) != 0) {
-        fprintf(stderr, "%s\n", HandError());
+    if (sun2xp_send_path(hand, FINGER, POSES, poses, 0.0) != 0) {
+        fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
         return 1;
     }
     for (step = 0; step < 38; step++) {
         usleep(100000);
-        if (GetTip(FINGER, &tip) != 0) {
-            fprintf(stderr, "%s\n", HandError());
+        if (sun2xp_tip(hand, FINGER, &tip) != 0) {
+            fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
             return 1;
         }
-        off = hypot(hypot(tip.Tip[0] - centre[0], tip.Tip[1] - centre[1]) - RADIUS, tip.Tip[2] - centre[2]);
+        off = hypot(tip.position[0] - centre[0], tip.position[1] - centre[1]) - RADIUS;
+        off = hypot(off, tip.position[2] - centre[2]);
         if (off > worst)
             worst = off;
-        printf("%4.1f s  %7.3f %7.3f cm, %.2f mm from the circle\n", 0.1 * (step + 1), tip.Tip[0] - centre[0],
-               tip.Tip[1] - centre[1], 10.0 * off);
+        printf("%4.1f s  %7.3f %7.3f cm, %.2f mm from the circle\n", 0.1 * (step + 1), tip.position[0] - centre[0],
+               tip.position[1] - centre[1], 10.0 * off);
     }
-    CloseHand();
+    sun2xp_close(hand);
     printf("at most %.2f mm from the circle\n", 10.0 * worst);
     return worst < 0.05 ? 0 : 1;
 }

@@ -6,11 +6,12 @@
 #include <math.h>
 #include <stdio.h>
 #include <unistd.h>
-#include "Sun2Xp.h"
+#include "sun2xp.h"
 
 #define FINGER 1
 #define FORCE 0.6                       /* N: 2 mm at 3 N/cm */
 
+static sun2xp_hand *hand;
 static const double Links[3] = {3.556, 5.080, 4.000};                              /* cm */
 static const double Pos[3] = {0.1, 0.5, 0.9};                                      /* rad */
 static const double Kx[3][3] = {{3.0, 0.0, 0.0}, {0.0, 3.0, 0.0}, {0.0, 0.0, 3.0}};  /* N/cm */
@@ -21,14 +22,14 @@ static int rest(double *tip)
     double before[3], now[3], reach, moved;
     int tries;
 
-    if (GetPos(FINGER, now) != 0)
+    if (sun2xp_position(hand, FINGER, now) != 0)
         return -1;
     for (tries = 0; tries < 8; tries++) {
         before[0] = now[0];
         before[1] = now[1];
         before[2] = now[2];
         sleep(1);
-        if (GetPos(FINGER, now) != 0)
+        if (sun2xp_position(hand, FINGER, now) != 0)
             return -1;
         moved = fabs(now[0] - before[0]) + fabs(now[1] - before[1]) + fabs(now[2] - before[2]);
         if (moved < 1e-3)
@@ -47,7 +48,7 @@ static int push(int axis, double newton, double *tip)
     double force[3] = {0.0, 0.0, 0.0};
 
     force[axis] = newton;
-    return PushFinger(FINGER, force) != 0 ? -1 : rest(tip);
+    return sun2xp_push(hand, FINGER, force) != 0 ? -1 : rest(tip);
 }
 
 int main(void)
@@ -55,20 +56,21 @@ int main(void)
     double there[3], back[3], stiffness;
     int axis, springs = 0;
 
-    if (OpenHand() != 0 || SendKx(FINGER, Kx) != 0 || SendPos(FINGER, Pos) != 0 || rest(there) != 0) {
-        fprintf(stderr, "%s\n", HandError());
+    if (sun2xp_open(NULL, &hand) != 0 || sun2xp_send_stiffness(hand, FINGER, &Kx[0][0]) != 0
+        || sun2xp_send_position(hand, FINGER, Pos) != 0 || rest(there) != 0) {
+        fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
         return 1;
     }
     printf("axis   commanded   measured, N/cm\n");
     for (axis = 0; axis < 3; axis++) {
         if (push(axis, FORCE, there) != 0 || push(axis, -FORCE, back) != 0) {
-            fprintf(stderr, "%s\n", HandError());
+            fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
             return 1;
         }
         stiffness = 2.0 * FORCE / (there[axis] - back[axis]);
         printf("%c       %8.2f   %8.2f\n", "xyz"[axis], Kx[axis][axis], stiffness);
         springs += stiffness > 0.5 * Kx[axis][axis] && stiffness < 2.0 * Kx[axis][axis];
     }
-    CloseHand();
+    sun2xp_close(hand);
     return springs == 3 ? 0 : 1;
 }

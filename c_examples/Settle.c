@@ -1,33 +1,34 @@
 /* Settle.c - moves all fingers, and waits until each has come to rest or one has stopped because of a fault. C89. */
 
 #include <stdio.h>
-#include "Sun2Xp.h"
+#include "sun2xp.h"
 
-enum { LONGEST_WAIT_MS = 5000 };
+#define LONGEST_WAIT 5.0                /* s */
 
 int main(void)
 {
     double Pos[3] = {0.1, 0.6, 1.0};
-    struct Event Event;
+    struct sun2xp_event Event;
+    sun2xp_hand *hand;
     int finger, moving = 3;
 
-    if (OpenHand() != 0) {
-        fprintf(stderr, "%s\n", HandError());
+    if (sun2xp_open(NULL, &hand) != 0) {
+        fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
         return 1;
     }
     for (finger = 1; finger <= 3; finger++)
-        SendPos(finger, Pos);
-    Event.Size = sizeof Event;
-    while (moving > 0 && WaitEvent(&Event, LONGEST_WAIT_MS) == 1) {
-        if (Event.Kind == EVENT_SETTLED) {
-            printf("finger %d rests at %.3f %.3f %.3f rad, in its cycle %lu\n", Event.Finger, Event.Values[0],
-                Event.Values[1], Event.Values[2], Event.Cycle);
+        sun2xp_send_position(hand, finger, Pos);
+    Event.size = sizeof Event;
+    while (moving > 0 && sun2xp_wait_event(hand, &Event, LONGEST_WAIT) == 1) {
+        if (Event.kind == SUN2XP_EVENT_SETTLED) {
+            printf("finger %d rests at %.3f %.3f %.3f rad, in its cycle %lu\n", Event.finger, Event.values[0],
+                Event.values[1], Event.values[2], Event.cycle);
             moving--;
-        } else if (Event.Kind == EVENT_FAULT) {
-            fprintf(stderr, "finger %d: %s\n", Event.Finger, FaultText((int)Event.Values[0]));
+        } else if (Event.kind == SUN2XP_EVENT_FAULT) {
+            fprintf(stderr, "finger %d: %s\n", Event.finger, sun2xp_fault_text((int)Event.values[0]));
             break;
         }
     }
-    CloseHand();
+    sun2xp_close(hand);
     return moving == 0 ? 0 : 1;
 }

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
-#include "Sun2Xp.h"
+#include "sun2xp.h"
 
 #define RADIUS 1.5                      /* of the ball, cm */
 #define CLEAR 0.4                       /* between the open fingertips and the ball, cm */
@@ -34,20 +34,22 @@ struct Grip {
     double X, Y, Up, Distance, Stiffness;
 };
 
+static sun2xp_hand *hand;
+
 static void check(int result)
 {
     if (result != 0) {
-        fprintf(stderr, "%s\n", HandError());
+        fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
         exit(1);
     }
 }
 
-static struct ObjectState object(void)
+static struct sun2xp_object object(void)
 {
-    struct ObjectState Object;
+    struct sun2xp_object Object;
 
-    Object.Size = sizeof Object;
-    check(GetObject(&Object));
+    Object.size = sizeof Object;
+    check(sun2xp_object(hand, &Object));
     return Object;
 }
 
@@ -55,7 +57,7 @@ static struct ObjectState object(void)
 static void grip(struct Grip To)
 {
     const double Kx[9] = {To.Stiffness, 0.0, 0.0, 0.0, To.Stiffness, 0.0, 0.0, 0.0, To.Stiffness};
-    struct FingerCommand Group[3] = {{0}};
+    struct sun2xp_set_point Group[3] = {{0}};
     double Tip[3][3];
     int i;
 
@@ -63,12 +65,12 @@ static void grip(struct Grip To)
         Tip[i][0] = Turned[i] * (Start[0] + To.X + To.Distance * Contact[i][0] - Base[i][0]);
         Tip[i][1] = Turned[i] * (Start[1] + To.Y + To.Distance * Contact[i][1] - Base[i][1]);
         Tip[i][2] = Start[2] - To.Up;
-        Group[i].Size = sizeof Group[i];
-        Group[i].Finger = i + 1;
-        Group[i].Tip = Tip[i];
-        Group[i].Kx = Kx;
+        Group[i].size = sizeof Group[i];
+        Group[i].finger = i + 1;
+        Group[i].tip = Tip[i];
+        Group[i].stiffness = Kx;
     }
-    check(SendGroup(3, Group));
+    check(sun2xp_send_group(hand, 3, Group));
 }
 
 /* Returns a value between two others that begins and ends without a jerk; part is 0 to 1. */
@@ -81,12 +83,12 @@ static double between(double from, double to, double part)
 static struct Grip glide(struct Grip From, struct Grip To, double seconds)
 {
     const struct timespec tick = {0, 10000000};
-    const double begin = object().Time;
+    const double begin = object().time;
     double part = 0.0;
 
     while (part < 1.0) {
         struct Grip Now;
-        part = fmin((object().Time - begin) / seconds, 1.0);
+        part = fmin((object().time - begin) / seconds, 1.0);
         Now.X = between(From.X, To.X, part);
         Now.Y = between(From.Y, To.Y, part);
         Now.Up = between(From.Up, To.Up, part);
@@ -102,7 +104,7 @@ static struct Grip glide(struct Grip From, struct Grip To, double seconds)
 static struct Grip circle(struct Grip At, double seconds)
 {
     const struct timespec tick = {0, 10000000};
-    const double begin = object().Time;
+    const double begin = object().time;
     const double middle = At.Up;
     double time = 0.0;
 
@@ -115,7 +117,7 @@ static struct Grip circle(struct Grip At, double seconds)
         At.Stiffness = between(SOFT, STIFF, 1.0 - fabs(fmod(time, 4.0) / 2.0 - 1.0));
         grip(At);
         nanosleep(&tick, 0);
-        time = object().Time - begin;
+        time = object().time - begin;
     }
     return At;
 }
@@ -126,11 +128,11 @@ int main(int argc, char **argv)
     const struct Grip Open = {0.0, 0.0, 0.0, RADIUS + CLEAR, SOFT};
     const struct Grip Closed = {0.0, 0.0, 0.0, RADIUS - SQUEEZE, SOFT};
     const struct Grip Lifted = {0.0, 0.0, LIFT, RADIUS - SQUEEZE, SOFT};
-    struct ObjectState Ball;
+    struct sun2xp_object Ball;
     struct Grip At;
     double off;
 
-    check(OpenHand());
+    check(sun2xp_open(NULL, &hand));
     printf("The hand is open. It moves the ball for %g s. To watch it, run sun2xp monitor or sun2xp monitor --web.\n",
            seconds);
     fflush(stdout);
@@ -139,11 +141,11 @@ int main(int argc, char **argv)
     At = glide(At, Lifted, 1.5);
     At = circle(At, seconds);
     Ball = object();
-    off = hypot(Ball.Position[0] - Start[0] - At.X, Ball.Position[1] - Start[1] - At.Y);
-    off = hypot(off, Ball.Position[2] - Start[2] + At.Up);
+    off = hypot(Ball.position[0] - Start[0] - At.X, Ball.position[1] - Start[1] - At.Y);
+    off = hypot(off, Ball.position[2] - Start[2] + At.Up);
     printf("the ball is %.2f cm from where the fingers carry it\n", off);
     At = glide(At, Closed, 1.5);
     glide(At, Open, 1.0);
-    check(CloseHand());
+    check(sun2xp_close(hand));
     return off < 0.5 ? 0 : 1;
 }

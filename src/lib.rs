@@ -102,9 +102,9 @@ pub mod groups {
     pub use crate::hand::{FingerCommand, Pose, Until, Waiting};
 }
 
-/// What the kinematics of a finger report: joint torques and its pose in the palm.
+/// What the kinematics of a finger report: joint torques, limits, and its pose in the palm.
 pub mod kinematics {
-    pub use crate::hand::{JointTorques, PalmPose};
+    pub use crate::hand::{FingerLimits, JointTorques, PalmPose};
 }
 
 /// Events: what happens to a finger, with the cycle to which it belongs. [`Hand::events`] and [`Hand::on_event`] give

@@ -4,7 +4,10 @@
 #[allow(dead_code)]
 mod c;
 
-use c::{Bench, C_STANDARDS as C, CPP_STANDARDS as CPP, STRICT, c_compiler, c_compilers, cpp_compiler, cpp_compilers};
+use c::{
+    Bench, C_STANDARDS as C, CPP_STANDARDS as CPP, STRICT, c_compiler, c_compilers, cpp_compiler, cpp_compilers, root,
+};
+use std::fs;
 
 /// Every way to tell the header the type of the arrays.
 const CHOICES: &[&[&str]] = &[
@@ -32,6 +35,40 @@ fn the_header_alone_is_free_of_warnings_and_may_come_twice() {
                         .unwrap_or_else(|e| panic!("{e}"));
                 }
             }
+        }
+    }
+}
+
+/// The layout of the structs and the calls of `sun2xp.h`, and that it may be included twice.
+#[test]
+fn the_header_with_handles_compiles_in_every_dialect_with_its_layout() {
+    let bench = Bench::new();
+    let layout = fs::read_to_string(root().join("tests/c/layout.c")).expect("the source");
+    let layout = format!("#pragma pack(1)\n#include \"Sun2Xp.h\"\n#include \"sun2xp.h\"\n{layout}");
+    for (compilers, standards, name) in [(c_compilers(), C, "layout.c"), (cpp_compilers(), CPP, "layout.cpp")] {
+        let source = bench.write(name, &layout);
+        for compiler in compilers {
+            for standard in standards {
+                bench.check(compiler, &with(&[STRICT, &[standard]]), &source).unwrap_or_else(|e| panic!("{e}"));
+            }
+        }
+    }
+}
+
+/// Every struct of the header must be in tests/c/layout.c, with every member.
+#[test]
+fn the_layout_is_complete() {
+    let read = |name: &str| fs::read_to_string(root().join(name)).expect("a source");
+    let (header, layout) = (read("include/sun2xp.h"), read("tests/c/layout.c"));
+    let structs: Vec<_> = header.split("\nstruct ").skip(1).filter_map(|text| text.split_once(" {\n")).collect();
+    assert!(structs.len() > 10, "{} structs", structs.len());
+    for (name, members) in structs {
+        assert!(layout.contains(&format!("BYTES({name}, ")), "tests/c/layout.c should have {name}");
+        let members = members.split_once("\n};").expect("a struct ends").0;
+        for member in members.lines().filter_map(|line| line.split_once(';')).map(|(before, _)| before) {
+            let member = member.rsplit([' ', '*']).next().and_then(|member| member.split('[').next()).expect("a name");
+            let assertion = format!("AT({name}, {member}, ");
+            assert!(layout.contains(&assertion), "tests/c/layout.c should have {name}.{member}");
         }
     }
 }

@@ -8,7 +8,7 @@ use c::{Bench, STRICT, c_compiler, said};
 use std::fs;
 use std::process::Command;
 
-/// A scratch folder whose configuration makes ZeroFinger take the pose of the finger as known, which takes a second. A
+/// A scratch folder whose configuration makes sun2xp_zero take the pose of the finger as known, which takes a second. A
 /// search for the stops takes most of a minute, and these tests are about the call, not about its result.
 fn bench() -> Bench {
     let bench = Bench::new();
@@ -82,7 +82,7 @@ fn the_floating_point_environment_of_a_planner_is_its_own() {
 
 #[test]
 fn a_small_stack_is_enough_for_every_call() {
-    // The finger is being pushed, so ZeroFinger would refuse its pose.
+    // The finger is being pushed, so sun2xp_zero would refuse its pose.
     Bench::new().succeed(STRICT, &["small_stack.c"]);
 }
 

@@ -131,8 +131,8 @@ fn a_black_box_with_a_hostile_name_is_refused_in_one_line() {
         let run = bench.run(command);
         assert!(run.status.success(), "{}", said(&run));
         let (message, lines) = printed(&run);
-        assert_one_line(&message, "WriteBlackBox: ");
-        assert_one_line(lines.lines().nth(1).expect("after the announcement"), "sun2xp: WriteBlackBox: ");
+        assert_one_line(&message, "sun2xp_write_black_box: ");
+        assert_one_line(lines.lines().nth(1).expect("after the announcement"), "sun2xp: sun2xp_write_black_box: ");
     }
 }
 

@@ -6,7 +6,7 @@ use sun2xp::finger::events::EventKind;
 
 const BEGIN: &str = "<!-- From src/finger/events/table.rs: SUN2XP_WRITE_EVENTS=1 cargo test --test events_page -->\n";
 const END: &str = "<!-- End of the table -->";
-const HEAD: &str = "| number | `EVENT_`, Rust | part | values | when it occurs |\n|---|---|---|---|---|\n";
+const HEAD: &str = "| number | `SUN2XP_EVENT_`, Rust | part | values | when it occurs |\n|---|---|---|---|---|\n";
 
 fn table() -> String {
     let mut table = String::from(HEAD);

@@ -1,4 +1,4 @@
-//! `docs/faults.md` contains the table of faults of the library, with the remedies as FaultText returns them.
+//! `docs/faults.md` contains the table of faults of the library, with the remedies as sun2xp_fault_text returns them.
 
 use std::ffi::{CStr, c_char, c_int};
 use std::path::Path;
@@ -7,17 +7,17 @@ use sun2xp::finger::{FaultKind, Severity};
 
 const BEGIN: &str = "<!-- From src/finger/faults/table.rs: SUN2XP_WRITE_FAULTS=1 cargo test --test faults_page -->\n";
 const END: &str = "<!-- End of the table -->";
-const HEAD: &str = "| number | `FAULT_` | effect on the finger | part, value | what | likely cause | remedy |\n\
+const HEAD: &str = "| number | `SUN2XP_FAULT_` | effect on the finger | part, value | what | likely cause | remedy |\n\
                     |---|---|---|---|---|---|---|\n";
 
 unsafe extern "C" {
-    safe fn FaultText(number: c_int) -> *const c_char;
+    safe fn sun2xp_fault_text(number: c_int) -> *const c_char;
 }
 
-/// The remedy of a kind of fault as FaultText returns it: with the names of the C calls.
+/// The remedy of a kind of fault as sun2xp_fault_text returns it: with the names of the C calls.
 fn remedy(kind: FaultKind) -> String {
-    // SAFETY: FaultText returns a string that is valid as long as the process runs.
-    let text = unsafe { CStr::from_ptr(FaultText(kind.number().into())) }.to_str().expect("UTF-8");
+    // SAFETY: sun2xp_fault_text returns a string that is valid as long as the process runs.
+    let text = unsafe { CStr::from_ptr(sun2xp_fault_text(kind.number().into())) }.to_str().expect("UTF-8");
     let row = kind.description();
     let before = format!("{}: {}. Likely cause: {}. ", row.name, row.text, row.cause);
     text.strip_prefix(&before).unwrap_or_else(|| panic!("{before} does not begin {text}")).to_string()

@@ -211,7 +211,7 @@ fn a_simulated_finger_survives_a_machine_that_runs_nothing_in_time() {
     }
 }
 
-/// What GetStatus counts while the servo does not run, and what the servo counts when it runs again.
+/// What sun2xp_status counts while the servo does not run, and what the servo counts when it runs again.
 #[test]
 fn skipped_periods_are_counted_before_the_servo_runs_again() {
     let mut rig = Rig::new(0, 60_000);

@@ -23,7 +23,7 @@ proctype Closer()
     callers--
 }
 
-/* StopHand: stop_all in src/finger/stop_signal.rs. */
+/* sun2xp_stop_all: stop_all in src/finger/stop_signal.rs. */
 proctype Stopper()
 {
     stop_calls++;

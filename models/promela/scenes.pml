@@ -9,7 +9,7 @@ init {
 #endif
     atomic {
 #ifdef SHUTDOWN
-        /* Shutdown while the hand opens, twice at once, beside StopHand and a fault. */
+        /* Shutdown while the hand opens, twice at once, beside sun2xp_stop_all and a fault. */
         callers = 4;
         run Opener(); run Closer(); run Closer(); run Stopper();
         broken[0] = true

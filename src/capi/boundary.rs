@@ -6,8 +6,10 @@
 //! nothing stays locked, because the call continues to its end.
 
 use crate::capi::forked::is_forked_child;
+use crate::capi::handle::Handle;
 use crate::capi::process;
-use crate::capi::refusal::{Refusal, refuse};
+use crate::capi::refusal::Refusal;
+use crate::capi::reporting::refuse;
 use crate::hand::HandError;
 use crate::realtime::{
     DeferredCancellation, DelegatedCall, Environment, NoCancellation, SignalsBlocked, is_memory_free,
@@ -19,35 +21,37 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// Memory that OpenHand may need, including the black boxes, bytes.
 pub(super) const MEMORY_OF_HAND: usize = 12 << 20;
 
-/// Memory that a slow call on an open hand may need, bytes. WriteBlackBox needs the most.
+/// Memory that a slow call on an open hand may need, bytes. sun2xp_write_black_box needs the most.
 pub(super) const MEMORY_OF_CALL: usize = 4 << 20;
 
 /// Memory that the thread of a call may need, bytes.
 pub(super) const MEMORY_OF_THREAD: usize = 64 * 1024;
 
-/// Runs a quick call. Returns 0, or -1 if it is refused. `call` must have no cancellation point.
+/// Runs a quick call for the hand with this handle. Returns 0, or a negative number if it is refused. `call` must have
+/// no cancellation point.
 #[inline(always)]
-pub(super) fn guarded(name: &'static str, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
+pub(super) fn guarded(name: &'static str, handle: Handle, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
     uncancelled(|| {
         let environment = Environment::enter_default();
         let errno = process::errno();
-        let result = finish(name, errno, unless_forked(call));
+        let result = finish(name, handle, errno, unless_forked(call));
         environment.restore();
         result
     })
 }
 
-/// Runs a slow call in its own thread. Returns 0, or -1 if it is refused. `prepare` copies the arguments in the
-/// planner's thread. The call is refused if less than `memory` bytes are free.
+/// Runs a slow call in its own thread. Returns 0, or a negative number if it is refused. `prepare` copies the arguments
+/// in the planner's thread. The call is refused if less than `memory` bytes are free.
 #[inline(always)]
 pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
     name: &'static str,
+    handle: Handle,
     memory: usize,
     prepare: impl FnOnce() -> Result<C, Refusal>,
 ) -> c_int {
     uncancelled(|| {
         let blocked = SignalsBlocked::all();
-        slow(name, &blocked, || {
+        slow(name, handle, &blocked, || {
             if !is_memory_free(memory) {
                 return Err(Refusal::NoMemory);
             }
@@ -64,10 +68,14 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
 /// Runs a slow call that must take place in any case. Unlike [`delegated`], it runs the call in the planner's thread if
 /// there is no memory for another thread or the system refuses to start one.
 #[inline(always)]
-pub(super) fn delegated_or_done_here(name: &'static str, call: fn() -> Result<(), Refusal>) -> c_int {
+pub(super) fn delegated_or_done_here(
+    name: &'static str,
+    handle: Handle,
+    call: impl FnOnce() -> Result<(), Refusal> + Copy + Send + 'static,
+) -> c_int {
     uncancelled(|| {
         let blocked = SignalsBlocked::all();
-        slow(name, &blocked, || {
+        slow(name, handle, &blocked, || {
             match is_memory_free(MEMORY_OF_THREAD).then(|| DelegatedCall::begin(&blocked, move || caught(call))) {
                 Some(Ok(delegated)) => delegated.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked)),
                 _ => {
@@ -85,11 +93,16 @@ pub(super) fn delegated_or_done_here(name: &'static str, call: fn() -> Result<()
 /// Runs a slow call. All signals are blocked except during the wait itself, so that no handler can jump out of any
 /// other part. A jump out of the wait does not restore the floating-point environment. Therefore the thread has the
 /// planner's environment during the wait.
-fn slow(name: &str, _blocked: &SignalsBlocked, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
+fn slow(
+    name: &'static str,
+    handle: Handle,
+    _blocked: &SignalsBlocked,
+    call: impl FnOnce() -> Result<(), Refusal>,
+) -> c_int {
     let errno = process::errno();
     let outcome = unless_forked(call);
     let environment = Environment::enter_default();
-    let result = finish(name, errno, outcome);
+    let result = finish(name, handle, errno, outcome);
     environment.restore();
     result
 }
@@ -129,7 +142,7 @@ fn caught(call: impl FnOnce() -> Result<(), Refusal>) -> Result<(), Refusal> {
     catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| Err(Refusal::Panicked(message(&*panic))))
 }
 
-fn finish(name: &str, errno: c_int, outcome: Result<(), Refusal>) -> c_int {
+fn finish(name: &'static str, handle: Handle, errno: c_int, outcome: Result<(), Refusal>) -> c_int {
     match outcome {
         Ok(()) => {
             // System calls of a successful call may have set errno, for example for a missing optional file or a
@@ -137,10 +150,7 @@ fn finish(name: &str, errno: c_int, outcome: Result<(), Refusal>) -> c_int {
             process::set_errno(errno);
             0
         }
-        Err(refusal) => {
-            refuse(name, &refusal);
-            -1
-        }
+        Err(refusal) => refuse(name, handle, &refusal),
     }
 }
 
@@ -152,18 +162,19 @@ fn message(panic: &(dyn std::any::Any + Send)) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::capi::refusal::text;
+    use crate::capi::error_numbers::SUN2XP_ERROR_ARGUMENT;
+    use crate::capi::thread_errors::find;
     use std::ffi::CStr;
     use std::thread;
 
     fn last_text() -> String {
         // SAFETY: the text belongs to this thread, which makes no refused call meanwhile.
-        unsafe { CStr::from_ptr(text()) }.to_string_lossy().into_owned()
+        unsafe { CStr::from_ptr(find(Handle::NULL).text) }.to_string_lossy().into_owned()
     }
 
     #[test]
     fn a_panic_does_not_leave_the_boundary() {
-        let result = guarded("SendPos", || panic!("a defect"));
+        let result = guarded("SendPos", Handle::NULL, || panic!("a defect"));
         let errno = std::io::Error::last_os_error().raw_os_error();
         assert_eq!((result, errno), (-1, Some(libc::EIO)));
         assert_eq!(last_text(), "SendPos: the library failed (a defect): please report this defect of the library");
@@ -176,14 +187,14 @@ mod tests {
             process::set_errno(libc::ENOENT);
             Ok(())
         };
-        assert_eq!((guarded("OpenHand", call), process::errno()), (0, libc::E2BIG));
+        assert_eq!((guarded("OpenHand", Handle::NULL, call), process::errno()), (0, libc::E2BIG));
     }
 
     #[test]
     fn every_thread_has_its_own_text_which_success_leaves_alone() {
         assert_eq!(last_text(), "");
-        assert_eq!(guarded("GetPos", || Err(Refusal::NoHand)), -1);
-        assert_eq!(guarded("SendPos", || Ok(())), 0);
+        assert_eq!(guarded("GetPos", Handle::NULL, || Err(Refusal::NoHand)), -1);
+        assert_eq!(guarded("SendPos", Handle::NULL, || Ok(())), 0);
         assert!(last_text().starts_with("GetPos: no hand is open"));
         thread::scope(|scope| scope.spawn(|| assert_eq!(last_text(), "")).join())
             .expect("another thread has no text yet");
@@ -198,27 +209,30 @@ mod tests {
             _ => Err(Refusal::Busy),
         };
         assert_eq!(
-            (delegated("OpenHand", MEMORY_OF_CALL, || Ok(elsewhere)), process::errno()),
+            (delegated("OpenHand", Handle::NULL, MEMORY_OF_CALL, || Ok(elsewhere)), process::errno()),
             (0, libc::E2BIG),
             "{}",
             last_text()
         );
         let none = || -> Result<fn() -> Result<(), Refusal>, Refusal> {
-            Err(Refusal::SmallStruct { name: "Fault", size: 1, least: 2 })
+            Err(Refusal::WrongSize { name: "Fault", size: 1, least: 2 })
         };
-        assert_eq!((delegated("WriteBlackBox", MEMORY_OF_CALL, none), process::errno()), (-1, libc::EINVAL));
-        assert!(last_text().starts_with("WriteBlackBox: Fault->Size is 1"));
         assert_eq!(
-            (delegated("OpenHand", MEMORY_OF_CALL, || Ok(|| Err(Refusal::NoHand))), process::errno()),
+            (delegated("sun2xp_write_black_box", Handle::NULL, MEMORY_OF_CALL, none), process::errno()),
+            (-SUN2XP_ERROR_ARGUMENT, libc::EINVAL)
+        );
+        assert!(last_text().starts_with("sun2xp_write_black_box: Fault->size is 1"));
+        assert_eq!(
+            (delegated("OpenHand", Handle::NULL, MEMORY_OF_CALL, || Ok(|| Err(Refusal::NoHand))), process::errno()),
             (-1, libc::ENODEV)
         );
         assert!(last_text().starts_with("OpenHand: no hand is open"));
         assert_eq!(
-            (delegated("OpenHand", MEMORY_OF_CALL, || Ok(|| panic!("a defect"))), process::errno()),
+            (delegated("OpenHand", Handle::NULL, MEMORY_OF_CALL, || Ok(|| panic!("a defect"))), process::errno()),
             (-1, libc::EIO)
         );
         assert!(last_text().starts_with("OpenHand: the library failed (a defect)"));
-        assert_eq!(delegated_or_done_here("CloseHand", || Err(Refusal::Busy)), -1);
+        assert_eq!(delegated_or_done_here("CloseHand", Handle::NULL, || Err(Refusal::Busy)), -1);
         assert_eq!(process::errno(), libc::EBUSY);
     }
 }

@@ -6,17 +6,19 @@
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::{MEMORY_OF_HAND, delegated, delegated_or_done_here, guarded, uncancelled};
-use crate::capi::default_events::in_callback;
-use crate::capi::default_hand;
+use crate::capi::hand_events::in_callback;
+use crate::capi::hand_table::{self, default_handle};
+use crate::capi::handle::Handle;
 use crate::capi::memory::{load, load_rows, non_null};
-use crate::capi::refusal::{self, Wanted};
+use crate::capi::refusal::Wanted;
+use crate::capi::thread_errors::find;
 use std::ffi::{c_char, c_int};
 
 /// OpenHand - start the hand
 ///
 ///     int OpenHand(void);
 ///
-/// Reads the configuration (chapter 8), opens the ports, starts the servos and brings the tendons
+/// Reads the configuration (chapter 7), opens the ports, starts the servos and brings the tendons
 /// under tension. Returns when every finger has answered and holds its present pose at the configured
 /// initial stiffness. From then on GetPos is valid, and nothing moves until SendPos. Takes at most
 /// about a second for the simulated hand.
@@ -32,7 +34,7 @@ use std::ffi::{c_char, c_int};
 ///   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
 ///            configured core is not available; HandError says what to change
 ///
-/// Threads: any; one hand per process.
+/// Threads: any. sun2xp.h opens further hands.
 ///
 /// Example:
 ///
@@ -42,7 +44,7 @@ use std::ffi::{c_char, c_int};
 ///     }
 #[unsafe(no_mangle)]
 pub extern "C" fn OpenHand() -> c_int {
-    delegated("OpenHand", MEMORY_OF_HAND, || Ok(default_hand::open))
+    delegated("OpenHand", default_handle(), MEMORY_OF_HAND, || Ok(hand_table::open_default))
 }
 
 /// CloseHand - stop the hand
@@ -57,14 +59,14 @@ pub extern "C" fn OpenHand() -> c_int {
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
-///   EBUSY    in a callback of OnEvent: another thread is opening or closing the hand
+///   EBUSY    in a callback of sun2xp_on_event: another thread is opening or closing the hand
 ///
 /// Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes. Waits until the
-/// callback of OnEvent has returned, except in this callback.
+/// callback of sun2xp_on_event has returned, except in a callback.
 #[unsafe(no_mangle)]
 pub extern "C" fn CloseHand() -> c_int {
-    let close = if in_callback() { default_hand::close_in_callback } else { default_hand::close };
-    delegated_or_done_here("CloseHand", close)
+    let close = if in_callback() { hand_table::close_default_in_callback } else { hand_table::close_default };
+    delegated_or_done_here("CloseHand", default_handle(), close)
 }
 
 /// SendPos - send desired joint angles to a finger
@@ -98,10 +100,10 @@ pub extern "C" fn CloseHand() -> c_int {
 ///     SendPos(1, Pos);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendPos(i: c_int, Pos: *const f32) -> c_int {
-    guarded("SendPos", || {
+    guarded("SendPos", default_handle(), || {
         // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let joints = unsafe { load::<f32, 3>(Pos, "Pos") }?;
-        default_hand::command(|hand| hand.send_position(i, joints.map(f64::from)))
+        hand_table::command(default_handle(), |hand| hand.send_position(i, joints.map(f64::from)))
     })
 }
 
@@ -111,10 +113,10 @@ pub unsafe extern "C" fn SendPos(i: c_int, Pos: *const f32) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
     // Refusals use the name in the planner's source. The header or a compiler flag has added the D.
-    guarded("SendPos", || {
+    guarded("SendPos", default_handle(), || {
         // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let joints = unsafe { load::<f64, 3>(Pos, "Pos") }?;
-        default_hand::command(|hand| hand.send_position(i, joints))
+        hand_table::command(default_handle(), |hand| hand.send_position(i, joints))
     })
 }
 
@@ -141,7 +143,7 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 ///   EDOM     Kx is not symmetric, or has a negative eigenvalue
 ///   ERANGE   Kx is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
 ///   EIO      the finger is faulted
-///   ERANGE   Kx is too stiff for the ratio of SendDamping ("clamp" clamps the ratio instead)
+///   ERANGE   Kx is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio instead)
 ///
 /// Threads: any. Never waits for a servo. Takes about 1 us.
 ///
@@ -151,10 +153,10 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 ///     SendKx(1, Kx);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
-    guarded("SendKx", || {
+    guarded("SendKx", default_handle(), || {
         // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let rows = unsafe { load_rows(Kx, "Kx") }?;
-        default_hand::command(|hand| hand.send_stiffness(i, rows.map(|row| row.map(f64::from))))
+        hand_table::command(default_handle(), |hand| hand.send_stiffness(i, rows.map(|row| row.map(f64::from))))
     })
 }
 
@@ -164,10 +166,10 @@ pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
     // Refusals use the name in the planner's source. The header or a compiler flag has added the D.
-    guarded("SendKx", || {
+    guarded("SendKx", default_handle(), || {
         // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let rows = unsafe { load_rows(Kx, "Kx") }?;
-        default_hand::command(|hand| hand.send_stiffness(i, rows))
+        hand_table::command(default_handle(), |hand| hand.send_stiffness(i, rows))
     })
 }
 
@@ -178,8 +180,7 @@ pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
 ///   i     finger, 1 to 3
 ///   Pos   Pos[3]: measured angles of joints 0, 1, 2, rad, from the last cycle of the servo
 ///
-/// While the servo thread does not run, the angles stay those of its last cycle, and SkippedPeriods of
-/// GetStatus grows.
+/// While the servo thread does not run, the angles stay those of its last cycle.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -197,9 +198,9 @@ pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
 ///         printf("%g %g %g\n", Pos[0], Pos[1], Pos[2]);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetPos(i: c_int, Pos: *mut f32) -> c_int {
-    guarded("GetPos", || {
-        let joints =
-            non_null(Pos, "Pos", Wanted::Array(3)).and_then(|_| default_hand::with(|hand| hand.position(i)))?;
+    guarded("GetPos", default_handle(), || {
+        let joints = non_null(Pos, "Pos", Wanted::Array(3))
+            .and_then(|_| hand_table::with(default_handle(), |hand| hand.position(i)))?;
         // SAFETY: `Pos` is not null, as checked above, and by the contract in the manual it has room for three angles.
         unsafe { Pos.cast::<[f32; 3]>().write_unaligned(joints.map(|joint| joint as f32)) };
         Ok(())
@@ -212,9 +213,9 @@ pub unsafe extern "C" fn GetPos(i: c_int, Pos: *mut f32) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetPosD(i: c_int, Pos: *mut f64) -> c_int {
     // Refusals use the name in the planner's source. The header or a compiler flag has added the D.
-    guarded("GetPos", || {
-        let joints =
-            non_null(Pos, "Pos", Wanted::Array(3)).and_then(|_| default_hand::with(|hand| hand.position(i)))?;
+    guarded("GetPos", default_handle(), || {
+        let joints = non_null(Pos, "Pos", Wanted::Array(3))
+            .and_then(|_| hand_table::with(default_handle(), |hand| hand.position(i)))?;
         // SAFETY: `Pos` is not null, as checked above, and by the contract in the manual it has room for three angles.
         unsafe { Pos.cast::<[f64; 3]>().write_unaligned(joints) };
         Ok(())
@@ -233,5 +234,5 @@ pub unsafe extern "C" fn GetPosD(i: c_int, Pos: *mut f64) -> c_int {
 /// Threads: any; each has its own text. Works in a forked child too.
 #[unsafe(no_mangle)]
 pub extern "C" fn HandError() -> *const c_char {
-    uncancelled(refusal::text)
+    uncancelled(|| find(Handle::NULL).text)
 }

@@ -1,6 +1,6 @@
-//! The texts of FaultText.
+//! The texts of sun2xp_fault_text.
 
-use crate::capi::remedy_calls::RemedyCalls;
+use crate::capi::remedy_calls::{Appendix, Interface, RemedyCalls};
 use crate::finger::FaultKind;
 use std::ffi::CString;
 use std::sync::LazyLock;
@@ -9,7 +9,8 @@ use std::sync::LazyLock;
 pub(super) static TEXTS: LazyLock<Vec<CString>> = LazyLock::new(|| {
     let text = |kind: &FaultKind| {
         let row = kind.description();
-        let text = format!("{}: {}{}", row.name, row.explanation(), RemedyCalls(row.actions));
+        let calls = Appendix(RemedyCalls(row.actions, Interface::Handles));
+        let text = format!("{}: {}{calls}", row.name, row.explanation());
         // The table contains no zero byte. If it did, the text would be empty.
         CString::new(text).unwrap_or_default()
     };

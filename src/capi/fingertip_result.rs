@@ -1,24 +1,22 @@
-//! Conversion of a fingertip's state to the result of GetTip.
+//! Conversion of a fingertip's state to the result of sun2xp_tip.
 
-use crate::capi::fingertip_calls::FingerTip;
+use crate::capi::fingertip_calls::sun2xp_tip;
 use crate::hand;
 use std::ffi::c_int;
 
-impl From<hand::FingerTip> for FingerTip {
-    /// Converts everything except `Size`. [`fill`](crate::capi::memory::fill) sets `Size`, because it depends on the
-    /// room of the caller.
+impl From<hand::FingerTip> for sun2xp_tip {
+    /// Converts everything except `size`, which belongs to the caller.
     fn from(tip: hand::FingerTip) -> Self {
         Self {
-            Size: 0,
-            Felt: tip.felt as c_int, // 0 to 3
-            Tip: tip.tip,
-            Force: tip.force,
-            Tensions: tip.tensions,
-            Stiffness: tip.stiffness,
-            Contact: tip.contact,
-            Slide: tip.slide,
-            Touching: c_int::from(tip.touching),
-            Unused: 0,
+            size: 0,
+            force_directions: tip.felt as c_int, // 0 to 3
+            position: tip.tip,
+            force: tip.force,
+            tensions: tip.tensions,
+            stiffness: tip.stiffness,
+            contact_force: tip.contact,
+            slide_speed: tip.slide,
+            touching: c_int::from(tip.touching),
         }
     }
 }

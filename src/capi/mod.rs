@@ -1,39 +1,54 @@
-//! The C interface: the five calls of 1990 and later calls, on one default hand. It checks pointers, catches panics and
-//! converts refusals to errno; the hand makes all other checks. `tests/header.rs` lists the files from which
-//! `include/Sun2Xp.h` is generated.
+//! The C interface: the five calls of 1990, on one default hand, and the calls with handles. It checks pointers,
+//! catches panics and converts refusals to numbers and errno; the hand makes all other checks. From the files that
+//! `tests/header/main.rs` lists, `include/Sun2Xp.h` and `include/sun2xp.h` are generated.
 //!
 //! If several reasons apply to a call, it reports the first one in this order: forked child (EPERM), null pointer
-//! (EFAULT), no hand (ENODEV), a struct whose Size is too small (EINVAL), then the reasons that the hand finds: finger
+//! (EFAULT), no hand (ENODEV), a struct whose size is too small (EINVAL), then the reasons that the hand finds: finger
 //! number, numbers that are not finite, symmetry and eigenvalues, limits, faulted finger. The lists in the manual have
 //! the same order. A slow call checks for free memory (ENOMEM) after the check for a forked child.
 
 // A C interface needs raw pointers.
 #![allow(unsafe_code)]
 
+mod adjustment_calls;
 mod black_box_calls;
 mod boundary;
 mod calibration_calls;
 mod calls;
-mod default_events;
-mod default_hand;
+mod error_calls;
+mod error_numbers;
 mod event_calls;
 mod fault_calls;
 mod fault_texts;
+mod fingers;
 mod fingertip_calls;
 mod fingertip_result;
 mod forked;
 mod group_calls;
+mod hand_events;
+mod hand_table;
+mod handle;
 mod kinematics_calls;
+mod limits_calls;
+mod log_calls;
+mod long_operations;
 mod memory;
 mod object_calls;
+mod opening_calls;
 mod path_calls;
+mod planners_pointer;
+mod position_calls;
 mod process;
 mod recovery_calls;
 mod reflex_calls;
 mod refusal;
 mod remedy_calls;
+mod reporting;
+mod sized_struct;
 mod spring_calls;
 mod status_calls;
 mod text;
+mod thread_errors;
 mod timing_calls;
 mod touch_calls;
+mod version_calls;

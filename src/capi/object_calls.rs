@@ -1,80 +1,107 @@
-//! The exported function for the object in the simulated hand. Its doc comment is the C manual, as in `calls.rs`.
+//! The exported functions for simulated fingers and their object. Their doc comments are the C manual, as in
+//! `calls.rs`.
 
 // The exported names are those of the header.
-#![allow(non_snake_case)]
+#![allow(non_camel_case_types)]
 
 use crate::capi::boundary::guarded;
-use crate::capi::memory::{fill, size_up_to};
+use crate::capi::hand_table;
+use crate::capi::handle::{Handle, sun2xp_hand};
+use crate::capi::memory::load;
+use crate::capi::sized_struct::fill_from;
 use crate::simulated;
-use std::ffi::{c_int, c_uint};
+use std::ffi::c_int;
 
-/// Result of GetObject. Vectors are in the palm's frame.
+/// Result of sun2xp_object. Vectors are in the palm's frame.
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct ObjectState {
-    /// In: sizeof (struct ObjectState). Out: bytes written, at most that.
-    pub Size: c_uint,
+pub struct sun2xp_object {
+    /// sizeof (struct sun2xp_object), set before the call.
+    pub size: usize,
     /// Number of fingers that touch the object.
-    pub Touching: c_int,
-    /// Simulated time since OpenHand, s. It stops while the machine is too busy for the simulation.
-    pub Time: f64,
+    pub touching: c_int,
+    /// Simulated time since sun2xp_open, s. It stops while the machine is too busy for the simulation.
+    pub time: f64,
     /// Position of the middle: x, y, z, cm.
-    pub Position: [f64; 3],
+    pub position: [f64; 3],
     /// Rotation matrix from the object's frame to the palm's, row by row. At the start it is the unit matrix.
-    pub Rotation: [[f64; 3]; 3],
+    pub rotation: [[f64; 3]; 3],
     /// Velocity of the middle, cm/s.
-    pub Velocity: [f64; 3],
+    pub velocity: [f64; 3],
     /// Angular velocity, rad/s.
-    pub Spin: [f64; 3],
+    pub angular_velocity: [f64; 3],
     /// Force of each finger on the object, N: Force[0] is that of finger 1. It is the true force, without the errors of
-    /// GetTip. It is zero for a finger that does not touch the object.
-    pub Force: [[f64; 3]; 3],
+    /// sun2xp_tip. It is zero for a finger that does not touch the object.
+    pub force: [[f64; 3]; 3],
 }
 
-/// GetObject - read pose and motion of the object in the simulated hand
+/// sun2xp_object - read pose and motion of the object in the simulated hand
 ///
-///     int GetObject(struct ObjectState *Object);
-///
-///   Object   result, some milliseconds old at most; set Object->Size before the call
+///   object   result, some milliseconds old at most; set object->size before the call
 ///
 /// All simulated fingers touch one object if hand.simulated_object is configured: a ball or a box with
 /// mass, friction and gravity, on a table or not. hand.gravity is its gravity.
 ///
-/// Returns 0, or -1 with
+/// Returns 0, or a negative number with
 ///   EPERM    forked child
-///   EFAULT   Object is null
-///   ENODEV   no hand is open
-///   EINVAL   Size is too small
+///   EFAULT   object is null
+///   ENODEV   no such hand
+///   EINVAL   size is too small
 ///   ENOTSUP  no object is configured; no finger is simulated
 ///
 /// Threads: any. Never waits for a servo or for the simulation. Takes less than 1 us.
 ///
 /// Example:
 ///
-///     struct ObjectState Object;
-///     Object.Size = sizeof Object;
-///     if (GetObject(&Object) == 0)
-///         printf("z is %g cm, %d fingers touch\n", Object.Position[2], Object.Touching);
+///     struct sun2xp_object object;
+///     object.size = sizeof object;
+///     if (sun2xp_object(hand, &object) == 0)
+///         printf("z is %g cm, %d fingers touch\n", object.position[2], object.touching);
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn GetObject(Object: *mut ObjectState) -> c_int {
-    guarded("GetObject", || {
-        let least = size_up_to!(ObjectState, Force: [[f64; 3]; 3]);
-        // SAFETY: by the contract in the manual, `Object` is null or points to as many bytes as its first member gives.
-        unsafe { fill(Object, "Object", least, |hand| hand.object().map(|object| to_c(&object))) }
+pub unsafe extern "C" fn sun2xp_object(hand: *mut sun2xp_hand, object: *mut sun2xp_object) -> c_int {
+    let hand = Handle::of(hand);
+    guarded("sun2xp_object", hand, || {
+        // SAFETY: by the contract in the manual, `object` is null or points to as many bytes as its first member gives.
+        unsafe { fill_from(hand, object, "object", |hand| hand.object().map(|object| to_c(&object))) }
     })
 }
 
-/// Converts everything except `Size`. [`fill`] sets `Size`, because it depends on the room of the caller.
-fn to_c(object: &simulated::ObjectState) -> ObjectState {
+/// sun2xp_push - push the fingertip of a simulated finger
+///
+///   finger  1 to 3
+///   force   force[3]: force on the fingertip along x, y, z of the finger's frame, N. It
+///           acts until the next call; zero ends it
+///
+/// Returns 0, or a negative number with
+///   EPERM    forked child
+///   EFAULT   force is null
+///   ENODEV   no such hand
+///   EINVAL   no such finger; an entry is NaN or infinite
+///   ENOTSUP  the finger is on a real port
+///   ERANGE   a component is beyond 1000 N
+///
+/// Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sun2xp_push(hand: *mut sun2xp_hand, finger: c_int, force: *const f64) -> c_int {
+    let hand = Handle::of(hand);
+    guarded("sun2xp_push", hand, || {
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        let force = unsafe { load::<f64, 3>(force, "force") }?;
+        hand_table::command(hand, |hand| hand.push_simulated(finger, force))
+    })
+}
+
+/// Converts everything except `size`, which belongs to the caller.
+fn to_c(object: &simulated::ObjectState) -> sun2xp_object {
     let touches = |force: &&[f64; 3]| force.iter().any(|&part| part != 0.0);
-    ObjectState {
-        Size: 0,
-        Touching: object.forces.iter().filter(touches).count() as c_int, // 0 to 3
-        Time: object.time,
-        Position: object.position,
-        Rotation: object.rotation,
-        Velocity: object.velocity,
-        Spin: object.angular_velocity,
-        Force: object.forces,
+    sun2xp_object {
+        size: 0,
+        touching: object.forces.iter().filter(touches).count() as c_int, // 0 to 3
+        time: object.time,
+        position: object.position,
+        rotation: object.rotation,
+        velocity: object.velocity,
+        angular_velocity: object.angular_velocity,
+        force: object.forces,
     }
 }

@@ -3,27 +3,53 @@
 use crate::finger::Action;
 use std::fmt::{self, Display, Formatter};
 
-/// Displays the calls for these actions in parentheses, as an appendix to a text that describes the actions in words.
-/// Displays nothing if there are no actions.
-pub(super) struct RemedyCalls<'a>(pub &'a [Action]);
+/// The interface to which a call belongs. Remedies name calls of the same interface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Interface {
+    /// The five calls of 1990.
+    Of1990,
+    /// The calls with handles.
+    Handles,
+}
+
+impl Interface {
+    pub fn of(call: &str) -> Self {
+        if call.starts_with("sun2xp_") { Self::Handles } else { Self::Of1990 }
+    }
+}
+
+/// Displays the calls for these actions, separated by commas.
+pub(super) struct RemedyCalls<'a>(pub &'a [Action], pub Interface);
 
 impl Display for RemedyCalls<'_> {
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
         for (index, &action) in self.0.iter().enumerate() {
-            write!(formatter, "{}{}", if index == 0 { " (" } else { ", " }, call(action))?;
+            write!(formatter, "{}{}", if index == 0 { "" } else { ", " }, call(action, self.1))?;
         }
-        formatter.write_str(if self.0.is_empty() { "" } else { ")" })
+        Ok(())
     }
 }
 
-fn call(action: Action) -> &'static str {
-    match action {
-        Action::Open => "OpenHand",
-        Action::Close => "CloseHand",
-        Action::Recover => "RecoverHand",
-        Action::Zero => "ZeroFinger",
-        Action::Stop => "StopHand",
-        Action::QueryStatus => "GetStatus",
+/// Displays the calls for these actions in parentheses, as an appendix to a text that describes the actions in words.
+/// Displays nothing if there are no actions.
+pub(super) struct Appendix<'a>(pub RemedyCalls<'a>);
+
+impl Display for Appendix<'_> {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        if self.0.0.is_empty() { Ok(()) } else { write!(formatter, " ({})", self.0) }
+    }
+}
+
+fn call(action: Action, interface: Interface) -> &'static str {
+    match (action, interface) {
+        (Action::Open, Interface::Of1990) => "OpenHand",
+        (Action::Open, Interface::Handles) => "sun2xp_open",
+        (Action::Close, Interface::Of1990) => "CloseHand",
+        (Action::Close, Interface::Handles) => "sun2xp_close",
+        (Action::Recover, _) => "sun2xp_recover",
+        (Action::Zero, _) => "sun2xp_zero",
+        (Action::Stop, _) => "sun2xp_stop",
+        (Action::QueryStatus, _) => "sun2xp_status",
     }
 }
 
@@ -33,7 +59,10 @@ mod tests {
 
     #[test]
     fn calls_follow_in_parentheses_in_their_order() {
-        assert_eq!(RemedyCalls(&[]).to_string(), "");
-        assert_eq!(RemedyCalls(&[Action::Recover, Action::Zero]).to_string(), " (RecoverHand, ZeroFinger)");
+        let appendix = |actions, interface| Appendix(RemedyCalls(actions, interface)).to_string();
+        assert_eq!(appendix(&[], Interface::Handles), "");
+        let actions = &[Action::Recover, Action::Close];
+        assert_eq!(appendix(actions, Interface::of("GetPos")), " (sun2xp_recover, CloseHand)");
+        assert_eq!(appendix(actions, Interface::of("sun2xp_tip")), " (sun2xp_recover, sun2xp_close)");
     }
 }

@@ -2,77 +2,81 @@
 //! `calls.rs`.
 
 // The exported names are those of the header.
-#![allow(non_snake_case)]
+#![allow(non_camel_case_types)]
 
 use crate::capi::boundary::guarded;
-use crate::capi::default_hand;
+use crate::capi::hand_table;
+use crate::capi::handle::{Handle, sun2xp_hand};
 use crate::capi::memory::{load, load_rows};
 use std::ffi::c_int;
 
-/// SendJointStiffness - make the joints of a finger springs
+/// sun2xp_send_joint_stiffness - make the joints of a finger springs
 ///
-///     int SendJointStiffness(int i, const double *K);
+///   finger   1 to 3
+///   stiffness   stiffness[3][3] or K[9], row by row: entry [row][column] is the torque of joint row for a
+///               deflection of joint column from its set point, N cm/rad
 ///
-///   i     finger, 1 to 3
-///   K     K[3][3] or K[9], row by row: entry [row][column] is the torque of joint row for a deflection
-///         of joint column from its set point, N cm/rad. Always double
-///
-/// The torque of the joints is K (Pos - p), with the desired angles Pos and the measured angles p of
-/// joints 0, 1 and 2. K takes effect like Kx, without a jump in torque: 95 % of the change has taken
-/// effect after 50 ms. It replaces the Kx or contact that was sent last, and a later SendKx,
-/// SendContact, or Kx of SendGroup or SendPath replaces it. The torque of SendJointTorque stays. K must
-/// be symmetric and must have no negative eigenvalue, as for SendKx. It may be zero.
+/// The torque of the joints is K (Pos - p), with the desired angles Pos and the measured angles p of joints
+/// 0, 1 and 2. K takes effect like Kx, without a jump in torque: 95 % of the change has taken effect after
+/// 50 ms. It replaces the Kx or contact that was sent last, and a later sun2xp_send_stiffness,
+/// sun2xp_send_contact, or Kx of sun2xp_send_group or sun2xp_send_path replaces it. The torque of
+/// sun2xp_send_joint_torque stays. K must be symmetric and must have no negative eigenvalue, as for
+/// sun2xp_send_stiffness. It may be zero.
 ///
 /// The largest eigenvalue of K may be at most the bound of Kx times l2 l2, where l2 is the length of the
 /// last link: by default 96 N cm/rad at 1000 Hz and above, and 80 N cm/rad below. This is the stiffness
 /// that a Kx at its bound gives joint 2 in every pose.
 ///
-/// Returns 0, or -1 with
+/// Returns 0, or a negative number with
 ///   EPERM    forked child
-///   EFAULT   K is null
-///   ENODEV   no hand is open
+///   EFAULT   stiffness is null
+///   ENODEV   no such hand
 ///   EINVAL   no such finger; an entry is NaN or infinite
-///   EDOM     K is not symmetric, or has a negative eigenvalue
-///   ERANGE   K is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
+///   EDOM     stiffness is not symmetric, or has a negative eigenvalue
+///   ERANGE   stiffness is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
 ///   EIO      the finger is faulted
-///   ERANGE   K is too stiff for the ratio of SendDamping ("clamp" clamps the ratio instead)
+///   ERANGE   stiffness is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio
+///            instead)
 ///
 /// Threads: any. Never waits for a servo. Takes a few us.
 ///
 /// Example:
 ///
-///     double K[3][3] = {{80, 0, 0}, {0, 80, 0}, {0, 0, 50}};
-///     SendJointStiffness(1, &K[0][0]);
+///     double stiffness[3][3] = {{80, 0, 0}, {0, 80, 0}, {0, 0, 50}};
+///     sun2xp_send_joint_stiffness(hand, 1, &stiffness[0][0]);
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn SendJointStiffness(i: c_int, K: *const f64) -> c_int {
-    guarded("SendJointStiffness", || {
-        // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
-        let rows = unsafe { load_rows(K, "K") }?;
-        default_hand::command(|hand| hand.send_joint_stiffness(i, rows))
+pub unsafe extern "C" fn sun2xp_send_joint_stiffness(
+    hand: *mut sun2xp_hand,
+    finger: c_int,
+    stiffness: *const f64,
+) -> c_int {
+    let hand = Handle::of(hand);
+    guarded("sun2xp_send_joint_stiffness", hand, || {
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        let rows = unsafe { load_rows(stiffness, "stiffness") }?;
+        hand_table::command(hand, |hand| hand.send_joint_stiffness(finger, rows))
     })
 }
 
-/// SendJointTorque - add a constant torque to the joints of a finger
+/// sun2xp_send_joint_torque - add a constant torque to the joints of a finger
 ///
-///     int SendJointTorque(int i, const double *Torque);
-///
-///   i        finger, 1 to 3
-///   Torque   Torque[3]: torque of joints 0, 1, 2, N cm; positive torques increase the angles. Always
+///   finger   1 to 3
+///   torque   torque[3]: torque of joints 0, 1, 2, N cm; positive torques increase the angles. Always
 ///            double
 ///
-/// The torque acts in addition to the spring of Kx, of a contact or of SendJointStiffness, until the
-/// next call replaces it; zero ends it. It takes effect like Kx, without a jump. If the stiffness is
-/// zero, the finger is controlled by torque alone: a free finger then moves to its joint limits, at a
-/// speed that only damping and friction limit. A fault, a calibration, the reactions of reflexes that
-/// hold, retract or soften the finger, and a set point that expires end the torque.
+/// The torque acts in addition to the spring of Kx, of a contact or of sun2xp_send_joint_stiffness, until
+/// the next call replaces it; zero ends it. It takes effect like Kx, without a jump. If the stiffness is
+/// zero, the finger is controlled by torque alone: a free finger then moves to its joint limits, at a speed
+/// that only damping and friction limit. A fault, a calibration, the reactions of reflexes that hold,
+/// retract or soften the finger, and a set point that expires end the torque.
 ///
 /// A torque is refused if it needs more tension than a tendon and its motor permit. If the spring, the
 /// compensation of gravity and the torque together need more, the servo scales their sum down.
 ///
-/// Returns 0, or -1 with
+/// Returns 0, or a negative number with
 ///   EPERM    forked child
-///   EFAULT   Torque is null
-///   ENODEV   no hand is open
+///   EFAULT   torque is null
+///   ENODEV   no such hand
 ///   EINVAL   no such finger; a torque is NaN or infinite
 ///   ERANGE   the tendons cannot make Torque (hand.out_of_range = "clamp" scales it instead)
 ///   EIO      the finger is faulted
@@ -81,13 +85,14 @@ pub unsafe extern "C" fn SendJointStiffness(i: c_int, K: *const f64) -> c_int {
 ///
 /// Example:
 ///
-///     double Torque[3] = {0, 3, 1.5};
-///     SendJointTorque(1, Torque);
+///     double torque[3] = {0, 3, 1.5};
+///     sun2xp_send_joint_torque(hand, 1, torque);
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn SendJointTorque(i: c_int, Torque: *const f64) -> c_int {
-    guarded("SendJointTorque", || {
-        // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
-        let torque = unsafe { load::<f64, 3>(Torque, "Torque") }?;
-        default_hand::command(|hand| hand.send_joint_torque(i, torque))
+pub unsafe extern "C" fn sun2xp_send_joint_torque(hand: *mut sun2xp_hand, finger: c_int, torque: *const f64) -> c_int {
+    let hand = Handle::of(hand);
+    guarded("sun2xp_send_joint_torque", hand, || {
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        let torque = unsafe { load::<f64, 3>(torque, "torque") }?;
+        hand_table::command(hand, |hand| hand.send_joint_torque(finger, torque))
     })
 }

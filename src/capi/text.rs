@@ -1,20 +1,17 @@
-//! The text of a refused call. It is in thread-local memory, so that a refusal allocates nothing.
+//! Texts in memory of fixed size, so that a refusal allocates nothing.
 
 use crate::model::OneLine;
 use std::ffi::c_char;
 use std::fmt::{self, Write};
 
-/// Longer texts are truncated. Texts of the library are shorter, because they abbreviate what they quote.
-const CAPACITY: usize = 2048;
-
-/// One line of text, terminated by a zero byte.
-pub(super) struct Text {
+/// One line of text, terminated by a zero byte. Longer texts are truncated.
+pub(super) struct Text<const CAPACITY: usize> {
     bytes: [u8; CAPACITY],
     /// Length of the text, bytes, without the zero byte.
     length: usize,
 }
 
-impl Text {
+impl<const CAPACITY: usize> Text<CAPACITY> {
     pub const EMPTY: Self = Self { bytes: [0; CAPACITY], length: 0 };
 
     /// Replaces the text by the formatted arguments, on one line.
@@ -36,7 +33,7 @@ impl Text {
     }
 }
 
-impl Write for Text {
+impl<const CAPACITY: usize> Write for Text<CAPACITY> {
     fn write_str(&mut self, part: &str) -> fmt::Result {
         // The last byte is reserved for the zero.
         let room = CAPACITY - 1 - self.length;
@@ -54,14 +51,16 @@ mod tests {
     use super::*;
     use std::ffi::CStr;
 
-    fn read_back(text: &Text) -> &str {
+    const CAPACITY: usize = 64;
+
+    fn read_back(text: &Text<CAPACITY>) -> &str {
         // SAFETY: the text was composed before and does not change meanwhile.
         unsafe { CStr::from_ptr(text.as_c_string()) }.to_str().expect("UTF-8")
     }
 
     #[test]
     fn a_text_is_one_line_and_replaces_the_previous_one() {
-        let mut text = Text::EMPTY;
+        let mut text = Text::<CAPACITY>::EMPTY;
         text.compose(format_args!("{}: two\nlines", "a longer text than the next"));
         assert_eq!(read_back(&text), "a longer text than the next: two\\nlines");
         text.compose(format_args!("short"));
@@ -70,7 +69,7 @@ mod tests {
 
     #[test]
     fn a_long_text_is_truncated_between_characters() {
-        let mut text = Text::EMPTY;
+        let mut text = Text::<CAPACITY>::EMPTY;
         // Each repeated character takes two bytes, and begins at an odd offset.
         text.compose(format_args!("a{}", "\u{e9}".repeat(CAPACITY)));
         assert_eq!(read_back(&text).len(), CAPACITY - 1);

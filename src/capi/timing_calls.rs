@@ -1,182 +1,183 @@
 //! The exported functions for the timing of a finger's cycles. Their doc comments are the C manual, as in `calls.rs`.
 
 // The exported names are those of the header.
-#![allow(non_snake_case)]
+#![allow(non_camel_case_types)]
 
 use crate::capi::boundary::guarded;
-use crate::capi::default_hand;
-use crate::capi::memory::{fill, size_up_to};
+use crate::capi::fingers::fingers;
+use crate::capi::hand_table;
+use crate::capi::handle::{Handle, sun2xp_hand};
+use crate::capi::sized_struct::fill_from;
 use crate::capi::status_calls::count;
 use crate::finger::Losses;
 use crate::hand::{Hand, HandError};
-use crate::model::configuration::FINGERS;
 use crate::realtime::{CycleStage, Distribution};
-use std::ffi::{c_int, c_uint, c_ulong};
+use std::ffi::{c_int, c_ulong};
 
 /// From the scheduled start of a cycle to the thread's first instruction.
-pub const TIMING_WAKE_UP: c_int = 0;
+pub const SUN2XP_STAGE_WAKE_UP: c_int = 0;
 
 /// Passing the commands of the port to the system.
-pub const TIMING_WRITE: c_int = 1;
+pub const SUN2XP_STAGE_WRITE: c_int = 1;
 
-/// From the end of TIMING_WRITE until the reply can be read: the line in both directions, and the board.
-pub const TIMING_WIRE: c_int = 2;
+/// From the end of SUN2XP_STAGE_WRITE until the reply can be read: the line in both directions, and the
+/// board.
+pub const SUN2XP_STAGE_WIRE: c_int = 2;
 
 /// Reading the reply.
-pub const TIMING_READ: c_int = 3;
+pub const SUN2XP_STAGE_READ: c_int = 3;
 
 /// Decoding the bytes to the finger's reply, including all checks.
-pub const TIMING_DECODE: c_int = 4;
+pub const SUN2XP_STAGE_DECODE: c_int = 4;
 
 /// Computing the command and the report.
-pub const TIMING_COMPUTE: c_int = 5;
+pub const SUN2XP_STAGE_COMPUTE: c_int = 5;
 
 /// From the scheduled start of a cycle to the end of its computation.
-pub const TIMING_CYCLE: c_int = 6;
+pub const SUN2XP_STAGE_CYCLE: c_int = 6;
 
-/// Age of the newest measurement when the command computed from it takes effect, by the board's clock. One period
-/// if nothing is late.
-pub const TIMING_AGE: c_int = 7;
+/// Age of the newest measurement when the command computed from it takes effect, by the board's clock. One
+/// period if nothing is late.
+pub const SUN2XP_STAGE_AGE: c_int = 7;
 
-/// Result of GetTiming. All times are in ns, accurate to 1 %, at most 4.29e9, and 0 if no cycle had
-/// the stage. All values count from OpenHand or the last ResetTiming of the finger.
+/// Result of sun2xp_timing. All times are in ns, accurate to 1 %, at most 4.29e9, and 0 if no cycle had the
+/// stage. All values count from sun2xp_open or the last sun2xp_reset_timing of the finger.
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct FingerTiming {
-    /// In: sizeof (struct FingerTiming). Out: bytes written, at most that.
-    pub Size: c_uint,
+pub struct sun2xp_timing {
+    /// sizeof (struct sun2xp_timing), set before the call.
+    pub size: usize,
     /// The requested stage.
-    pub Stage: c_int,
+    pub stage: c_int,
     /// Cycles that had this stage.
-    pub Count: c_ulong,
+    pub count: c_ulong,
     /// Shortest time of the stage.
-    pub Minimum: c_ulong,
+    pub minimum: c_ulong,
     /// Half of the cycles took no longer.
-    pub Median: c_ulong,
+    pub median: c_ulong,
     /// 99 of 100 cycles took no longer.
-    pub P99: c_ulong,
+    pub p99: c_ulong,
     /// 999 of 1000 cycles took no longer.
-    pub P999: c_ulong,
+    pub p999: c_ulong,
     /// Longest time of the stage.
-    pub Maximum: c_ulong,
-    /// All cycles of the finger. This and the members below do not depend on Stage.
-    pub Cycles: c_ulong,
+    pub maximum: c_ulong,
+    /// All cycles of the finger. This and the members below do not depend on stage.
+    pub cycles: c_ulong,
     /// Cycles that were not over when the next one was due.
-    pub Overruns: c_ulong,
+    pub overruns: c_ulong,
     /// Whole periods in which no cycle began because the previous cycle was not over or the servo thread did not run,
     /// up to the last cycle.
-    pub SkippedPeriods: c_ulong,
+    pub skipped_periods: c_ulong,
     /// Cycles without a valid reply in time.
-    pub LostReplies: c_ulong,
+    pub lost_replies: c_ulong,
     /// Replies that arrived after the end of their cycle.
-    pub LateReplies: c_ulong,
+    pub late_replies: c_ulong,
     /// Pieces of bad data on the finger's port: damaged frames, truncated frames and noise.
-    pub CorruptReplies: c_ulong,
+    pub damaged_replies: c_ulong,
     /// Replies that arrived a second time.
-    pub DuplicateReplies: c_ulong,
+    pub duplicate_replies: c_ulong,
     /// Whole frames on the finger's port that no finger expected.
-    pub ForeignFrames: c_ulong,
+    pub foreign_frames: c_ulong,
 }
 
-/// GetTiming - where the time of a finger's cycles goes
+/// sun2xp_timing - where the time of a finger's cycles goes
 ///
-///     int GetTiming(int i, int Stage, struct FingerTiming *Timing);
-///
-///   i        finger, 1 to 3
-///   Stage    TIMING_WAKE_UP to TIMING_AGE
-///   Timing   result; set Timing->Size before the call
+///   finger   1 to 3
+///   stage    SUN2XP_STAGE_WAKE_UP to SUN2XP_STAGE_AGE
+///   timing   result; set timing->size before the call
 ///
 /// Works while the servo runs, and on a faulted finger too.
 ///
-/// Returns 0, or -1 with
+/// Returns 0, or a negative number with
 ///   EPERM    forked child
-///   EFAULT   Timing is null
-///   ENODEV   no hand is open
-///   EINVAL   Size is too small; no such finger; no such Stage
+///   EFAULT   timing is null
+///   ENODEV   no such hand
+///   EINVAL   size is too small; no such finger; no such Stage
 ///
 /// Threads: any. Never waits for a servo. Takes a few us.
 ///
 /// Example:
 ///
-///     struct FingerTiming Timing;
-///     Timing.Size = sizeof Timing;
-///     if (GetTiming(1, TIMING_WIRE, &Timing) == 0)
-///         printf("%lu ns\n", Timing.P99);
+///     struct sun2xp_timing timing;
+///     timing.size = sizeof timing;
+///     if (sun2xp_timing(hand, 1, SUN2XP_STAGE_WIRE, &timing) == 0)
+///         printf("%lu ns\n", timing.p99);
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTiming) -> c_int {
-    guarded("GetTiming", || {
-        let least = size_up_to!(FingerTiming, CorruptReplies: c_ulong);
+pub unsafe extern "C" fn sun2xp_timing(
+    hand: *mut sun2xp_hand,
+    finger: c_int,
+    stage: c_int,
+    timing: *mut sun2xp_timing,
+) -> c_int {
+    let hand = Handle::of(hand);
+    guarded("sun2xp_timing", hand, || {
         let read = |hand: &Hand| {
             // Reports a wrong finger number before a wrong stage.
-            hand.report(i)?;
-            // Times are read before the losses, so that Count never exceeds Cycles.
-            let times = hand.timing(i, stage(Stage).ok_or(HandError::NoSuchStage(Stage))?)?;
-            let losses = hand.losses(i)?;
-            Ok(to_c(Stage, &times, &losses))
+            hand.report(finger)?;
+            // Times are read before the losses, so that `count` never exceeds `cycles`.
+            let times = hand.timing(finger, cycle_stage(stage).ok_or(HandError::NoSuchStage(stage))?)?;
+            let losses = hand.losses(finger)?;
+            Ok(to_c(stage, &times, &losses))
         };
-        // SAFETY: by the contract in the manual, `Timing` is null or points to as many bytes as its first member gives.
-        unsafe { fill(Timing, "Timing", least, read) }
+        // SAFETY: by the contract in the manual, `timing` is null or points to as many bytes as its first member gives.
+        unsafe { fill_from(hand, timing, "timing", read) }
     })
 }
 
-/// ResetTiming - restart the counts of GetTiming
+/// sun2xp_reset_timing - restart the counts of sun2xp_timing
 ///
-///     int ResetTiming(int i);
+///   finger   1 to 3, or SUN2XP_ALL_FINGERS
 ///
-///   i        finger, 1 to 3; 0: all
+/// The counts of sun2xp_status continue. The wake-up times of sun2xp_status restart, because they are those
+/// of sun2xp_timing.
 ///
-/// The counts of GetStatus continue. The wake-up times of GetStatus restart, because they are those of
-/// GetTiming.
-///
-/// Returns 0, or -1 with
+/// Returns 0, or a negative number with
 ///   EPERM    forked child
-///   ENODEV   no hand is open
+///   ENODEV   no such hand
 ///   EINVAL   no such finger
 ///
 /// Threads: any. Never waits for a servo.
 #[unsafe(no_mangle)]
-pub extern "C" fn ResetTiming(i: c_int) -> c_int {
-    guarded("ResetTiming", || {
-        default_hand::with(|hand| match i {
-            0 => (1..=FINGERS as c_int).try_for_each(|finger| hand.reset_timing(finger)),
-            finger => hand.reset_timing(finger),
-        })
+pub extern "C" fn sun2xp_reset_timing(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
+    let hand = Handle::of(hand);
+    guarded("sun2xp_reset_timing", hand, || {
+        hand_table::with(hand, |hand| fingers(finger).try_for_each(|finger| hand.reset_timing(finger)))
     })
 }
 
-fn stage(number: c_int) -> Option<CycleStage> {
+fn cycle_stage(number: c_int) -> Option<CycleStage> {
     match number {
-        TIMING_WAKE_UP => Some(CycleStage::WakeUp),
-        TIMING_WRITE => Some(CycleStage::Write),
-        TIMING_WIRE => Some(CycleStage::Wire),
-        TIMING_READ => Some(CycleStage::Read),
-        TIMING_DECODE => Some(CycleStage::Decode),
-        TIMING_COMPUTE => Some(CycleStage::Compute),
-        TIMING_CYCLE => Some(CycleStage::Whole),
-        TIMING_AGE => Some(CycleStage::Age),
+        SUN2XP_STAGE_WAKE_UP => Some(CycleStage::WakeUp),
+        SUN2XP_STAGE_WRITE => Some(CycleStage::Write),
+        SUN2XP_STAGE_WIRE => Some(CycleStage::Wire),
+        SUN2XP_STAGE_READ => Some(CycleStage::Read),
+        SUN2XP_STAGE_DECODE => Some(CycleStage::Decode),
+        SUN2XP_STAGE_COMPUTE => Some(CycleStage::Compute),
+        SUN2XP_STAGE_CYCLE => Some(CycleStage::Whole),
+        SUN2XP_STAGE_AGE => Some(CycleStage::Age),
         _ => None,
     }
 }
 
-/// Converts everything except `Size`. [`fill`] sets `Size`, because it depends on the room of the caller.
-fn to_c(stage: c_int, times: &Distribution, losses: &Losses) -> FingerTiming {
+/// Converts everything except `size`, which belongs to the caller.
+fn to_c(stage: c_int, times: &Distribution, losses: &Losses) -> sun2xp_timing {
     let ns = |microseconds: f64| (microseconds * 1e3).round() as c_ulong;
-    FingerTiming {
-        Size: 0,
-        Stage: stage,
-        Count: count(times.count),
-        Minimum: ns(times.minimum),
-        Median: ns(times.median),
-        P99: ns(times.p99),
-        P999: ns(times.p999),
-        Maximum: ns(times.maximum),
-        Cycles: count(losses.cycles),
-        Overruns: count(losses.overruns),
-        SkippedPeriods: count(losses.skipped_periods),
-        LostReplies: count(losses.lost_replies),
-        LateReplies: count(losses.late_replies),
-        CorruptReplies: count(losses.damaged_frames),
-        DuplicateReplies: count(losses.duplicate_replies),
-        ForeignFrames: count(losses.foreign_frames),
+    sun2xp_timing {
+        size: 0,
+        stage,
+        count: count(times.count),
+        minimum: ns(times.minimum),
+        median: ns(times.median),
+        p99: ns(times.p99),
+        p999: ns(times.p999),
+        maximum: ns(times.maximum),
+        cycles: count(losses.cycles),
+        overruns: count(losses.overruns),
+        skipped_periods: count(losses.skipped_periods),
+        lost_replies: count(losses.lost_replies),
+        late_replies: count(losses.late_replies),
+        damaged_replies: count(losses.damaged_frames),
+        duplicate_replies: count(losses.duplicate_replies),
+        foreign_frames: count(losses.foreign_frames),
     }
 }

@@ -89,6 +89,20 @@ impl Configured {
         }
     }
 
+    /// Reads and checks the text of a configuration. Fingers without a port are simulated, which is not announced.
+    ///
+    /// # Errors
+    /// Returns [`ConfigurationError::Invalid`], with line and reason, if the text is wrong.
+    pub fn from_text(text: &str) -> Result<Self, ConfigurationError> {
+        match text::parse(text) {
+            Ok((configuration, _)) => Ok(Self { configuration, file: None, ports_named: [true; FINGERS] }),
+            Err(wrong) => {
+                let file = PathBuf::from("configuration text");
+                Err(ConfigurationError::Invalid { file, line: wrong.line(text), reason: wrong.to_string() })
+            }
+        }
+    }
+
     /// Prints one line on standard error if some of these fingers are simulated although the configuration does not
     /// request it. The line names them.
     pub fn announce(&self, fingers: Fingers) {
@@ -99,6 +113,9 @@ impl Configured {
 
     fn announcement(&self, fingers: Fingers) -> Option<String> {
         let Some(file) = &self.file else {
+            if self.ports_named == [true; FINGERS] {
+                return None;
+            }
             return Some(match raised_privileges() {
                 false => {
                     "no configuration file: the hand is simulated (to use a real hand, describe it in sun2xp.toml)"

@@ -41,7 +41,7 @@ pub use period::Schedule;
 pub use response_time::{PeriodicThread, Response, response_times};
 pub use ring::{Consumer, Producer, ring};
 pub use signals::SignalsBlocked;
-pub use standard_error::print_line;
+pub use standard_error::{MessageReceiver, Severity, offer_messages_to, report};
 pub use threads::{LockedStack, Priority, RealtimeRefusals, spawn, touch_stack};
 pub use timing::{CycleStage, CycleTiming, Distribution, Histograms};
 pub use triple_buffer::{Input, Output, triple_buffer, triple_buffer_of};

@@ -5,17 +5,44 @@ use super::cancellation::NoCancellation;
 use super::signals::{SignalsBlocked, is_pending, take_back};
 use std::ffi::c_int;
 use std::io;
+use std::sync::OnceLock;
 
 /// Errors of a write that come with a signal: no process reads the pipe, or the file has reached the size limit of the
 /// process.
 const RAISING: [(c_int, c_int); 2] = [(libc::EPIPE, libc::SIGPIPE), (libc::EFBIG, libc::SIGXFSZ)];
+
+/// What a message is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// The library continues, but not as the user may expect.
+    Warning,
+    /// A call was refused.
+    Refusal,
+}
+
+/// Takes a message instead of standard error. Returns false if it does not want it.
+pub type MessageReceiver = fn(Severity, &str) -> bool;
+
+static RECEIVER: OnceLock<MessageReceiver> = OnceLock::new();
+
+/// Offers all later messages to `receiver`. The first receiver stays.
+pub fn offer_messages_to(receiver: MessageReceiver) {
+    RECEIVER.get_or_init(|| receiver);
+}
+
+/// Passes a message of one line to the receiver, or prints it.
+pub fn report(severity: Severity, text: &str) {
+    if !RECEIVER.get().is_some_and(|receiver| receiver(severity, text)) {
+        print_line(text);
+    }
+}
 
 /// Writes one line to standard error with a single system call, so that the lines of several threads do not mix.
 /// Allocates nothing. The thread is not cancelled during the write.
 ///
 /// If standard error accepts no more, the line is lost, and the process receives neither SIGPIPE nor SIGXFSZ.
 /// `eprintln!` is not used: it would panic then, and its lock could stay locked forever in a forked child.
-pub fn print_line(text: &str) {
+fn print_line(text: &str) {
     let parts = ["sun2xp: ", text, "\n"]
         .map(|part| libc::iovec { iov_base: part.as_ptr().cast_mut().cast(), iov_len: part.len() });
     let _whole = NoCancellation::begin();

@@ -8,16 +8,21 @@ use std::path::{Path, PathBuf};
 const SHARED: &str = "HandError";
 
 /// The prefixes of constants in the C header.
-const PREFIXES: [&str; 3] = ["FAULT_", "TIMING_", "FINGER_"];
+const PREFIXES: [&str; 3] = ["SUN2XP_FAULT_", "SUN2XP_STAGE_", "SUN2XP_STATE_"];
 
 /// Returns the names of the functions that `folder` exports to C.
 pub fn exported(folder: &Path) -> BTreeSet<String> {
     let texts = files(folder).into_iter().map(|file| fs::read_to_string(file).expect("a source file"));
     let names = |text: String| {
         let after = text.split("extern \"C\" fn ").skip(1).map(|rest| rest.split(['(', '<']).next().map(str::to_owned));
-        after.flatten().filter(|name| name.starts_with(char::is_uppercase) && name != SHARED).collect::<Vec<_>>()
+        after.flatten().filter(|name| name != SHARED && is_of_c(name)).collect::<Vec<_>>()
     };
     texts.flat_map(names).collect()
+}
+
+/// Other functions of the folder are not exported.
+fn is_of_c(name: &str) -> bool {
+    name.starts_with(char::is_uppercase) || name.starts_with("sun2xp_")
 }
 
 /// Returns the uses of these names, and of constants of the header, in the files of `folder` except its subfolder

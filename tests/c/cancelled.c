@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 #define HAMMERINGS 300
@@ -18,16 +19,16 @@ struct job {
     volatile int result;
 };
 
-static int zero(void) { return ZeroFinger(1); }
-static int identify(void) { return IdentifyFinger(2); }
-static int write_black_box(void) { return WriteBlackBox(3, "cancelled.jsonl"); }
-static int adjust(void) { return AdjustFinger(3, "tendon.minimum = 6"); }
+static int zero(void) { return sun2xp_zero(HAND, 1); }
+static int identify(void) { return sun2xp_identify(HAND, 2); }
+static int write_black_box(void) { return sun2xp_write_black_box(HAND, 3, "cancelled.jsonl"); }
+static int adjust(void) { return sun2xp_adjust(HAND, 3, "tendon.minimum = 6"); }
 
 /* Tries several times, because on a busy machine the board may not answer in time. */
 static int recover_finger(int finger)
 {
     int attempts = 10;
-    while (RecoverHand(finger) != 0)
+    while (sun2xp_recover(HAND, finger) != 0)
         if (--attempts == 0)
             return -1;
     return 0;
@@ -35,7 +36,7 @@ static int recover_finger(int finger)
 
 static int recover(void)
 {
-    StopHand();
+    sun2xp_stop_all();
     PAUSE_MS(50);
     return recover_finger(1);
 }
@@ -77,17 +78,17 @@ static void *hammer(void *own)
 {
     int unused;
     double Measured[3];
-    struct FingerTip Tip;
-    Tip.Size = sizeof Tip;
+    struct sun2xp_tip Tip;
+    Tip.size = sizeof Tip;
     pthread_setcanceltype(*(int *)own ? PTHREAD_CANCEL_ASYNCHRONOUS : PTHREAD_CANCEL_DEFERRED, &unused);
     for (;;) {
         SendPos(1, Pos);
         GetPos(1, Measured);
         SendKx(1, Kx);
         SendPos(1, NULL);
-        GetTip(1, &Tip);
+        sun2xp_tip(HAND, 1, &Tip);
         HandError();
-        FaultText(3);
+        sun2xp_fault_text(3);
         pthread_testcancel();
     }
     return NULL;
@@ -141,6 +142,6 @@ int main(void)
     CHECK(identifying.result == 2);
     CHECK(CloseHand() == 0);
     CHECK(pthread_join(thread, &end) == 0 && end == PTHREAD_CANCELED);
-    CHECK(identifying.result == -1);
+    CHECK(identifying.result < 0);
     return 0;
 }

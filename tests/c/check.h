@@ -17,6 +17,9 @@
         } \
     } while (0)
 
+/* The hand of the five calls of 1990, for the calls of sun2xp.h. */
+#define HAND sun2xp_default_hand()
+
 #define PAUSE_MS(Milliseconds) \
     do { \
         struct timespec span; \

@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 #define MOST 4096
@@ -112,20 +113,20 @@ static void close_own(void)
 
 static void check_fingers(int all)
 {
-    struct Fault Fault;
+    struct sun2xp_fault Fault;
     float Pos[3];
     int finger;
 
     for (finger = 1; finger <= 3; finger++) {
-        Fault.Size = sizeof Fault;
-        CHECK(GetFault(finger, &Fault) == 0);
-        printf("%d descriptors were open, finger %d: fault %d\n", takes, finger, Fault.Number);
+        Fault.size = sizeof Fault;
+        CHECK(sun2xp_fault(HAND, finger, &Fault) == 0);
+        printf("%d descriptors were open, finger %d: fault %d\n", takes, finger, Fault.number);
         if (!all) {
-            CHECK(Fault.Number == 0 && GetPos(finger, Pos) == 0);
+            CHECK(Fault.number == 0 && GetPos(finger, Pos) == 0);
             continue;
         }
         /* If the descriptors of a simulated board are closed first, the board ends and its port vanishes. */
-        CHECK(Fault.Number == FAULT_PORT_CLOSED || Fault.Number == FAULT_PORT_VANISHED);
+        CHECK(Fault.number == SUN2XP_FAULT_PORT_CLOSED || Fault.number == SUN2XP_FAULT_PORT_VANISHED);
         CHECK(GetPos(finger, Pos) == -1 && errno == EIO);
         CHECK(strstr(HandError(), "CloseHand, OpenHand") != NULL);
     }

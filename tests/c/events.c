@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 #include "refused.h"
 
@@ -18,67 +19,68 @@ static int context;
 /* Waits until this finger has settled. */
 static void wait_until_settled(int finger)
 {
-    struct Event Event;
+    struct sun2xp_event Event;
 
     do {
         memset(&Event, 0, sizeof Event);
-        Event.Size = sizeof Event;
-        CHECK(WaitEvent(&Event, PATIENCE_MS) == 1);
-        CHECK(Event.Size == sizeof Event && Event.Lost == 0);
-    } while (Event.Kind != EVENT_SETTLED || Event.Finger != finger);
-    CHECK(Event.Part == 0 && APART(Event.Values[2], Far[2]) + APART(Event.Values[2], Near[2]) < 0.3);
+        Event.size = sizeof Event;
+        CHECK(sun2xp_wait_event(HAND, &Event, PATIENCE_MS / 1000.0) == 1);
+        CHECK(Event.size == sizeof Event && Event.lost == 0);
+    } while (Event.kind != SUN2XP_EVENT_SETTLED || Event.finger != finger);
+    CHECK(Event.part == 0 && APART(Event.values[2], Far[2]) + APART(Event.values[2], Near[2]) < 0.3);
 }
 
 static void taken_in_order(void)
 {
-    struct Event Event;
-    struct FingerRecord Record;
+    struct sun2xp_event Event;
+    struct sun2xp_record Record;
     double time = 0;
     int arrived = 0;
 
     memset(&Event, 0, sizeof Event);
     CHECK(SendPos(2, Far) == 0);
     do {
-        Event.Size = sizeof Event;
-        if (NextEvent(&Event) == 0) {
+        Event.size = sizeof Event;
+        if (sun2xp_next_event(HAND, &Event) == 0) {
             PAUSE_MS(1);
             continue;
         }
-        CHECK(Event.Time >= time);
-        time = Event.Time;
-        arrived |= Event.Finger == 2 && Event.Kind == EVENT_ARRIVED;
-    } while (Event.Kind != EVENT_SETTLED || Event.Finger != 2);
+        CHECK(Event.time >= time);
+        time = Event.time;
+        arrived |= Event.finger == 2 && Event.kind == SUN2XP_EVENT_ARRIVED;
+    } while (Event.kind != SUN2XP_EVENT_SETTLED || Event.finger != 2);
     CHECK(arrived);
     /* The record of the cycle of an event is there before the event. */
-    Record.Size = sizeof Record;
-    CHECK(GetRecord(2, Event.Cycle, &Record) == 0 && Record.Cycle == Event.Cycle);
-    CHECK(NextEvent(&Event) == 0 && WaitEvent(&Event, 0) == 0 && WaitEvent(&Event, 20) == 0);
-    Event.Size = offsetof(struct Event, Values);
-    REFUSED(NextEvent(&Event), EINVAL, "Size");
+    Record.size = sizeof Record;
+    CHECK(sun2xp_record(HAND, 2, Event.cycle, &Record) == 0 && Record.cycle == Event.cycle);
+    CHECK(sun2xp_next_event(HAND, &Event) == 0 && sun2xp_wait_event(HAND, &Event, 0) == 0 &&
+        sun2xp_wait_event(HAND, &Event, 0.02) == 0);
+    Event.size = offsetof(struct sun2xp_event, values);
+    REFUSED(sun2xp_next_event(HAND, &Event), EINVAL, "size");
 }
 
-static void note(const struct Event *Event, void *Context)
+static void note(const struct sun2xp_event *Event, void *Context)
 {
     double Pos[3];
 
-    CHECK(Context == &context && Event->Size == sizeof *Event);
-    CHECK(GetPos(Event->Finger, Pos) == 0);
+    CHECK(Context == &context && Event->size == sizeof *Event);
+    CHECK(GetPos(Event->finger, Pos) == 0);
     calls++;
-    settled += Event->Kind == EVENT_SETTLED;
+    settled += Event->kind == SUN2XP_EVENT_SETTLED;
 }
 
 static void by_callback(void)
 {
     int before;
 
-    CHECK(OnEvent(note, &context) == 0);
+    CHECK(sun2xp_on_event(HAND, note, &context) == 0);
     CHECK(SendPos(1, Far) == 0);
     wait_until_settled(1);
     for (before = 0; settled == 0; before++) {
         CHECK(before < PATIENCE_MS);
         PAUSE_MS(1);
     }
-    CHECK(OnEvent(NULL, NULL) == 0);
+    CHECK(sun2xp_on_event(HAND, NULL, NULL) == 0);
     before = calls;
     CHECK(SendPos(1, Near) == 0);
     wait_until_settled(1);
@@ -88,38 +90,38 @@ static void by_callback(void)
 static void by_descriptor(void)
 {
     struct pollfd Ready;
-    struct Event Event;
+    struct sun2xp_event Event;
     int done = 0;
 
-    Ready.fd = EventDescriptor();
+    Ready.fd = sun2xp_event_descriptor(HAND);
     Ready.events = POLLIN;
-    CHECK(Ready.fd > 2 && EventDescriptor() == Ready.fd);
-    Event.Size = sizeof Event;
-    while (NextEvent(&Event) == 1)
+    CHECK(Ready.fd > 2 && sun2xp_event_descriptor(HAND) == Ready.fd);
+    Event.size = sizeof Event;
+    while (sun2xp_next_event(HAND, &Event) == 1)
         ;
     CHECK(poll(&Ready, 1, 0) == 0);
     CHECK(SendPos(3, Far) == 0);
     while (!done) {
         CHECK(poll(&Ready, 1, PATIENCE_MS) == 1 && Ready.revents == POLLIN);
-        while (NextEvent(&Event) == 1)
-            done |= Event.Kind == EVENT_SETTLED;
+        while (sun2xp_next_event(HAND, &Event) == 1)
+            done |= Event.kind == SUN2XP_EVENT_SETTLED;
     }
     CHECK(poll(&Ready, 1, 20) == 0);
 }
 
 static void in_a_child(void)
 {
-    struct Event Event;
+    struct sun2xp_event Event;
     int status;
     pid_t process = fork();
 
     CHECK(process >= 0);
     if (process == 0) {
-        Event.Size = sizeof Event;
-        REFUSED(NextEvent(&Event), EPERM, "forked");
-        REFUSED(WaitEvent(&Event, -1), EPERM, "forked");
-        REFUSED(OnEvent(note, &context), EPERM, "forked");
-        REFUSED(EventDescriptor(), EPERM, "forked");
+        Event.size = sizeof Event;
+        REFUSED(sun2xp_next_event(HAND, &Event), EPERM, "forked");
+        REFUSED(sun2xp_wait_event(HAND, &Event, -1), EPERM, "forked");
+        REFUSED(sun2xp_on_event(HAND, note, &context), EPERM, "forked");
+        REFUSED(sun2xp_event_descriptor(HAND), EPERM, "forked");
         _exit(0);
     }
     CHECK(waitpid(process, &status, 0) == process && WIFEXITED(status) && WEXITSTATUS(status) == 0);
@@ -127,22 +129,22 @@ static void in_a_child(void)
 
 static void *wait_without_limit(void *unused)
 {
-    struct Event Event;
+    struct sun2xp_event Event;
 
     (void)unused;
-    Event.Size = sizeof Event;
-    while (WaitEvent(&Event, -1) == 1)
+    Event.size = sizeof Event;
+    while (sun2xp_wait_event(HAND, &Event, -1) == 1)
         ;
     CHECK(errno == ENODEV);
     return NULL;
 }
 
-static void close_inside(const struct Event *Event, void *Context)
+static void close_inside(const struct sun2xp_event *Event, void *Context)
 {
     (void)Event;
     (void)Context;
     CHECK(CloseHand() == 0);
-    CHECK(OnEvent(NULL, NULL) == -1 && errno == ENODEV);
+    CHECK(sun2xp_on_event(HAND, NULL, NULL) < 0 && errno == ENODEV);
     closed = 1;
 }
 
@@ -158,13 +160,13 @@ int main(void)
     in_a_child();
     for (place = 0; place < 2; place++)
         CHECK(pthread_create(&waiting[place], NULL, wait_without_limit, NULL) == 0);
-    CHECK(OnEvent(note, &context) == 0);
+    CHECK(sun2xp_on_event(HAND, note, &context) == 0);
     PAUSE_MS(20);
     CHECK(CloseHand() == 0);
     for (place = 0; place < 2; place++)
         CHECK(pthread_join(waiting[place], NULL) == 0);
 
-    CHECK(OpenHand() == 0 && OnEvent(close_inside, NULL) == 0 && SendPos(1, Far) == 0);
+    CHECK(OpenHand() == 0 && sun2xp_on_event(HAND, close_inside, NULL) == 0 && SendPos(1, Far) == 0);
     for (tries = 0; !closed; tries++) {
         CHECK(tries < PATIENCE_MS);
         PAUSE_MS(1);
@@ -172,7 +174,7 @@ int main(void)
     CHECK(CloseHand() == 0);
 
     /* The exit handlers run while a callback is installed and a thread waits. */
-    CHECK(OpenHand() == 0 && OnEvent(note, &context) == 0);
+    CHECK(OpenHand() == 0 && sun2xp_on_event(HAND, note, &context) == 0);
     CHECK(pthread_create(&waiting[0], NULL, wait_without_limit, NULL) == 0);
     CHECK(SendPos(1, Far) == 0);
     PAUSE_MS(20);

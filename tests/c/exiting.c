@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 #include "refused.h"
 
@@ -26,33 +27,33 @@ static void commands_are_refused(void)
     REFUSED(OpenHand(), ESHUTDOWN, "before exit");
     REFUSED(SendPosD(1, Three), ESHUTDOWN, "before exit");
     REFUSED(SendKxD(1, Kx), ESHUTDOWN, "before exit");
-    REFUSED(SendTip(1, Three), ESHUTDOWN, "before exit");
-    REFUSED(SendContact(1, 3, Kx, NULL), ESHUTDOWN, "before exit");
-    REFUSED(SendContact(1, 2, Kx, NULL), ESHUTDOWN, "before exit");
-    REFUSED(SendDamping(1, 1.0), ESHUTDOWN, "before exit");
-    REFUSED(AdjustFinger(1, "tendon.minimum = 6"), ESHUTDOWN, "before exit");
-    REFUSED(PushFinger(1, Three), ESHUTDOWN, "before exit");
-    REFUSED(ZeroFinger(1), ESHUTDOWN, "before exit");
-    REFUSED(IdentifyFinger(1), ESHUTDOWN, "before exit");
-    REFUSED(RecoverHand(1), ESHUTDOWN, "before exit");
+    REFUSED(sun2xp_send_tip(HAND, 1, Three), ESHUTDOWN, "before exit");
+    REFUSED(sun2xp_send_contact(HAND, 1, 3, Kx, NULL), ESHUTDOWN, "before exit");
+    REFUSED(sun2xp_send_contact(HAND, 1, 2, Kx, NULL), ESHUTDOWN, "before exit");
+    REFUSED(sun2xp_send_damping(HAND, 1, 1.0), ESHUTDOWN, "before exit");
+    REFUSED(sun2xp_adjust(HAND, 1, "tendon.minimum = 6"), ESHUTDOWN, "before exit");
+    REFUSED(sun2xp_push(HAND, 1, Three), ESHUTDOWN, "before exit");
+    REFUSED(sun2xp_zero(HAND, 1), ESHUTDOWN, "before exit");
+    REFUSED(sun2xp_identify(HAND, 1), ESHUTDOWN, "before exit");
+    REFUSED(sun2xp_recover(HAND, 1), ESHUTDOWN, "before exit");
     REFUSED(SendPosD(1, (double *)NULL), EFAULT, "null");
-    CHECK(StopHand() == 0);
+    CHECK(sun2xp_stop_all() == 0);
 }
 
 static void after_the_hand_was_closed(void)
 {
     double Pos[3];
-    struct FingerStatus Status;
-    struct FingerTip Tip;
-    struct Fault Fault;
+    struct sun2xp_status Status;
+    struct sun2xp_tip Tip;
+    struct sun2xp_fault Fault;
 
-    Status.Size = sizeof Status;
-    Tip.Size = sizeof Tip;
-    Fault.Size = sizeof Fault;
-    CHECK(GetStatus(1, &Status) == 0 && Status.State == FINGER_CLOSED);
-    CHECK(GetPosD(1, Pos) == 0 && GetTip(1, &Tip) == 0);
-    CHECK(GetFault(1, &Fault) == 0 && Fault.Number == 0);
-    CHECK(WriteBlackBox(1, "exit.jsonl") == 0);
+    Status.size = sizeof Status;
+    Tip.size = sizeof Tip;
+    Fault.size = sizeof Fault;
+    CHECK(sun2xp_status(HAND, 1, &Status) == 0 && Status.state == SUN2XP_STATE_CLOSED);
+    CHECK(GetPosD(1, Pos) == 0 && sun2xp_tip(HAND, 1, &Tip) == 0);
+    CHECK(sun2xp_fault(HAND, 1, &Fault) == 0 && Fault.number == 0);
+    CHECK(sun2xp_write_black_box(HAND, 1, "exit.jsonl") == 0);
     commands_are_refused();
 
     CHECK(CloseHand() == 0);

@@ -1,7 +1,5 @@
-/* A planner whose own functions, types and numbers have the names of the library's later calls. It uses only the
-   five calls of 1990 and HandError. If the library called one of the planner's functions by mistake, the planner
-   would abort. */
-#define SUN2XP_FIVE_CALLS
+/* A planner whose own functions, types and numbers have names that a hand suggests. It uses only the five calls of 1990
+   and HandError. If the library called one of the planner's functions by mistake, the planner would abort. */
 #include "Sun2Xp.h"
 #include "check.h"
 

@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 /* A child that hangs is ended by SIGALRM after this time. */
@@ -20,12 +21,13 @@ static int in_handler;
 
 static int refuses_everything(void)
 {
-    struct FingerStatus Status;
-    Status.Size = sizeof Status;
-#define REFUSED(Call) ((errno = 0, (Call)) == -1 && errno == EPERM)
-    return REFUSED(SendPos(1, Pos)) && REFUSED(GetPos(1, Pos)) && REFUSED(GetStatus(1, &Status))
-        && REFUSED(AdjustFinger(1, "tendon.minimum = 6")) && REFUSED(WriteBlackBox(1, "child.jsonl"))
-        && REFUSED(RecoverHand(1)) && REFUSED(OpenHand()) && REFUSED(CloseHand()) && StopHand() == 0
+    struct sun2xp_status Status;
+    Status.size = sizeof Status;
+#define REFUSED(Call) ((errno = 0, (Call)) < 0 && errno == EPERM)
+    return REFUSED(SendPos(1, Pos)) && REFUSED(GetPos(1, Pos)) && REFUSED(sun2xp_status(HAND, 1, &Status))
+        && REFUSED(sun2xp_adjust(HAND, 1, "tendon.minimum = 6")) && REFUSED(sun2xp_write_black_box(HAND, 1,
+                "child.jsonl"))
+        && REFUSED(sun2xp_recover(HAND, 1)) && REFUSED(OpenHand()) && REFUSED(CloseHand()) && sun2xp_stop_all() == 0
         && strstr(HandError(), "forked") != NULL;
 }
 
@@ -57,9 +59,9 @@ int main(void)
 {
     static pid_t (*const ways[])(void) = {by_atfork_handler, by_system_call, by_fork_without_handlers};
     unsigned way;
-    struct FingerStatus Before, After;
+    struct sun2xp_status Before, After;
 
-    Before.Size = After.Size = sizeof Before;
+    Before.size = After.size = sizeof Before;
     CHECK(pthread_atfork(NULL, NULL, in_child) == 0);
     CHECK(OpenHand() == 0);
     for (way = 0; way < sizeof ways / sizeof *ways; way++) {
@@ -75,10 +77,10 @@ int main(void)
             fprintf(stderr, "way %u: status %x\n", way, (unsigned)status);
         CHECK(status == 0);
     }
-    CHECK(GetStatus(1, &Before) == 0);
+    CHECK(sun2xp_status(HAND, 1, &Before) == 0);
     PAUSE_MS(100);
-    CHECK(GetStatus(1, &After) == 0);
-    CHECK(After.State == FINGER_RUNNING && After.Cycles > Before.Cycles);
+    CHECK(sun2xp_status(HAND, 1, &After) == 0);
+    CHECK(After.state == SUN2XP_STATE_RUNNING && After.cycles > Before.cycles);
     CHECK(CloseHand() == 0);
     return 0;
 }

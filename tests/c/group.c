@@ -1,10 +1,11 @@
-/* SendGroup: all fingers of a group move, and a refused group moves none. */
+/* sun2xp_send_group: all fingers of a group move, and a refused group moves none. */
 #include <string.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 #include "refused.h"
 
-static struct { struct FingerCommand Known; unsigned char Later[32]; } Larger[3];
+static struct { struct sun2xp_set_point Known; unsigned char Later[32]; } Larger[3];
 static double Pos[3] = {0.2, 0.6, 1.1}, Far[3] = {9, 0, 0}, Tip[3] = {1.0, -6.0, 8.0};
 static double Kx[9] = {2, 0, 0, 0, 2.5, 0, 0, 0, 1.5};
 
@@ -25,45 +26,46 @@ static void arrive(int finger, const double *Wanted)
 
 int main(void)
 {
-    struct FingerCommand *One = &Larger[0].Known, *Two = &Larger[1].Known, *Three = &Larger[2].Known;
-    struct FingerTip Fingertip;
+    struct sun2xp_set_point *One = &Larger[0].Known, *Two = &Larger[1].Known, *Three = &Larger[2].Known;
+    struct sun2xp_tip Fingertip;
     double Before[3], After[3];
     int tries;
 
     CHECK(OpenHand() == 0);
     /* The commands of a later version are larger. */
-    One->Size = Two->Size = Three->Size = sizeof Larger[0];
-    One->Finger = 3;
-    One->Pos = Pos;
-    One->Kx = Kx;
-    One->Damping = 1.1;
-    Two->Finger = 1;
-    Two->Pos = Far;
-    Three->Finger = 2;
-    Three->Tip = Tip;
-    CHECK(SendGroup(0, One) == 0);
+    One->size = Two->size = Three->size = sizeof Larger[0];
+    One->finger = 3;
+    One->position = Pos;
+    One->stiffness = Kx;
+    One->damping = 1.1;
+    Two->finger = 1;
+    Two->position = Far;
+    Three->finger = 2;
+    Three->tip = Tip;
+    CHECK(sun2xp_send_group(HAND, 0, One) == 0);
     CHECK(GetPos(3, Before) == 0);
-    REFUSED(SendGroup(3, One), ERANGE, "limits");
-    REFUSED(SendGroup(4, One), EINVAL, "0 to 3");
-    REFUSED(SendGroup(-1, One), EINVAL, "-1");
+    REFUSED(sun2xp_send_group(HAND, 3, One), ERANGE, "limits");
+    REFUSED(sun2xp_send_group(HAND, 4, One), EINVAL, "0 to 3");
+    REFUSED(sun2xp_send_group(HAND, -1, One), EINVAL, "-1");
     PAUSE_MS(300);
     CHECK(GetPos(3, After) == 0);
     CHECK(APART(Before[0], After[0]) + APART(Before[1], After[1]) + APART(Before[2], After[2]) < 0.01);
-    Two->Pos = Pos;
-    CHECK(SendGroup(3, One) == 0);
+    Two->position = Pos;
+    CHECK(sun2xp_send_group(HAND, 3, One) == 0);
     arrive(1, Pos);
     arrive(3, Pos);
-    Fingertip.Size = sizeof Fingertip;
+    Fingertip.size = sizeof Fingertip;
     for (tries = 0; ; tries++) {
-        CHECK(GetTip(2, &Fingertip) == 0);
-        if (APART(Fingertip.Tip[0], 1.0) + APART(Fingertip.Tip[1], -6.0) + APART(Fingertip.Tip[2], 8.0) < 0.3)
+        CHECK(sun2xp_tip(HAND, 2, &Fingertip) == 0);
+        if (APART(Fingertip.position[0], 1.0) + APART(Fingertip.position[1], -6.0) + APART(Fingertip.position[2],
+                8.0) < 0.3)
             break;
         CHECK(tries < 500);
         PAUSE_MS(20);
     }
-    CHECK(GetTip(3, &Fingertip) == 0);
-    CHECK(APART(Fingertip.Stiffness[1][1], 2.5) < 0.01);
-    REFUSED(SendDamping(3, 99), ERANGE, "99");
+    CHECK(sun2xp_tip(HAND, 3, &Fingertip) == 0);
+    CHECK(APART(Fingertip.stiffness[1][1], 2.5) < 0.01);
+    REFUSED(sun2xp_send_damping(HAND, 3, 99), ERANGE, "99");
     CHECK(CloseHand() == 0);
     return 0;
 }

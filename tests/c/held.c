@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 /* The thread number of the servo of finger 1. */
@@ -45,18 +46,18 @@ static void hold(int thread, int held, int go)
     _exit(ptrace(PTRACE_DETACH, thread, NULL, NULL) == 0 ? 0 : 2);
 }
 
-static struct FingerStatus look(void)
+static struct sun2xp_status look(void)
 {
-    struct FingerStatus Status;
+    struct sun2xp_status Status;
 
-    Status.Size = sizeof Status;
-    CHECK(GetStatus(1, &Status) == 0);
+    Status.size = sizeof Status;
+    CHECK(sun2xp_status(HAND, 1, &Status) == 0);
     return Status;
 }
 
 int main(void)
 {
-    struct FingerStatus Before, Held, Later;
+    struct sun2xp_status Before, Held, Later;
     int thread, status, to_child[2], to_parent[2];
     pid_t child;
     char byte;
@@ -79,19 +80,19 @@ int main(void)
     Before = look();
     PAUSE_MS(500);
     Held = look();
-    CHECK(Held.Cycles == Before.Cycles);
-    CHECK(Held.SkippedPeriods >= Before.SkippedPeriods + 490);
-    CHECK(Held.MeasuredRate < 0.8 * Before.MeasuredRate);
+    CHECK(Held.cycles == Before.cycles);
+    CHECK(Held.skipped_periods >= Before.skipped_periods + 490);
+    CHECK(Held.measured_rate < 0.8 * Before.measured_rate);
     PAUSE_MS(500);
-    CHECK(look().SkippedPeriods >= Held.SkippedPeriods + 490);
+    CHECK(look().skipped_periods >= Held.skipped_periods + 490);
     Held = look();
     CHECK(write(to_child[1], &byte, 1) == 1);
     CHECK(waitpid(child, &status, 0) == child && status == 0);
     PAUSE_MS(100);
     Later = look();
     /* The periods that were skipped must be counted only once. */
-    CHECK(Later.Cycles > Held.Cycles);
-    CHECK(Later.SkippedPeriods >= Held.SkippedPeriods);
-    CHECK(Later.SkippedPeriods + Later.Cycles < Held.SkippedPeriods + Held.Cycles + 2000);
+    CHECK(Later.cycles > Held.cycles);
+    CHECK(Later.skipped_periods >= Held.skipped_periods);
+    CHECK(Later.skipped_periods + Later.cycles < Held.skipped_periods + Held.cycles + 2000);
     return CloseHand();
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/time.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 static sigjmp_buf out;
@@ -30,8 +31,8 @@ static int jumped_out_of(int (*call)(void), long microseconds)
     return 0;
 }
 
-static int zero(void) { return ZeroFinger(1); }
-static int write_black_box(void) { return WriteBlackBox(1, "jumped.jsonl"); }
+static int zero(void) { return sun2xp_zero(HAND, 1); }
+static int write_black_box(void) { return sun2xp_write_black_box(HAND, 1, "jumped.jsonl"); }
 
 int main(void)
 {
@@ -51,10 +52,10 @@ int main(void)
 
     CHECK(OpenHand() == 0);
     CHECK(jumped_out_of(zero, 100000) == 1);
-    CHECK(ZeroFinger(1) == -1 && errno == EBUSY);
+    CHECK(sun2xp_zero(HAND, 1) < 0 && errno == EBUSY);
     for (round = 0; round < 50; round++)
         jumped_out_of(write_black_box, 100 + 500 * round);
-    while (ZeroFinger(1) != 0) {
+    while (sun2xp_zero(HAND, 1) != 0) {
         /* Until the values that the first call found are in force, EBUSY is the only errno. */
         CHECK(errno == EBUSY);
         PAUSE_MS(1);

@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 #include "refused.h"
 
@@ -137,7 +138,7 @@ static void refuse_the_thread_of_a_call(void)
     CHECK(OpenHand() == 0);
     threads = 0;
     refused_thread = 1;
-    REFUSED(ZeroFinger(1), EAGAIN, "ulimit -u");
+    REFUSED(sun2xp_zero(HAND, 1), EAGAIN, "ulimit -u");
     threads = 0;
     CHECK(CloseHand() == 0);
     CHECK(threads == 1);

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 #define OPENINGS 50
@@ -29,21 +30,21 @@ static int unlocks;
 
 static void *open_and_close(void *unused)
 {
-    struct FingerStatus Status;
+    struct sun2xp_status Status;
     char *own = malloc(1000);
-    Status.Size = sizeof Status;
+    Status.size = sizeof Status;
     CHECK(own != NULL);
     CHECK(OpenHand() == 0);
-    CHECK(GetStatus(1, &Status) == 0);
+    CHECK(sun2xp_status(HAND, 1, &Status) == 0);
     /* If nothing could be locked, this program would prove nothing. */
-    CHECK(Status.MemoryLocked == 1);
+    CHECK(Status.memory_locked == 1);
     CHECK(locked() > 100);
     if (locked() > most)
         most = locked();
     if (unlocks) {
         /* MemoryLocked says what OpenHand has done. */
         CHECK(munlockall() == 0 && locked() == 0);
-        CHECK(GetStatus(1, &Status) == 0 && Status.MemoryLocked == 1);
+        CHECK(sun2xp_status(HAND, 1, &Status) == 0 && Status.memory_locked == 1);
     }
     CHECK(CloseHand() == 0);
     free(own);

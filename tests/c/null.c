@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 /* CHECK would turn the expanded call into a string that is longer than C89 guarantees. */
@@ -11,7 +12,7 @@
     do { \
         errno = 0; \
         result = (Call); \
-        CHECK(result == -1 && errno == EFAULT); \
+        CHECK(result < 0 && errno == EFAULT); \
         CHECK(strcmp(HandError(), Text) == 0); \
     } while (0)
 
@@ -30,13 +31,18 @@ int main(void)
     REFUSED(GetPos(1, NULL), "GetPos: Pos is a null pointer: pass an array of 3 numbers");
     REFUSED(GetPos(1, 0), "GetPos: Pos is a null pointer: pass an array of 3 numbers");
     REFUSED(GetPos(1, (double *)NULL), "GetPos: Pos is a null pointer: pass an array of 3 numbers");
-    REFUSED(GetStatus(1, NULL), "GetStatus: Status is a null pointer: pass the address of a struct FingerStatus");
-    REFUSED(GetFault(1, NULL), "GetFault: Fault is a null pointer: pass the address of a struct Fault");
-    REFUSED(GetRecord(1, 0, NULL), "GetRecord: Record is a null pointer: pass the address of a struct FingerRecord");
-    REFUSED(WriteBlackBox(1, NULL), "WriteBlackBox: Path is a null pointer: pass the name of a file");
-    REFUSED(AdjustFinger(1, NULL), "AdjustFinger: Keys is a null pointer: pass a text");
-    REFUSED(SendContact(1, 3, NULL, NULL), "SendContact: K is a null pointer: pass the array of the matrix");
-    REFUSED(PushFinger(1, NULL), "PushFinger: Force is a null pointer: pass an array of 3 numbers");
+    REFUSED(sun2xp_status(HAND, 1, NULL),
+            "sun2xp_status: status is a null pointer: pass the address of a struct sun2xp_status");
+    REFUSED(sun2xp_fault(HAND, 1, NULL),
+            "sun2xp_fault: fault is a null pointer: pass the address of a struct sun2xp_fault");
+    REFUSED(sun2xp_record(HAND, 1, 0, NULL),
+            "sun2xp_record: record is a null pointer: pass the address of a struct sun2xp_record");
+    REFUSED(sun2xp_write_black_box(HAND, 1, NULL),
+            "sun2xp_write_black_box: path is a null pointer: pass the name of a file");
+    REFUSED(sun2xp_adjust(HAND, 1, NULL), "sun2xp_adjust: keys is a null pointer: pass a text");
+    REFUSED(sun2xp_send_contact(HAND, 1, 3, NULL, NULL),
+            "sun2xp_send_contact: stiffness is a null pointer: pass the array of the matrix");
+    REFUSED(sun2xp_push(HAND, 1, NULL), "sun2xp_push: force is a null pointer: pass an array of 3 numbers");
     CHECK(CloseHand() == 0);
     return 0;
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 #include "order_refused.h"
 
@@ -12,18 +13,19 @@ static double NoNormal[3], NanNormal[3], Normal[3] = {0, -1, 0};
 static double NanPos[3] = {9, 0.5, 0}, FarPos[3] = {9, 0.5, 0.9}, Pos[3] = {0, 0.5, 0.9};
 static double NanTip[3] = {99, 0, 0}, FarTip[3] = {99, 0, 0}, Tip[3] = {0, -6, 8};
 static double NanForce[3] = {1e4, 0, 0}, StrongForce[3] = {1e4, 0, 0}, Force[3];
-static struct FingerStatus Status;
-static struct FingerTiming Timing;
-static struct FingerTip Fingertip;
-static struct ObjectState Object;
-static struct FingerRecord Record;
-static struct FingerCommand Command[2];
-static struct JointTorques Torques;
-static struct PalmPose Pose;
-static int Fingers[1] = {9};
+static struct sun2xp_status Status;
+static struct sun2xp_timing Timing;
+static struct sun2xp_tip Fingertip;
+static struct sun2xp_object Object;
+static struct sun2xp_record Record;
+static struct sun2xp_set_point Command[2];
+static struct sun2xp_joint_torques Torques;
+static struct sun2xp_palm_pose Pose;
+static struct sun2xp_limits Limits;
 static double J[9];
-static struct Fault Fault;
-static struct Event Event;
+static sun2xp_hand *Other;
+static struct sun2xp_fault Fault;
+static struct sun2xp_event Event;
 
 static void make_arguments(void)
 {
@@ -50,112 +52,37 @@ static double *three(double K[4][4])
 
 #include "order_paths.h"
 
-static void null_pointers(void)
-{
-    REFUSED("SendPos", SendPos(9, NULL), "Pos");
-    REFUSED("SendKx", SendKx(9, NULL), "Kx");
-    REFUSED("GetPos", GetPos(9, NULL), "Pos");
-    REFUSED("GetStatus", GetStatus(9, NULL), "Status");
-    REFUSED("GetTiming", GetTiming(9, 99, NULL), "Timing");
-    REFUSED("SendTip", SendTip(9, NULL), "Tip");
-    REFUSED("GetTip", GetTip(9, NULL), "Tip");
-    REFUSED("SendContact", SendContact(9, 99, NULL, NULL), "K is");
-    REFUSED("SendContact", SendContact(9, 4, Nan[0], NULL), "Normal");
-    REFUSED("SendJointStiffness", SendJointStiffness(9, NULL), "K is");
-    REFUSED("SendJointTorque", SendJointTorque(9, NULL), "Torque");
-    REFUSED("SendGroup", SendGroup(9, NULL), "Commands");
-    REFUSED("GetObject", GetObject(NULL), "Object");
-    REFUSED("WaitFingers", WaitFingers(9, NULL, 9, NAN), "Fingers");
-    REFUSED("GetJacobian", GetJacobian(9, NanPos, NULL), "J is");
-    REFUSED("FindTip", FindTip(9, NULL, Tip), "Pos");
-    REFUSED("FindTip", FindTip(9, NanPos, NULL), "Tip");
-    REFUSED("FindPos", FindPos(9, NULL, Pos), "Tip");
-    REFUSED("GetJointTorques", GetJointTorques(9, NULL), "Torques");
-    REFUSED("GetPalmPose", GetPalmPose(9, NULL), "Pose");
-    REFUSED("SendPath", SendPath(9, 999, NULL, NAN), "Poses");
-    REFUSED("SendPosFor", SendPosFor(9, NULL, NAN), "Pos");
-    REFUSED("AdjustFinger", AdjustFinger(9, NULL), "Keys");
-    REFUSED("SetGravity", SetGravity(NULL), "Gravity");
-    REFUSED("PushFinger", PushFinger(9, NULL), "Force");
-    REFUSED("GetRecord", GetRecord(9, 99, NULL), "Record");
-    REFUSED("WriteBlackBox", WriteBlackBox(9, NULL), "Path");
-    REFUSED("GetFault", GetFault(9, NULL), "Fault");
-    REFUSED("GetTouch", GetTouch(9, 9, NULL), "Touch");
-    REFUSED("InstallReflex", InstallReflex(9, NULL), "Reflex");
-    REFUSED("NextEvent", NextEvent(NULL), "Event");
-    REFUSED("WaitEvent", WaitEvent(NULL, 0), "Event");
-}
-
-static void without_hand(void)
-{
-    REFUSED("SendPos", SendPos(9, NanPos), "OpenHand");
-    REFUSED("SendKx", SendKx(9, three(Nan)), "OpenHand");
-    REFUSED("GetPos", GetPos(9, Pos), "OpenHand");
-    REFUSED("GetStatus", GetStatus(9, &Status), "OpenHand");
-    REFUSED("GetTiming", GetTiming(9, 99, &Timing), "OpenHand");
-    REFUSED("ResetTiming", ResetTiming(9), "OpenHand");
-    REFUSED("SendTip", SendTip(9, NanTip), "OpenHand");
-    REFUSED("GetTip", GetTip(9, &Fingertip), "OpenHand");
-    REFUSED("SendContact", SendContact(9, 99, Nan[0], NoNormal), "OpenHand");
-    REFUSED("SendDamping", SendDamping(9, NAN), "OpenHand");
-    REFUSED("SendJointStiffness", SendJointStiffness(9, three(Nan)), "OpenHand");
-    REFUSED("SendJointTorque", SendJointTorque(9, NanForce), "OpenHand");
-    REFUSED("SendGroup", SendGroup(9, Command), "OpenHand");
-    REFUSED("GetObject", GetObject(&Object), "OpenHand");
-    REFUSED("WaitFingers", WaitFingers(1, Fingers, 9, NAN), "OpenHand");
-    REFUSED("GetJacobian", GetJacobian(9, NanPos, J), "OpenHand");
-    REFUSED("FindTip", FindTip(9, NanPos, Tip), "OpenHand");
-    REFUSED("FindPos", FindPos(9, NanTip, Pos), "OpenHand");
-    REFUSED("GetJointTorques", GetJointTorques(9, &Torques), "OpenHand");
-    REFUSED("GetPalmPose", GetPalmPose(9, &Pose), "OpenHand");
-    REFUSED("SendPath", SendPath(9, 999, Path, NAN), "OpenHand");
-    REFUSED("SendPosFor", SendPosFor(9, NanPos, NAN), "OpenHand");
-    REFUSED("AdjustFinger", AdjustFinger(9, "="), "OpenHand");
-    REFUSED("PushFinger", PushFinger(9, NanForce), "OpenHand");
-    REFUSED("GetRecord", GetRecord(9, 99, &Record), "OpenHand");
-    REFUSED("WriteBlackBox", WriteBlackBox(9, "no/such/folder"), "OpenHand");
-    REFUSED("ZeroFinger", ZeroFinger(9), "OpenHand");
-    REFUSED("GetFault", GetFault(9, &Fault), "OpenHand");
-    REFUSED("RecoverHand", RecoverHand(9), "OpenHand");
-    REFUSED("NextEvent", NextEvent(&Event), "OpenHand");
-    REFUSED("WaitEvent", WaitEvent(&Event, -1), "OpenHand");
-    REFUSED("OnEvent", OnEvent(NULL, NULL), "OpenHand");
-    REFUSED("EventDescriptor", EventDescriptor(), "OpenHand");
-    REFUSED("StopFinger", StopFinger(9), "OpenHand");
-    REFUSED("GetTouch", GetTouch(9, 9, &Touch), "OpenHand");
-    REFUSED("TareTouch", TareTouch(9), "OpenHand");
-    REFUSED("InstallReflex", InstallReflex(9, &Rule), "OpenHand");
-    REFUSED("RemoveReflex", RemoveReflex(9, 9), "OpenHand");
-    REFUSED("SetGravity", SetGravity(NanForce), "OpenHand");
-}
+#include "order_handles.h"
 
 static void small_structs(void)
 {
-    REFUSED("GetStatus", GetStatus(9, &Status), "Size");
-    REFUSED("GetTiming", GetTiming(9, 99, &Timing), "Size");
-    REFUSED("GetTip", GetTip(9, &Fingertip), "Size");
-    REFUSED("GetRecord", GetRecord(9, 99, &Record), "Size");
-    REFUSED("GetFault", GetFault(9, &Fault), "Size");
-    REFUSED("GetObject", GetObject(&Object), "Size");
-    Object.Size = sizeof Object;
-    REFUSED("GetObject", GetObject(&Object), "no simulated object");
-    REFUSED("SendGroup", SendGroup(1, Command), "Size");
-    REFUSED("NextEvent", NextEvent(&Event), "Size");
-    REFUSED("GetTouch", GetTouch(9, 9, &Touch), "Size");
-    REFUSED("InstallReflex", InstallReflex(9, &Rule), "Size");
-    REFUSED("WaitEvent", WaitEvent(&Event, -1), "Size");
-    REFUSED("GetJointTorques", GetJointTorques(9, &Torques), "Size");
-    REFUSED("GetPalmPose", GetPalmPose(9, &Pose), "Size");
-    Torques.Size = sizeof Torques;
-    Pose.Size = sizeof Pose;
-    REFUSED("SendPath", SendPath(9, 2, Path, NAN), "Size");
-    Path[0].Size = Path[1].Size = sizeof Path[0];
-    Command[0].Size = Command[1].Size = sizeof Command[0];
-    Status.Size = sizeof Status;
-    Timing.Size = sizeof Timing;
-    Fingertip.Size = sizeof Fingertip;
-    Record.Size = sizeof Record;
-    Fault.Size = sizeof Fault;
+    REFUSED("sun2xp_status", sun2xp_status(HAND, 9, &Status), "size");
+    REFUSED("sun2xp_timing", sun2xp_timing(HAND, 9, 99, &Timing), "size");
+    REFUSED("sun2xp_tip", sun2xp_tip(HAND, 9, &Fingertip), "size");
+    REFUSED("sun2xp_record", sun2xp_record(HAND, 9, 99, &Record), "size");
+    REFUSED("sun2xp_fault", sun2xp_fault(HAND, 9, &Fault), "size");
+    REFUSED("sun2xp_object", sun2xp_object(HAND, &Object), "size");
+    Object.size = sizeof Object;
+    REFUSED("sun2xp_object", sun2xp_object(HAND, &Object), "no simulated object");
+    REFUSED("sun2xp_send_group", sun2xp_send_group(HAND, 1, Command), "size");
+    REFUSED("sun2xp_next_event", sun2xp_next_event(HAND, &Event), "size");
+    REFUSED("sun2xp_touch", sun2xp_touch(HAND, 9, 9, &Touch), "size");
+    REFUSED("sun2xp_install_reflex", sun2xp_install_reflex(HAND, 9, &Rule), "size");
+    REFUSED("sun2xp_wait_event", sun2xp_wait_event(HAND, &Event, -1), "size");
+    REFUSED("sun2xp_joint_torques", sun2xp_joint_torques(HAND, 9, &Torques), "size");
+    REFUSED("sun2xp_palm_pose", sun2xp_palm_pose(HAND, 9, &Pose), "size");
+    REFUSED("sun2xp_limits", sun2xp_limits(HAND, 9, &Limits), "size");
+    Limits.size = sizeof Limits;
+    Torques.size = sizeof Torques;
+    Pose.size = sizeof Pose;
+    REFUSED("sun2xp_send_path", sun2xp_send_path(HAND, 9, 2, Path, NAN), "size");
+    Path[0].size = Path[1].size = sizeof Path[0];
+    Command[0].size = Command[1].size = sizeof Command[0];
+    Status.size = sizeof Status;
+    Timing.size = sizeof Timing;
+    Fingertip.size = sizeof Fingertip;
+    Record.size = sizeof Record;
+    Fault.size = sizeof Fault;
 }
 
 #define NO_FINGER "1, 2 and 3"
@@ -165,39 +92,42 @@ static void no_such_finger(void)
     REFUSED("SendPos", SendPos(9, NanPos), NO_FINGER);
     REFUSED("SendKx", SendKx(9, three(Nan)), NO_FINGER);
     REFUSED("GetPos", GetPos(9, Pos), NO_FINGER);
-    REFUSED("GetStatus", GetStatus(9, &Status), NO_FINGER);
-    REFUSED("GetTiming", GetTiming(9, 99, &Timing), NO_FINGER);
-    REFUSED("ResetTiming", ResetTiming(9), NO_FINGER);
-    REFUSED("SendTip", SendTip(9, NanTip), NO_FINGER);
-    REFUSED("GetTip", GetTip(9, &Fingertip), NO_FINGER);
-    REFUSED("SendContact", SendContact(9, 99, Nan[0], NoNormal), NO_FINGER);
-    REFUSED("SendDamping", SendDamping(9, NAN), NO_FINGER);
-    REFUSED("SendJointStiffness", SendJointStiffness(9, three(Nan)), NO_FINGER);
-    REFUSED("SendJointTorque", SendJointTorque(9, NanForce), NO_FINGER);
-    Command[0].Finger = Command[1].Finger = 9;
-    Command[0].Kx = three(Nan);
-    REFUSED("WaitFingers", WaitFingers(9, Fingers, 9, NAN), "and not 9");
-    REFUSED("WaitFingers", WaitFingers(1, Fingers, 9, NAN), NO_FINGER);
-    REFUSED("GetJacobian", GetJacobian(9, NanPos, J), NO_FINGER);
-    REFUSED("FindTip", FindTip(9, NanPos, Tip), NO_FINGER);
-    REFUSED("FindPos", FindPos(9, NanTip, Pos), NO_FINGER);
-    REFUSED("GetJointTorques", GetJointTorques(9, &Torques), NO_FINGER);
-    REFUSED("GetPalmPose", GetPalmPose(9, &Pose), NO_FINGER);
-    REFUSED("SendGroup", SendGroup(9, Command), "and not 9");
-    REFUSED("SendGroup", SendGroup(2, Command), NO_FINGER);
-    REFUSED("SendPath", SendPath(9, 999, Path, NAN), "999 poses");
-    REFUSED("SendPath", SendPath(9, 2, Path, NAN), "valid");
-    REFUSED("SendPath", SendPath(9, 2, Path, 0), NO_FINGER);
-    REFUSED("SendPosFor", SendPosFor(9, NanPos, NAN), "valid");
-    REFUSED("SendPosFor", SendPosFor(9, NanPos, 0), NO_FINGER);
-    REFUSED("AdjustFinger", AdjustFinger(9, "="), NO_FINGER);
-    REFUSED("PushFinger", PushFinger(9, NanForce), NO_FINGER);
-    REFUSED("GetRecord", GetRecord(9, 99999999, &Record), NO_FINGER);
-    REFUSED("WriteBlackBox", WriteBlackBox(9, "no/such/folder"), NO_FINGER);
-    REFUSED("ZeroFinger", ZeroFinger(9), NO_FINGER);
-    REFUSED("GetFault", GetFault(9, &Fault), NO_FINGER);
-    REFUSED("RecoverHand", RecoverHand(9), NO_FINGER);
-    REFUSED("StopFinger", StopFinger(9), NO_FINGER);
+    REFUSED("sun2xp_send_position", sun2xp_send_position(HAND, 9, NanPos), NO_FINGER);
+    REFUSED("sun2xp_send_stiffness", sun2xp_send_stiffness(HAND, 9, three(Nan)), NO_FINGER);
+    REFUSED("sun2xp_position", sun2xp_position(HAND, 9, Pos), NO_FINGER);
+    REFUSED("sun2xp_status", sun2xp_status(HAND, 9, &Status), NO_FINGER);
+    REFUSED("sun2xp_timing", sun2xp_timing(HAND, 9, 99, &Timing), NO_FINGER);
+    REFUSED("sun2xp_reset_timing", sun2xp_reset_timing(HAND, 9), NO_FINGER);
+    REFUSED("sun2xp_send_tip", sun2xp_send_tip(HAND, 9, NanTip), NO_FINGER);
+    REFUSED("sun2xp_tip", sun2xp_tip(HAND, 9, &Fingertip), NO_FINGER);
+    REFUSED("sun2xp_send_contact", sun2xp_send_contact(HAND, 9, 99, Nan[0], NoNormal), NO_FINGER);
+    REFUSED("sun2xp_send_damping", sun2xp_send_damping(HAND, 9, NAN), NO_FINGER);
+    REFUSED("sun2xp_send_joint_stiffness", sun2xp_send_joint_stiffness(HAND, 9, three(Nan)), NO_FINGER);
+    REFUSED("sun2xp_send_joint_torque", sun2xp_send_joint_torque(HAND, 9, NanForce), NO_FINGER);
+    Command[0].finger = Command[1].finger = 9;
+    Command[0].stiffness = three(Nan);
+    REFUSED("sun2xp_wait", sun2xp_wait(HAND, 9, 9, NAN), NO_FINGER);
+    REFUSED("sun2xp_jacobian", sun2xp_jacobian(HAND, 9, NanPos, J), NO_FINGER);
+    REFUSED("sun2xp_forward_kinematics", sun2xp_forward_kinematics(HAND, 9, NanPos, Tip), NO_FINGER);
+    REFUSED("sun2xp_inverse_kinematics", sun2xp_inverse_kinematics(HAND, 9, NanTip, Pos), NO_FINGER);
+    REFUSED("sun2xp_joint_torques", sun2xp_joint_torques(HAND, 9, &Torques), NO_FINGER);
+    REFUSED("sun2xp_palm_pose", sun2xp_palm_pose(HAND, 9, &Pose), NO_FINGER);
+    REFUSED("sun2xp_limits", sun2xp_limits(HAND, 9, &Limits), NO_FINGER);
+    REFUSED("sun2xp_send_group", sun2xp_send_group(HAND, 9, Command), "and not 9");
+    REFUSED("sun2xp_send_group", sun2xp_send_group(HAND, 2, Command), NO_FINGER);
+    REFUSED("sun2xp_send_path", sun2xp_send_path(HAND, 9, 999, Path, NAN), "999 poses");
+    REFUSED("sun2xp_send_path", sun2xp_send_path(HAND, 9, 2, Path, NAN), "valid");
+    REFUSED("sun2xp_send_path", sun2xp_send_path(HAND, 9, 2, Path, 0), NO_FINGER);
+    REFUSED("sun2xp_send_position_for", sun2xp_send_position_for(HAND, 9, NanPos, NAN), "valid");
+    REFUSED("sun2xp_send_position_for", sun2xp_send_position_for(HAND, 9, NanPos, 0), NO_FINGER);
+    REFUSED("sun2xp_adjust", sun2xp_adjust(HAND, 9, "="), NO_FINGER);
+    REFUSED("sun2xp_push", sun2xp_push(HAND, 9, NanForce), NO_FINGER);
+    REFUSED("sun2xp_record", sun2xp_record(HAND, 9, 99999999, &Record), NO_FINGER);
+    REFUSED("sun2xp_write_black_box", sun2xp_write_black_box(HAND, 9, "no/such/folder"), NO_FINGER);
+    REFUSED("sun2xp_zero", sun2xp_zero(HAND, 9), NO_FINGER);
+    REFUSED("sun2xp_fault", sun2xp_fault(HAND, 9, &Fault), NO_FINGER);
+    REFUSED("sun2xp_recover", sun2xp_recover(HAND, 9), NO_FINGER);
+    REFUSED("sun2xp_stop", sun2xp_stop(HAND, 9), NO_FINGER);
 }
 
 #include "order_groups.h"
@@ -207,33 +137,39 @@ static void no_such_finger(void)
 static void wrong_values_on_a_faulted_finger(void)
 {
     wrong_paths();
-    REFUSED("SendPosFor", SendPosFor(1, NanPos, 0), "NaN");
-    REFUSED("SendPosFor", SendPosFor(1, FarPos, 0), "limits");
-    REFUSED("SendPosFor", SendPosFor(1, Pos, 0), "stop");
+    REFUSED("sun2xp_send_position_for", sun2xp_send_position_for(HAND, 1, NanPos, 0), "NaN");
+    REFUSED("sun2xp_send_position_for", sun2xp_send_position_for(HAND, 1, FarPos, 0), "limits");
+    REFUSED("sun2xp_send_position_for", sun2xp_send_position_for(HAND, 1, Pos, 0), "stop");
+    REFUSED("sun2xp_send_position", sun2xp_send_position(HAND, 1, NanPos), "NaN");
+    REFUSED("sun2xp_send_position", sun2xp_send_position(HAND, 1, FarPos), "limits");
+    REFUSED("sun2xp_send_position", sun2xp_send_position(HAND, 1, Pos), "stop");
+    REFUSED("sun2xp_position", sun2xp_position(HAND, 1, Pos), "stop");
     REFUSED("SendPos", SendPos(1, NanPos), "NaN");
     REFUSED("SendPos", SendPos(1, FarPos), "limits");
     REFUSED("SendPos", SendPos(1, Pos), "stop");
     REFUSED("GetPos", GetPos(1, Pos), "stop");
-    REFUSED("GetTiming", GetTiming(1, 99, &Timing), "99");
-    REFUSED("SendTip", SendTip(1, NanTip), "NaN");
-    REFUSED("SendTip", SendTip(1, FarTip), "99");
-    REFUSED("SendTip", SendTip(1, Tip), "stop");
-    REFUSED("GetTip", GetTip(1, &Fingertip), "stop");
+    REFUSED("sun2xp_timing", sun2xp_timing(HAND, 1, 99, &Timing), "99");
+    REFUSED("sun2xp_send_tip", sun2xp_send_tip(HAND, 1, NanTip), "NaN");
+    REFUSED("sun2xp_send_tip", sun2xp_send_tip(HAND, 1, FarTip), "99");
+    REFUSED("sun2xp_send_tip", sun2xp_send_tip(HAND, 1, Tip), "stop");
+    REFUSED("sun2xp_tip", sun2xp_tip(HAND, 1, &Fingertip), "stop");
     wrong_springs();
     wrong_groups();
     wrong_kinematics();
     wrong_reflexes();
-    REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]\nport = \"other\"\n="), "line 3");
-    REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]\nport = \"other\""), "`port`");
-    REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]"), "minimum_degrees");
-    REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-50, 100, 120]"), "limits");
-    REFUSED("AdjustFinger", AdjustFinger(1, "tendon.minimum = 6"), "stop");
-    REFUSED("PushFinger", PushFinger(1, NanForce), "NaN");
-    REFUSED("PushFinger", PushFinger(1, StrongForce), "real port");
-    REFUSED("PushFinger", PushFinger(2, StrongForce), "1000");
-    REFUSED("GetRecord", GetRecord(1, 99999999, &Record), "99999999");
-    REFUSED("WriteBlackBox", WriteBlackBox(1, "no/such/folder"), "no/such/folder");
-    REFUSED("ZeroFinger", ZeroFinger(1), "stop");
+    REFUSED("sun2xp_adjust", sun2xp_adjust(HAND, 1, "joints.maximum_degrees = [-60, 100, 120]\nport = \"other\"\n="),
+            "line 3");
+    REFUSED("sun2xp_adjust", sun2xp_adjust(HAND, 1, "joints.maximum_degrees = [-60, 100, 120]\nport = \"other\""),
+            "`port`");
+    REFUSED("sun2xp_adjust", sun2xp_adjust(HAND, 1, "joints.maximum_degrees = [-60, 100, 120]"), "minimum_degrees");
+    REFUSED("sun2xp_adjust", sun2xp_adjust(HAND, 1, "joints.maximum_degrees = [-50, 100, 120]"), "limits");
+    REFUSED("sun2xp_adjust", sun2xp_adjust(HAND, 1, "tendon.minimum = 6"), "stop");
+    REFUSED("sun2xp_push", sun2xp_push(HAND, 1, NanForce), "NaN");
+    REFUSED("sun2xp_push", sun2xp_push(HAND, 1, StrongForce), "real port");
+    REFUSED("sun2xp_push", sun2xp_push(HAND, 2, StrongForce), "1000");
+    REFUSED("sun2xp_record", sun2xp_record(HAND, 1, 99999999, &Record), "99999999");
+    REFUSED("sun2xp_write_black_box", sun2xp_write_black_box(HAND, 1, "no/such/folder"), "no/such/folder");
+    REFUSED("sun2xp_zero", sun2xp_zero(HAND, 1), "stop");
 }
 
 /* Writes a configuration file and names it in SUN2XP_CONFIG. */
@@ -256,8 +192,8 @@ static void configurations_of_a_closed_hand(void)
 
 static int faulted(int finger)
 {
-    CHECK(GetFault(finger, &Fault) == 0);
-    return Fault.Number == FAULT_EMERGENCY_STOP_CALL;
+    CHECK(sun2xp_fault(HAND, finger, &Fault) == 0);
+    return Fault.number == SUN2XP_FAULT_EMERGENCY_STOP_CALL;
 }
 
 int main(void)
@@ -271,7 +207,7 @@ int main(void)
     CHECK(setenv("SUN2XP_CONFIG", "missing.toml", 1) == 0);
     REFUSED("OpenHand", OpenHand(), "already open");
     small_structs();
-    CHECK(StopHand() == 0);
+    CHECK(sun2xp_stop_all() == 0);
     for (finger = 1; finger <= 3; finger++)
         for (wait = 0; !faulted(finger); wait++) {
             CHECK(wait < 1000);
@@ -279,15 +215,18 @@ int main(void)
         }
     no_such_finger();
     wrong_values_on_a_faulted_finger();
-    CHECK(RecoverHand(1) == 0);
-    CHECK(SendPos(1, Pos) == 0 && SendKx(1, three(Soft)) == 0 && GetPos(1, Pos) == 0 && SendTip(1, Tip) == 0);
-    CHECK(SendContact(1, 4, Soft[0], Normal) == 0 && SendDamping(1, 0.7) == 0 && PushFinger(2, Force) == 0);
-    CHECK(SendGroup(1, Command) == 0);
-    REFUSED("SendDamping", SendDamping(1, 99), "99");
+    CHECK(sun2xp_recover(HAND, 1) == 0);
+    CHECK(SendPos(1, Pos) == 0 && SendKx(1, three(Soft)) == 0 && GetPos(1, Pos) == 0 &&
+        sun2xp_send_tip(HAND, 1, Tip) == 0);
+    CHECK(sun2xp_send_contact(HAND, 1, 4, Soft[0], Normal) == 0 && sun2xp_send_damping(HAND, 1, 0.7) == 0 &&
+        sun2xp_push(HAND, 2, Force) == 0);
+    CHECK(sun2xp_send_group(HAND, 1, Command) == 0);
+    REFUSED("sun2xp_send_damping", sun2xp_send_damping(HAND, 1, 99), "99");
     Soft[0][0] = 5.5;
     REFUSED("SendKx", SendKx(1, three(Soft)), "damping");
-    REFUSED("SendContact", SendContact(1, 4, Soft[0], Normal), "damping");
-    CHECK(GetTip(1, &Fingertip) == 0 && AdjustFinger(1, "tendon.minimum = 6") == 0);
+    REFUSED("sun2xp_send_stiffness", sun2xp_send_stiffness(HAND, 1, three(Soft)), "damping");
+    REFUSED("sun2xp_send_contact", sun2xp_send_contact(HAND, 1, 4, Soft[0], Normal), "damping");
+    CHECK(sun2xp_tip(HAND, 1, &Fingertip) == 0 && sun2xp_adjust(HAND, 1, "tendon.minimum = 6") == 0);
     CHECK(CloseHand() == 0);
     configurations_of_a_closed_hand();
     return 0;

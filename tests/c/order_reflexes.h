@@ -4,24 +4,24 @@ static void wrong_reflexes(void)
 {
     int count;
 
-    Touch.Size = sizeof Touch;
-    Rule.Size = sizeof Rule;
-    REFUSED("GetTouch", GetTouch(9, 9, &Touch), NO_FINGER);
-    REFUSED("GetTouch", GetTouch(2, 9, &Touch), "the number 9");
-    REFUSED("TareTouch", TareTouch(9), NO_FINGER);
-    REFUSED("RemoveReflex", RemoveReflex(9, 9), NO_FINGER);
-    REFUSED("RemoveReflex", RemoveReflex(2, 9), "reflex 9");
-    Rule.Condition = WHEN_FORCE_ABOVE;
-    Rule.Reaction = THEN_SOFTEN;
-    Rule.Bound = -1;
-    Rule.Kx[0][0] = -1;
-    REFUSED("InstallReflex", InstallReflex(9, &Rule), NO_FINGER);
-    REFUSED("InstallReflex", InstallReflex(2, &Rule), "force");
-    Rule.Bound = 1000;
-    REFUSED("InstallReflex", InstallReflex(2, &Rule), "Kx");
-    Rule.Kx[0][0] = 1;
+    Touch.size = sizeof Touch;
+    Rule.size = sizeof Rule;
+    REFUSED("sun2xp_touch", sun2xp_touch(HAND, 9, 9, &Touch), NO_FINGER);
+    REFUSED("sun2xp_touch", sun2xp_touch(HAND, 2, 9, &Touch), "the number 9");
+    REFUSED("sun2xp_tare_touch", sun2xp_tare_touch(HAND, 9), NO_FINGER);
+    REFUSED("sun2xp_remove_reflex", sun2xp_remove_reflex(HAND, 9, 9), NO_FINGER);
+    REFUSED("sun2xp_remove_reflex", sun2xp_remove_reflex(HAND, 2, 9), "reflex 9");
+    Rule.condition = SUN2XP_WHEN_FORCE_ABOVE;
+    Rule.reaction = SUN2XP_THEN_SOFTEN;
+    Rule.bound = -1;
+    Rule.stiffness[0][0] = -1;
+    REFUSED("sun2xp_install_reflex", sun2xp_install_reflex(HAND, 9, &Rule), NO_FINGER);
+    REFUSED("sun2xp_install_reflex", sun2xp_install_reflex(HAND, 2, &Rule), "force");
+    Rule.bound = 1000;
+    REFUSED("sun2xp_install_reflex", sun2xp_install_reflex(HAND, 2, &Rule), "Kx");
+    Rule.stiffness[0][0] = 1;
     for (count = 0; count < 16; count++)
-        CHECK(InstallReflex(2, &Rule) > 0);
-    REFUSED("InstallReflex", InstallReflex(2, &Rule), "16 reflexes");
-    CHECK(RemoveReflex(2, 0) == 0);
+        CHECK(sun2xp_install_reflex(HAND, 2, &Rule) > 0);
+    REFUSED("sun2xp_install_reflex", sun2xp_install_reflex(HAND, 2, &Rule), "16 reflexes");
+    CHECK(sun2xp_remove_reflex(HAND, 2, 0) == 0);
 }

@@ -3,6 +3,7 @@
 #include <unistd.h>
 #include "check.h"
 #pragma pack(1)
+#include "sun2xp.h"
 #define const
 #define volatile
 #define int long
@@ -23,7 +24,7 @@ int main(void)
 {
     const float Wanted[3] = {0.1, 0.5, 0.9};
     volatile float Now[3] = {0, 0, 0};
-    struct FingerStatus Status;
+    struct sun2xp_status Status;
     int tries;
 
     CHECK(sizeof(struct packed) == 1 + sizeof(double));
@@ -37,10 +38,10 @@ int main(void)
     }
     CHECK(tries < 300);
     memset(&Status, 0, sizeof Status);
-    Status.Size = sizeof Status;
-    CHECK(GetStatus(1, &Status) == 0);
-    CHECK(Status.Size == sizeof Status && Status.State == FINGER_RUNNING);
-    CHECK(Status.Rate == 1000.0 && Status.Cycles > 100);
-    CHECK(Status.StiffnessScale > 0.0 && Status.StiffnessScale <= 1.0);
+    Status.size = sizeof Status;
+    CHECK(sun2xp_status(HAND, 1, &Status) == 0);
+    CHECK(Status.size == sizeof Status && Status.state == SUN2XP_STATE_RUNNING);
+    CHECK(Status.rate == 1000.0 && Status.cycles > 100);
+    CHECK(Status.stiffness_scale > 0.0 && Status.stiffness_scale <= 1.0);
     return CloseHand();
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 #define PAGE 4096
@@ -33,7 +34,7 @@ static void on_fault(int signal_number, siginfo_t *fault, void *context)
 
 #define ON_DEMAND_STRUCT(Type, Call) \
     do { \
-        ((struct Type *)page)->Size = sizeof(struct Type); \
+        ((struct Type *)page)->size = sizeof(struct Type); \
         ON_DEMAND(Call); \
     } while (0)
 
@@ -55,16 +56,16 @@ int main(void)
     ON_DEMAND(SendPos(1, numbers));
     memcpy(numbers, Stiffness, sizeof Stiffness);
     ON_DEMAND(SendKx(1, numbers));
-    ON_DEMAND(SendContact(1, 3, numbers, NULL));
-    ON_DEMAND_STRUCT(FingerStatus, GetStatus(1, (struct FingerStatus *)page));
-    ON_DEMAND_STRUCT(FingerTip, GetTip(1, (struct FingerTip *)page));
-    ON_DEMAND_STRUCT(FingerTiming, GetTiming(1, TIMING_CYCLE, (struct FingerTiming *)page));
-    ON_DEMAND_STRUCT(FingerRecord, GetRecord(1, 0, (struct FingerRecord *)page));
-    ON_DEMAND_STRUCT(Fault, GetFault(1, (struct Fault *)page));
+    ON_DEMAND(sun2xp_send_contact(HAND, 1, 3, numbers, NULL));
+    ON_DEMAND_STRUCT(sun2xp_status, sun2xp_status(HAND, 1, (struct sun2xp_status *)page));
+    ON_DEMAND_STRUCT(sun2xp_tip, sun2xp_tip(HAND, 1, (struct sun2xp_tip *)page));
+    ON_DEMAND_STRUCT(sun2xp_timing, sun2xp_timing(HAND, 1, SUN2XP_STAGE_CYCLE, (struct sun2xp_timing *)page));
+    ON_DEMAND_STRUCT(sun2xp_record, sun2xp_record(HAND, 1, 0, (struct sun2xp_record *)page));
+    ON_DEMAND_STRUCT(sun2xp_fault, sun2xp_fault(HAND, 1, (struct sun2xp_fault *)page));
     strcpy(page, "tendon.minimum = 6");
-    ON_DEMAND(AdjustFinger(1, page));
+    ON_DEMAND(sun2xp_adjust(HAND, 1, page));
     strcpy(page, "on_demand.jsonl");
-    ON_DEMAND(WriteBlackBox(1, page));
+    ON_DEMAND(sun2xp_write_black_box(HAND, 1, page));
     CHECK(CloseHand() == 0);
     return 0;
 }

@@ -1,19 +1,20 @@
 /* A planner that may not use SCHED_FIFO: its hand opens, runs, and gives a warning. */
 #include <string.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 int main(void)
 {
-    struct Fault Fault;
+    struct sun2xp_fault Fault;
 
     CHECK(OpenHand() == 0);
-    Fault.Size = sizeof Fault;
-    CHECK(GetFault(1, &Fault) == 0 && Fault.Number == 0);
+    Fault.size = sizeof Fault;
+    CHECK(sun2xp_fault(HAND, 1, &Fault) == 0 && Fault.number == 0);
     /* On a busy machine the finger itself may give a warning first, because it is late without real time. */
-    CHECK(Fault.Warning == FAULT_REALTIME_REFUSED || Fault.Warning == FAULT_OVERRUN
-          || Fault.Warning == FAULT_LINE_NOISE);
-    CHECK(strstr(FaultText(FAULT_REALTIME_REFUSED), "no real time") != NULL);
+    CHECK(Fault.warning == SUN2XP_FAULT_REALTIME_REFUSED || Fault.warning == SUN2XP_FAULT_OVERRUN
+          || Fault.warning == SUN2XP_FAULT_LINE_NOISE);
+    CHECK(strstr(sun2xp_fault_text(SUN2XP_FAULT_REALTIME_REFUSED), "no real time") != NULL);
     CHECK(CloseHand() == 0);
     return 0;
 }

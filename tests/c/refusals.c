@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 #include "refused.h"
 
@@ -20,7 +21,7 @@ static void refuses_other_fingers(void)
         REFUSED(SendKx(finger, Kx), EINVAL, "1, 2 and 3");
         REFUSED(GetPos(finger, Output), EINVAL, "1, 2 and 3");
         REFUSED(GetPos(finger, OutputD), EINVAL, "1, 2 and 3");
-        REFUSED(PushFinger(finger, Force), EINVAL, "1, 2 and 3");
+        REFUSED(sun2xp_push(HAND, finger, Force), EINVAL, "1, 2 and 3");
     }
     CHECK(Output[0] == 7.0f && Output[1] == 8.0f && Output[2] == 9.0f);
     CHECK(OutputD[0] == 7.0 && OutputD[1] == 8.0 && OutputD[2] == 9.0);
@@ -37,7 +38,7 @@ static void refuses_what_is_not_finite(void)
     REFUSED(SendKx(1, Kx), EINVAL, "Kx");
     Kx[2][1] = 0;
     Force[2] = INFINITY;
-    REFUSED(PushFinger(1, Force), EINVAL, "Force");
+    REFUSED(sun2xp_push(HAND, 1, Force), EINVAL, "Force");
 }
 
 static void refuses_what_is_out_of_range(void)
@@ -71,14 +72,14 @@ static void refuses_what_is_no_spring(void)
 
 static void leaves_a_refused_struct_alone(void)
 {
-    struct FingerStatus Status, Untouched;
+    struct sun2xp_status Status, Untouched;
 
     memset(&Status, 7, sizeof Status);
-    Status.Size = 8;
+    Status.size = 8;
     Untouched = Status;
-    REFUSED(GetStatus(1, &Status), EINVAL, "Size");
-    Status.Size = Untouched.Size = sizeof Status;
-    REFUSED(GetStatus(0, &Status), EINVAL, "1, 2 and 3");
+    REFUSED(sun2xp_status(HAND, 1, &Status), EINVAL, "size");
+    Status.size = Untouched.size = sizeof Status;
+    REFUSED(sun2xp_status(HAND, 0, &Status), EINVAL, "1, 2 and 3");
     CHECK(memcmp(&Status, &Untouched, sizeof Status) == 0);
 }
 

@@ -5,7 +5,7 @@
 #define REFUSED(Call, Errno, Word) \
     do { \
         errno = 0; \
-        CHECK((Call) == -1); \
+        CHECK((Call) < 0); \
         CHECK(errno == (Errno)); \
         CHECK(strstr(HandError(), (Word)) != NULL); \
     } while (0)

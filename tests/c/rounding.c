@@ -11,6 +11,7 @@
 #include <xmmintrin.h>
 #endif
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 static int rounding, traps;
@@ -63,31 +64,31 @@ static void quick_calls(void)
 {
     double Tip[3] = {0.0, -6.0, 8.0}, Normal[3] = {0.3, -1, 0.2}, Stiff = 3.1, Tiny[3] = {1e-310, 0.5, 0.8};
     float Single[3] = {0.1f, 0.5f, 0.8f};
-    struct FingerTip Found;
-    struct FingerStatus Status;
-    struct FingerTiming Timing;
-    struct FingerRecord Record;
-    struct Fault Fault;
+    struct sun2xp_tip Found;
+    struct sun2xp_status Status;
+    struct sun2xp_timing Timing;
+    struct sun2xp_record Record;
+    struct sun2xp_fault Fault;
 
-    Found.Size = sizeof Found;
-    Status.Size = sizeof Status;
-    Timing.Size = sizeof Timing;
-    Record.Size = sizeof Record;
-    Fault.Size = sizeof Fault;
+    Found.size = sizeof Found;
+    Status.size = sizeof Status;
+    Timing.size = sizeof Timing;
+    Record.size = sizeof Record;
+    Fault.size = sizeof Fault;
     KEEPS(CHECK(SendPos(1, Pos) == 0));
     KEEPS(CHECK(SendPos(2, Single) == 0));
     KEEPS(CHECK(SendPos(3, Tiny) == 0));
     KEEPS(CHECK(SendKx(1, Kx) == 0));
     KEEPS(CHECK(GetPos(1, Measured) == 0));
     KEEPS(CHECK(GetPos(1, Single) == 0));
-    KEEPS(CHECK(SendTip(1, Tip) == 0));
-    KEEPS(CHECK(GetTip(1, &Found) == 0));
-    KEEPS(CHECK(SendContact(2, 1, &Stiff, Normal) == 0));
-    KEEPS(CHECK(SendDamping(2, 1.0) == 0));
-    KEEPS(CHECK(GetStatus(1, &Status) == 0));
-    KEEPS(CHECK(GetTiming(1, TIMING_COMPUTE, &Timing) == 0));
-    KEEPS(CHECK(GetRecord(1, 0, &Record) == 0));
-    KEEPS(CHECK(GetFault(1, &Fault) == 0));
+    KEEPS(CHECK(sun2xp_send_tip(HAND, 1, Tip) == 0));
+    KEEPS(CHECK(sun2xp_tip(HAND, 1, &Found) == 0));
+    KEEPS(CHECK(sun2xp_send_contact(HAND, 2, 1, &Stiff, Normal) == 0));
+    KEEPS(CHECK(sun2xp_send_damping(HAND, 2, 1.0) == 0));
+    KEEPS(CHECK(sun2xp_status(HAND, 1, &Status) == 0));
+    KEEPS(CHECK(sun2xp_timing(HAND, 1, SUN2XP_STAGE_COMPUTE, &Timing) == 0));
+    KEEPS(CHECK(sun2xp_record(HAND, 1, 0, &Record) == 0));
+    KEEPS(CHECK(sun2xp_fault(HAND, 1, &Fault) == 0));
 }
 
 /* These refusals write numbers into their texts. */
@@ -101,13 +102,13 @@ static void refused_calls(void)
 
 static void slow_calls(const char *black_box)
 {
-    KEEPS(CHECK(AdjustFinger(1, "tendon.minimum = 6.1") == 0));
+    KEEPS(CHECK(sun2xp_adjust(HAND, 1, "tendon.minimum = 6.1") == 0));
     PAUSE_MS(200);
-    KEEPS(CHECK(ZeroFinger(2) == 0));
-    KEEPS(CHECK(WriteBlackBox(1, black_box) == 0));
-    KEEPS(StopHand());
+    KEEPS(CHECK(sun2xp_zero(HAND, 2) == 0));
+    KEEPS(CHECK(sun2xp_write_black_box(HAND, 1, black_box) == 0));
+    KEEPS(sun2xp_stop_all());
     PAUSE_MS(50);
-    KEEPS(CHECK(RecoverHand(1) == 0));
+    KEEPS(CHECK(sun2xp_recover(HAND, 1) == 0));
 }
 
 int main(int count, char **arguments)

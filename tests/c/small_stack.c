@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 #define STACK_BYTES (64 * 1024)
@@ -30,51 +31,52 @@ static int send_kx_skewed(void) { return SendKx(1, Skewed) + 1; }
 static int get_pos(void) { return GetPos(1, Single); }
 static int get_pos_double(void) { return GetPos(1, Pos); }
 static int hand_error(void) { return HandError() == NULL; }
-static int send_tip(void) { return SendTip(1, Tip); }
-static int send_contact(void) { return SendContact(1, 4, &K[0][0], Normal); }
-static int send_damping(void) { return SendDamping(1, 1.0); }
-static int adjust_finger(void) { return AdjustFinger(1, "tendon.minimum = 6\ncontroller.tension_gain = 3"); }
-static int adjust_refused(void) { return AdjustFinger(1, "tendon.minimum = 6\ncontroller.tensoin_gain = 3") + 1; }
-static int push_finger(void) { return PushFinger(1, Push); }
-static int fault_text(void) { return FaultText(1) == NULL; }
-static int write_black_box(void) { return WriteBlackBox(1, "small_stack.jsonl"); }
-static int zero_finger(void) { return ZeroFinger(1); }
-static int identify_refused(void) { return IdentifyFinger(7) + 1; }
-static int recover_hand(void) { StopHand(); PAUSE_MS(50); return RecoverHand(1); }
+static int send_tip(void) { return sun2xp_send_tip(HAND, 1, Tip); }
+static int send_contact(void) { return sun2xp_send_contact(HAND, 1, 4, &K[0][0], Normal); }
+static int send_damping(void) { return sun2xp_send_damping(HAND, 1, 1.0); }
+static int adjust_finger(void) { return sun2xp_adjust(HAND, 1, "tendon.minimum = 6\ncontroller.tension_gain = 3"); }
+static int adjust_refused(void) { return sun2xp_adjust(HAND, 1,
+        "tendon.minimum = 6\ncontroller.tensoin_gain = 3") + SUN2XP_ERROR_CONFIGURATION; }
+static int push_finger(void) { return sun2xp_push(HAND, 1, Push); }
+static int fault_text(void) { return sun2xp_fault_text(1) == NULL; }
+static int write_black_box(void) { return sun2xp_write_black_box(HAND, 1, "small_stack.jsonl"); }
+static int zero_finger(void) { return sun2xp_zero(HAND, 1); }
+static int identify_refused(void) { return sun2xp_identify(HAND, 7) + SUN2XP_ERROR_ARGUMENT; }
+static int recover_hand(void) { sun2xp_stop_all(); PAUSE_MS(50); return sun2xp_recover(HAND, 1); }
 
 static int get_tip(void)
 {
-    struct FingerTip Found;
-    Found.Size = sizeof Found;
-    return GetTip(1, &Found);
+    struct sun2xp_tip Found;
+    Found.size = sizeof Found;
+    return sun2xp_tip(HAND, 1, &Found);
 }
 
 static int get_status(void)
 {
-    struct FingerStatus Found;
-    Found.Size = sizeof Found;
-    return GetStatus(1, &Found);
+    struct sun2xp_status Found;
+    Found.size = sizeof Found;
+    return sun2xp_status(HAND, 1, &Found);
 }
 
 static int get_timing(void)
 {
-    struct FingerTiming Found;
-    Found.Size = sizeof Found;
-    return GetTiming(1, TIMING_COMPUTE, &Found) + ResetTiming(0);
+    struct sun2xp_timing Found;
+    Found.size = sizeof Found;
+    return sun2xp_timing(HAND, 1, SUN2XP_STAGE_COMPUTE, &Found) + sun2xp_reset_timing(HAND, 0);
 }
 
 static int get_record(void)
 {
-    struct FingerRecord Found;
-    Found.Size = sizeof Found;
-    return GetRecord(1, 0, &Found);
+    struct sun2xp_record Found;
+    Found.size = sizeof Found;
+    return sun2xp_record(HAND, 1, 0, &Found);
 }
 
 static int get_fault(void)
 {
-    struct Fault Found;
-    Found.Size = sizeof Found;
-    return GetFault(1, &Found);
+    struct sun2xp_fault Found;
+    Found.size = sizeof Found;
+    return sun2xp_fault(HAND, 1, &Found);
 }
 
 static const struct job {
@@ -94,22 +96,22 @@ static const struct job {
     {"GetPos", get_pos},
     {"GetPosD", get_pos_double},
     {"HandError", hand_error},
-    {"SendTip", send_tip},
-    {"GetTip", get_tip},
-    {"SendContact", send_contact},
-    {"SendDamping", send_damping},
-    {"AdjustFinger", adjust_finger},
-    {"AdjustFinger with a wrong key", adjust_refused},
-    {"PushFinger", push_finger},
-    {"GetStatus", get_status},
-    {"GetTiming, ResetTiming", get_timing},
-    {"GetRecord", get_record},
-    {"GetFault", get_fault},
-    {"FaultText", fault_text},
-    {"WriteBlackBox", write_black_box},
-    {"ZeroFinger", zero_finger},
-    {"IdentifyFinger without finger", identify_refused},
-    {"StopHand, RecoverHand", recover_hand},
+    {"sun2xp_send_tip", send_tip},
+    {"sun2xp_tip", get_tip},
+    {"sun2xp_send_contact", send_contact},
+    {"sun2xp_send_damping", send_damping},
+    {"sun2xp_adjust", adjust_finger},
+    {"sun2xp_adjust with a wrong key", adjust_refused},
+    {"sun2xp_push", push_finger},
+    {"sun2xp_status", get_status},
+    {"sun2xp_timing, sun2xp_reset_timing", get_timing},
+    {"sun2xp_record", get_record},
+    {"sun2xp_fault", get_fault},
+    {"sun2xp_fault_text", fault_text},
+    {"sun2xp_write_black_box", write_black_box},
+    {"sun2xp_zero", zero_finger},
+    {"sun2xp_identify without finger", identify_refused},
+    {"sun2xp_stop_all, sun2xp_recover", recover_hand},
     {"CloseHand", CloseHand},
 };
 

@@ -2,15 +2,16 @@
    that it is closed. */
 #include <unistd.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 static int state_of(int finger)
 {
-    struct FingerStatus Status;
+    struct sun2xp_status Status;
 
-    Status.Size = sizeof Status;
-    CHECK(GetStatus(finger, &Status) == 0);
-    return Status.State;
+    Status.size = sizeof Status;
+    CHECK(sun2xp_status(HAND, finger, &Status) == 0);
+    return Status.state;
 }
 
 /* Registered before the library's own exit handler, so it runs after that. Its result becomes the program's. */
@@ -19,7 +20,7 @@ static void look_at_the_closed_hand(void)
     int finger;
 
     for (finger = 1; finger <= 3; finger++)
-        if (state_of(finger) != FINGER_CLOSED) {
+        if (state_of(finger) != SUN2XP_STATE_CLOSED) {
             fprintf(stderr, "finger %d reads %d when exit has closed the hand\n", finger, state_of(finger));
             _exit(1);
         }
@@ -28,25 +29,26 @@ static void look_at_the_closed_hand(void)
 
 int main(void)
 {
-    struct FingerRecord Record;
+    struct sun2xp_record Record;
     unsigned long Cycle;
     int wait, tensioning = 0;
 
     CHECK(atexit(look_at_the_closed_hand) == 0);
     CHECK(OpenHand() == 0);
-    CHECK(state_of(1) == FINGER_RUNNING);
-    CHECK(StopHand() == 0);
-    for (wait = 0; state_of(1) != FINGER_FAULTED; wait++) {
+    CHECK(state_of(1) == SUN2XP_STATE_RUNNING);
+    CHECK(sun2xp_stop_all() == 0);
+    for (wait = 0; state_of(1) != SUN2XP_STATE_FAULTED; wait++) {
         CHECK(wait < 1000);
         PAUSE_MS(2);
     }
-    CHECK(RecoverHand(1) == 0 && RecoverHand(2) == 0 && RecoverHand(3) == 0);
-    CHECK(state_of(1) == FINGER_RUNNING);
-    Record.Size = sizeof Record;
-    CHECK(GetRecord(1, 0, &Record) == 0);
-    for (Cycle = Record.Oldest; GetRecord(1, Cycle, &Record) == 0; Cycle++) {
-        CHECK(Record.State == FINGER_TENSIONING || Record.State == FINGER_RUNNING || Record.State == FINGER_FAULTED);
-        if (Record.State == FINGER_TENSIONING)
+    CHECK(sun2xp_recover(HAND, 1) == 0 && sun2xp_recover(HAND, 2) == 0 && sun2xp_recover(HAND, 3) == 0);
+    CHECK(state_of(1) == SUN2XP_STATE_RUNNING);
+    Record.size = sizeof Record;
+    CHECK(sun2xp_record(HAND, 1, 0, &Record) == 0);
+    for (Cycle = Record.oldest; sun2xp_record(HAND, 1, Cycle, &Record) == 0; Cycle++) {
+        CHECK(Record.state == SUN2XP_STATE_TENSIONING || Record.state == SUN2XP_STATE_RUNNING ||
+            Record.state == SUN2XP_STATE_FAULTED);
+        if (Record.state == SUN2XP_STATE_TENSIONING)
             tensioning++;
     }
     printf("%d cycles under tension, at cycle %lu\n", tensioning, Cycle);

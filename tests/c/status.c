@@ -1,12 +1,13 @@
-/* GetStatus: the state of the servo, and a struct that may grow in later versions. */
+/* sun2xp_status: the state of the servo, and a struct that may grow in later versions. */
 #include <string.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 int main(void)
 {
-    struct { struct FingerStatus Known; unsigned char Later[64]; } Larger;
-    struct FingerStatus *Status = &Larger.Known;
+    struct { struct sun2xp_status Known; unsigned char Later[64]; } Larger;
+    struct sun2xp_status *Status = &Larger.Known;
     /* Outstretched, where the tendons carry less stiffness than the bound. */
     static float Stretched[3] = { 0.0F, 0.0F, 0.1F };
     static float Stiffest[3][3] = { { 6.0F, 0.0F, 0.0F }, { 0.0F, 6.0F, 0.0F }, { 0.0F, 0.0F, 6.0F } };
@@ -16,31 +17,32 @@ int main(void)
     PAUSE_MS(1000);
     for (finger = 1; finger <= 3; finger++) {
         memset(&Larger, 0x55, sizeof Larger);
-        Status->Size = sizeof Larger;
-        CHECK(GetStatus(finger, Status) == 0);
-        CHECK(Status->Size == sizeof *Status);
+        Status->size = sizeof Larger;
+        CHECK(sun2xp_status(HAND, finger, Status) == 0);
+        CHECK(Status->size == sizeof Larger);
         for (byte = 0; byte < 64; byte++)
-            CHECK(Larger.Later[byte] == 0x55);
-        printf("finger %d: %.1f of %.1f Hz, wake-up %.1f %.1f %.1f us, ", finger, Status->MeasuredRate, Status->Rate,
-               Status->WakeUpMedian, Status->WakeUp99, Status->WakeUpMaximum);
-        printf("%lu cycles, %lu skipped, %lu lost, %lu damaged, real-time %d\n", Status->Cycles, Status->SkippedPeriods,
-               Status->LostReplies, Status->DamagedFrames, Status->Realtime);
-        CHECK(Status->State == FINGER_RUNNING);
-        CHECK(Status->Rate == 1000.0);
-        CHECK(Status->MeasuredRate > 900.0 && Status->MeasuredRate < 1001.0);
-        CHECK(Status->Cycles >= 900);
-        CHECK(Status->WakeUpMedian <= Status->WakeUp99 && Status->WakeUp99 <= Status->WakeUpMaximum);
-        CHECK(Status->TorqueScale > 0.0 && Status->TorqueScale <= 1.0);
-        CHECK(Status->StiffnessScale == 1.0);
-        CHECK(Status->DamagedFrames == 0);
+            CHECK(Larger.Later[byte] == 0);
+        printf("finger %d: %.1f of %.1f Hz, wake-up %.1f %.1f %.1f us, ", finger, Status->measured_rate, Status->rate,
+               Status->wake_up_median, Status->wake_up_p99, Status->wake_up_maximum);
+        printf("%lu cycles, %lu skipped, %lu lost, %lu damaged, real-time %d\n", Status->cycles,
+                Status->skipped_periods,
+               Status->lost_replies, Status->damaged_replies, Status->realtime);
+        CHECK(Status->state == SUN2XP_STATE_RUNNING);
+        CHECK(Status->rate == 1000.0);
+        CHECK(Status->measured_rate > 900.0 && Status->measured_rate < 1001.0);
+        CHECK(Status->cycles >= 900);
+        CHECK(Status->wake_up_median <= Status->wake_up_p99 && Status->wake_up_p99 <= Status->wake_up_maximum);
+        CHECK(Status->torque_scale > 0.0 && Status->torque_scale <= 1.0);
+        CHECK(Status->stiffness_scale == 1.0);
+        CHECK(Status->damaged_replies == 0);
     }
     CHECK(SendKx(1, Stiffest) == 0);
     CHECK(SendPos(1, Stretched) == 0);
     PAUSE_MS(2000);
-    Status->Size = sizeof *Status;
-    CHECK(GetStatus(1, Status) == 0);
-    printf("stretched, at 6 N/cm: %.3f of it\n", Status->StiffnessScale);
-    CHECK(Status->StiffnessScale > 0.5 && Status->StiffnessScale < 1.0);
+    Status->size = sizeof *Status;
+    CHECK(sun2xp_status(HAND, 1, Status) == 0);
+    printf("stretched, at 6 N/cm: %.3f of it\n", Status->stiffness_scale);
+    CHECK(Status->stiffness_scale > 0.5 && Status->stiffness_scale < 1.0);
     CHECK(CloseHand() == 0);
     return 0;
 }

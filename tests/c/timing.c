@@ -1,72 +1,75 @@
-/* GetTiming and ResetTiming: every stage of a running servo, wrong arguments, and a struct that may grow in later
+/* sun2xp_timing and sun2xp_reset_timing: every stage of a running servo, wrong arguments, and a struct that may grow
+   in later
    versions. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 #include "refused.h"
 
 static void refused_without_a_hand(void)
 {
-    struct FingerTiming Timing;
+    struct sun2xp_timing Timing;
 
-    Timing.Size = sizeof Timing;
-    REFUSED(GetTiming(1, TIMING_WIRE, &Timing), ENODEV, "OpenHand");
-    Timing.Size = 1;
-    REFUSED(GetTiming(1, TIMING_WIRE, &Timing), ENODEV, "OpenHand");
-    REFUSED(GetTiming(1, TIMING_WIRE, NULL), EFAULT, "null");
-    REFUSED(ResetTiming(0), ENODEV, "OpenHand");
+    Timing.size = sizeof Timing;
+    REFUSED(sun2xp_timing(HAND, 1, SUN2XP_STAGE_WIRE, &Timing), ENODEV, "sun2xp_open");
+    Timing.size = 1;
+    REFUSED(sun2xp_timing(HAND, 1, SUN2XP_STAGE_WIRE, &Timing), ENODEV, "sun2xp_open");
+    REFUSED(sun2xp_timing(HAND, 1, SUN2XP_STAGE_WIRE, NULL), EFAULT, "null");
+    REFUSED(sun2xp_reset_timing(HAND, 0), ENODEV, "sun2xp_open");
 }
 
 int main(void)
 {
-    struct { struct FingerTiming Known; unsigned char Later[64]; } Larger;
-    struct FingerTiming *Timing = &Larger.Known, Before;
+    struct { struct sun2xp_timing Known; unsigned char Later[64]; } Larger;
+    struct sun2xp_timing *Timing = &Larger.Known, Before;
     int finger, stage, byte;
 
     refused_without_a_hand();
     CHECK(OpenHand() == 0);
     PAUSE_MS(1000);
     for (finger = 1; finger <= 3; finger++) {
-        for (stage = TIMING_WAKE_UP; stage <= TIMING_AGE; stage++) {
+        for (stage = SUN2XP_STAGE_WAKE_UP; stage <= SUN2XP_STAGE_AGE; stage++) {
             memset(&Larger, 0x55, sizeof Larger);
-            Timing->Size = sizeof Larger;
-            CHECK(GetTiming(finger, stage, Timing) == 0);
-            CHECK(Timing->Size == sizeof *Timing);
+            Timing->size = sizeof Larger;
+            CHECK(sun2xp_timing(HAND, finger, stage, Timing) == 0);
+            CHECK(Timing->size == sizeof Larger);
             for (byte = 0; byte < 64; byte++)
-                CHECK(Larger.Later[byte] == 0x55);
-            printf("finger %d stage %d: %lu of %lu cycles, ns: %lu %lu %lu %lu %lu; ", finger, stage, Timing->Count,
-                   Timing->Cycles, Timing->Minimum, Timing->Median, Timing->P99, Timing->P999, Timing->Maximum);
-            printf("%lu overruns %lu skipped %lu lost %lu late %lu corrupt\n", Timing->Overruns, Timing->SkippedPeriods,
-                   Timing->LostReplies, Timing->LateReplies, Timing->CorruptReplies);
-            CHECK(Timing->Stage == stage);
-            CHECK(Timing->Count > 500 && Timing->Count <= Timing->Cycles);
-            CHECK(Timing->Minimum <= Timing->Median && Timing->Median <= Timing->P99);
-            CHECK(Timing->P99 <= Timing->P999 && Timing->P999 <= Timing->Maximum);
-            CHECK(Timing->CorruptReplies == 0);
+                CHECK(Larger.Later[byte] == 0);
+            printf("finger %d stage %d: %lu of %lu cycles, ns: %lu %lu %lu %lu %lu; ", finger, stage, Timing->count,
+                   Timing->cycles, Timing->minimum, Timing->median, Timing->p99, Timing->p999, Timing->maximum);
+            printf("%lu overruns %lu skipped %lu lost %lu late %lu corrupt\n", Timing->overruns,
+                    Timing->skipped_periods,
+                   Timing->lost_replies, Timing->late_replies, Timing->damaged_replies);
+            CHECK(Timing->stage == stage);
+            CHECK(Timing->count > 500 && Timing->count <= Timing->cycles);
+            CHECK(Timing->minimum <= Timing->median && Timing->median <= Timing->p99);
+            CHECK(Timing->p99 <= Timing->p999 && Timing->p999 <= Timing->maximum);
+            CHECK(Timing->damaged_replies == 0);
         }
         /* The last stage is the age of the feedback: one period, 1 ms. */
-        CHECK(Timing->Median > 900000 && Timing->Median < 1100000);
+        CHECK(Timing->median > 900000 && Timing->median < 1100000);
     }
 
-    REFUSED(GetTiming(0, TIMING_WIRE, Timing), EINVAL, "1, 2 and 3");
-    REFUSED(GetTiming(1, -1, Timing), EINVAL, "stage -1");
-    REFUSED(GetTiming(1, TIMING_AGE + 1, Timing), EINVAL, "stage 8");
+    REFUSED(sun2xp_timing(HAND, 0, SUN2XP_STAGE_WIRE, Timing), EINVAL, "1, 2 and 3");
+    REFUSED(sun2xp_timing(HAND, 1, -1, Timing), EINVAL, "stage -1");
+    REFUSED(sun2xp_timing(HAND, 1, SUN2XP_STAGE_AGE + 1, Timing), EINVAL, "stage 8");
     Before = *Timing;
-    Timing->Size = 8;
-    REFUSED(GetTiming(1, TIMING_WIRE, Timing), EINVAL, "Size");
-    CHECK(Timing->Maximum == Before.Maximum);
-    REFUSED(ResetTiming(4), EINVAL, "1, 2 and 3");
+    Timing->size = 8;
+    REFUSED(sun2xp_timing(HAND, 1, SUN2XP_STAGE_WIRE, Timing), EINVAL, "size");
+    CHECK(Timing->maximum == Before.maximum);
+    REFUSED(sun2xp_reset_timing(HAND, 4), EINVAL, "1, 2 and 3");
 
-    Timing->Size = sizeof *Timing;
-    CHECK(ResetTiming(2) == 0);
-    CHECK(GetTiming(2, TIMING_CYCLE, Timing) == 0);
-    CHECK(Timing->Cycles < 500 && Timing->Count < 500);
-    CHECK(GetTiming(1, TIMING_CYCLE, Timing) == 0);
-    CHECK(Timing->Cycles > 500 && Timing->Count > 500);
-    CHECK(ResetTiming(0) == 0);
-    CHECK(GetTiming(1, TIMING_CYCLE, Timing) == 0);
-    CHECK(Timing->Cycles < 500 && Timing->Count < 500);
+    Timing->size = sizeof *Timing;
+    CHECK(sun2xp_reset_timing(HAND, 2) == 0);
+    CHECK(sun2xp_timing(HAND, 2, SUN2XP_STAGE_CYCLE, Timing) == 0);
+    CHECK(Timing->cycles < 500 && Timing->count < 500);
+    CHECK(sun2xp_timing(HAND, 1, SUN2XP_STAGE_CYCLE, Timing) == 0);
+    CHECK(Timing->cycles > 500 && Timing->count > 500);
+    CHECK(sun2xp_reset_timing(HAND, 0) == 0);
+    CHECK(sun2xp_timing(HAND, 1, SUN2XP_STAGE_CYCLE, Timing) == 0);
+    CHECK(Timing->cycles < 500 && Timing->count < 500);
     CHECK(CloseHand() == 0);
     refused_without_a_hand();
     return 0;

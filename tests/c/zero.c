@@ -1,26 +1,27 @@
-/* ZeroFinger: a finger is zeroed while the others keep running. Fingers that do not exist are refused. */
+/* sun2xp_zero: a finger is zeroed while the others keep running. Fingers that do not exist are refused. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"
+#include "sun2xp.h"
 #include "check.h"
 
 int main(void)
 {
-    struct FingerStatus Status;
+    struct sun2xp_status Status;
     double After[3];
 
-    CHECK(ZeroFinger(1) == -1 && errno == ENODEV);
+    CHECK(sun2xp_zero(HAND, 1) < 0 && errno == ENODEV);
     CHECK(OpenHand() == 0);
-    CHECK(AdjustFinger(2, "zeroing.method = 'pose'") == 0);
-    CHECK(ZeroFinger(2) == 0);
+    CHECK(sun2xp_adjust(HAND, 2, "zeroing.method = 'pose'") == 0);
+    CHECK(sun2xp_zero(HAND, 2) == 0);
     CHECK(GetPos(2, After) == 0);
-    Status.Size = sizeof Status;
-    CHECK(GetStatus(2, &Status) == 0);
-    CHECK(Status.State == FINGER_RUNNING && Status.Calibration == 0.0);
+    Status.size = sizeof Status;
+    CHECK(sun2xp_status(HAND, 2, &Status) == 0);
+    CHECK(Status.state == SUN2XP_STATE_RUNNING && Status.calibration == 0.0);
     CHECK(SendPos(2, After) == 0);
-    CHECK(ZeroFinger(4) == -1 && errno == EINVAL);
-    CHECK(IdentifyFinger(0) == -1 && errno == EINVAL);
-    CHECK(strstr(HandError(), "IdentifyFinger") != NULL);
+    CHECK(sun2xp_zero(HAND, 4) < 0 && errno == EINVAL);
+    CHECK(sun2xp_identify(HAND, 0) < 0 && errno == EINVAL);
+    CHECK(strstr(HandError(), "sun2xp_identify") != NULL);
     CHECK(CloseHand() == 0);
     return 0;
 }

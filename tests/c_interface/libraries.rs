@@ -24,13 +24,15 @@ fn the_library_exports_the_calls_and_nothing_else() {
     let listing = said(&run);
     let mut exported: Vec<_> = listing.lines().filter_map(|line| line.split_whitespace().nth(2)).collect();
     exported.sort_unstable();
-    // The header declares every call at the beginning of a line.
-    let header = fs::read_to_string("include/Sun2Xp.h").expect("the header");
+    // The headers declare every call at the beginning of a line.
+    let read = |name: &str| fs::read_to_string(root().join("include").join(name)).expect("a header");
+    let headers = read("Sun2Xp.h") + &read("sun2xp.h");
     let called = |line: &str| {
-        let declared = line.strip_prefix("int ").or(line.strip_prefix("const char *"))?;
+        let types = ["int ", "const char *", "unsigned int ", "sun2xp_hand *"];
+        let declared = types.into_iter().find_map(|of| line.strip_prefix(of))?;
         declared.split_once('(').map(|(name, _)| name.to_string())
     };
-    let mut calls: Vec<_> = header.lines().filter_map(called).collect();
+    let mut calls: Vec<_> = headers.lines().filter_map(called).collect();
     calls.sort_unstable();
     assert!(["CloseHand", "GetPos", "OpenHand", "SendKx", "SendPos"].iter().all(|call| exported.contains(call)));
     assert_eq!(exported, calls);

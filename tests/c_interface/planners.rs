@@ -10,6 +10,11 @@ fn a_planner_with_float_arrays_arrives() {
 }
 
 #[test]
+fn a_program_opens_several_hands_and_a_wrong_handle_is_refused() {
+    succeed(&strict(&["-std=c89"]), &["handles.c"]);
+}
+
+#[test]
 fn a_planner_with_double_arrays_arrives() {
     succeed(&strict(&["-std=c17", "-DREAL=double"]), &["reach.c"]);
 }

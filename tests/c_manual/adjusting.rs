@@ -1,7 +1,7 @@
-//! AdjustFinger must refuse to change exactly the keys that its entry in the manual lists.
+//! sun2xp_adjust must refuse to change exactly the keys that its entry in the manual lists.
 
 use super::c::root;
-use super::manual::{Manual, in_one_line, listed};
+use super::manual::{HANDLES, Manual, in_one_line, listed};
 use std::fs;
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
@@ -32,8 +32,8 @@ fn keys_of_a_finger() -> Vec<String> {
 
 #[test]
 fn the_keys_that_cannot_change_are_named() {
-    let manual = Manual::read();
-    let entry = manual.entries.iter().find(|entry| entry.call == "AdjustFinger").expect("the entry");
+    let manual = Manual::read(HANDLES);
+    let entry = manual.entries.iter().find(|entry| entry.call == "sun2xp_adjust").expect("the entry");
     let text = in_one_line(&entry.text);
     let (_, rest) = text.split_once("cannot change while the hand is open: ").expect("a sentence that names them");
     let named = listed(rest.split_once(". ").expect("the sentence ends").0);

@@ -1,7 +1,7 @@
 //! Compiles and runs every example of the manual as it stands.
 
 use super::c::{Bench, C_STANDARDS, CPP_STANDARDS, STRICT, c_compiler, c_compilers, cpp_compilers, root, said};
-use super::manual::{Example, Manual};
+use super::manual::{Example, HANDLES, Manual, OF_1990};
 use std::os::unix::fs::symlink;
 use std::process::Command;
 
@@ -12,20 +12,23 @@ const INCLUDED: &[&str] = &["errno.h", "poll.h", "signal.h", "stdio.h", "stdlib.
 /// that run after it to check that it worked.
 const AROUND: &[(&str, &str, &str)] = &[
     (
-        "StopHand",
+        "sun2xp_stop_all",
         "",
-        "struct Fault Found; Found.Size = sizeof Found;
+        "struct sun2xp_fault found; found.size = sizeof found;
         if (raise(SIGINT) != 0) return 4;
-        do if (GetFault(1, &Found) != 0) return 5; while (Found.Number != FAULT_EMERGENCY_STOP_CALL);",
+        do if (sun2xp_fault(hand, 1, &found) != 0) return 5;
+        while (found.number != SUN2XP_FAULT_EMERGENCY_STOP_CALL);",
     ),
     (
-        "RecoverHand",
-        "struct Fault Found; Found.Size = sizeof Found;
-        StopHand();
-        do if (GetFault(1, &Found) != 0) return 4; while (Found.Number != FAULT_EMERGENCY_STOP_CALL);",
-        "double At[3]; if (GetPos(1, At) != 0) return 5;",
+        "sun2xp_recover",
+        "struct sun2xp_fault found; found.size = sizeof found;
+        sun2xp_stop_all();
+        do if (sun2xp_fault(hand, 1, &found) != 0) return 4;
+        while (found.number != SUN2XP_FAULT_EMERGENCY_STOP_CALL);",
+        "double at[3]; if (sun2xp_position(hand, 1, at) != 0) return 5;",
     ),
-    ("WriteBlackBox", "", "if (access(\"finger-1.jsonl\", R_OK) != 0) return 4;"),
+    ("sun2xp_open", "", "sun2xp_close(other);"),
+    ("sun2xp_write_black_box", "", "if (access(\"finger-1.jsonl\", R_OK) != 0) return 4;"),
 ];
 
 impl Example {
@@ -50,38 +53,56 @@ impl Example {
         let defines = self.text.starts_with("static ").then(|| self.text.rfind("\n}\n").map(|end| end + 3)).flatten();
         let (functions, statements) = self.text.split_at(defines.unwrap_or_default());
         let (_, before, after) = AROUND.iter().find(|(call, ..)| *call == self.place).unwrap_or(&("", "", ""));
-        let open = if statements.contains("OpenHand()") { "" } else { "if (OpenHand() != 0) return 2;" };
         let included: String = INCLUDED.iter().map(|name| format!("#include <{name}>\n")).collect();
+        let (opening, closing) = match self.header {
+            OF_1990 if statements.contains("OpenHand()") => ("", "HandError()[0] != '\\0' || CloseHand() != 0"),
+            OF_1990 => ("if (OpenHand() != 0) return 2;", "HandError()[0] != '\\0' || CloseHand() != 0"),
+            _ => (
+                "sun2xp_hand *hand; if (sun2xp_open(NULL, &hand) != 0) return 2;",
+                "sun2xp_error_text(NULL)[0] != '\\0' || sun2xp_close(hand) != 0",
+            ),
+        };
+        // Declarations come first in C89.
+        let blocks = format!("{{ {before} }}\n{{\n{statements}{}}}\n", self.inside(after));
         format!(
-            "{included}#include \"Sun2Xp.h\"\n\n{functions}\nint main(void)\n{{\n    {open}\n\
-             {{ {before} }}\n{{\n{statements}}}\n{{ {after} }}\n\
-             if (HandError()[0] != '\\0') return 3;\n    return CloseHand();\n}}\n"
+            "{included}#include \"{}\"\n\n{functions}\nint main(void)\n{{\n    {opening}\n{{\n{blocks}}}\n\
+             return {closing};\n}}\n",
+            self.header
         )
+    }
+
+    /// Statements that follow the example: those of sun2xp_open use its variables, and all others declare their own.
+    fn inside(&self, after: &str) -> String {
+        if self.place == "sun2xp_open" { after.to_string() } else { format!("}}\n{{ {after} ") }
     }
 }
 
 fn programs() -> Vec<Example> {
-    let mut examples = Manual::read().examples();
+    let mut examples: Vec<_> = Manual::both().iter().flat_map(Manual::examples).collect();
     examples.retain(|example| !example.is_configuration() && !example.is_command());
     examples
 }
 
-fn only(kind: impl Fn(&Example) -> bool) -> Example {
-    let mut found: Vec<_> = Manual::read().examples().into_iter().filter(kind).collect();
+fn only(header: &'static str, kind: impl Fn(&Example) -> bool) -> Example {
+    let mut found: Vec<_> = Manual::read(header).examples().into_iter().filter(kind).collect();
     assert_eq!(found.len(), 1);
     found.remove(0)
 }
 
 #[test]
 fn all_code_stands_in_examples() {
-    let manual = Manual::read();
-    let examples = manual.examples();
-    assert!(examples.iter().all(|example| example.text.len() > 10), "an example without text");
-    let places: Vec<_> = examples.iter().map(|example| example.place.as_str()).collect();
-    for place in ["1", "8", "OpenHand", "SendKx", "GetPos", "GetRecord", "StopHand", "RecoverHand"] {
-        assert!(places.contains(&place), "no example in {place}: {places:?}");
+    for (manual, expected) in Manual::both().iter().zip([
+        &["1", "7", "OpenHand", "SendKx", "GetPos"][..],
+        &["1", "sun2xp_open", "sun2xp_record", "sun2xp_stop_all", "sun2xp_recover", "sun2xp_error"],
+    ]) {
+        let examples = manual.examples();
+        assert!(examples.iter().all(|example| example.text.len() > 10), "an example without text");
+        let places: Vec<_> = examples.iter().map(|example| example.place.as_str()).collect();
+        for place in expected {
+            assert!(places.contains(place), "no example in {place}: {places:?}");
+        }
+        assert_eq!(manual.stray_code(), Vec::<String>::new());
     }
-    assert_eq!(manual.stray_code(), Vec::<String>::new());
 }
 
 #[test]
@@ -104,8 +125,8 @@ fn every_example_compiles_in_c_and_cpp() {
 #[test]
 fn every_example_runs() {
     let bench = Bench::new();
-    // The example of GetObject needs an object, and that of GetTouch an element. The object is out of reach, so that it
-    // does not disturb the others.
+    // The example of sun2xp_object needs an object, and that of sun2xp_touch an element. The object is out of reach, so
+    // that it does not disturb the others.
     let object = "[finger]\nport = \"simulated\"\n[hand.simulated_object]\nposition = [0, 0, 50]\n\
                   [finger.touch]\nelements = [{ position = [0, 0, 0], normal = [0, 0, 1] }]\n";
     bench.write("sun2xp.toml", object);
@@ -119,26 +140,28 @@ fn every_example_runs() {
 
 /// Runs the command in a folder with `planner.c`, `include` and `lib`. The finger must arrive.
 #[test]
-fn the_quick_start_is_compiled_and_run_by_its_command() {
-    let bench = Bench::new();
-    bench.write("planner.c", &only(Example::is_program).text);
-    symlink(root().join("include"), bench.path().join("include")).expect("a link to the header");
-    symlink(bench.path(), bench.path().join("lib")).expect("a link to the library");
-    let mut shell = Command::new("sh");
-    shell.args(["-e", "-c", &only(Example::is_command).text]);
-    let run = bench.run(shell);
-    assert!(run.status.success(), "{}", said(&run));
-    let arrived = str::from_utf8(&run.stdout).expect("angles").split_whitespace().map(|angle| angle.parse::<f64>());
-    let arrived: Vec<_> = arrived.map(|angle| angle.expect("an angle")).collect();
-    let near = arrived.iter().zip([0.0, 0.5, 0.8]).all(|(angle, sent)| (angle - sent).abs() < 0.02);
-    assert!(arrived.len() == 3 && near, "{}", said(&run));
+fn the_quick_starts_are_compiled_and_run_by_their_commands() {
+    for header in [OF_1990, HANDLES] {
+        let bench = Bench::new();
+        bench.write("planner.c", &only(header, Example::is_program).text);
+        symlink(root().join("include"), bench.path().join("include")).expect("a link to the header");
+        symlink(bench.path(), bench.path().join("lib")).expect("a link to the library");
+        let mut shell = Command::new("sh");
+        shell.args(["-e", "-c", &only(header, Example::is_command).text]);
+        let run = bench.run(shell);
+        assert!(run.status.success(), "{}", said(&run));
+        let words = str::from_utf8(&run.stdout).expect("angles").split_whitespace();
+        let arrived: Vec<f64> = words.map(|angle| angle.parse().expect("an angle")).collect();
+        let near = arrived.iter().zip([0.0, 0.5, 0.8]).all(|(angle, sent)| (angle - sent).abs() < 0.03);
+        assert!(arrived.len() == 3 && near, "{}", said(&run));
+    }
 }
 
 /// The port belongs to the reader's machine, so the file may be refused for the port only.
 #[test]
 fn the_configuration_is_refused_only_for_its_port() {
     let bench = Bench::new();
-    let configuration = only(Example::is_configuration).text;
+    let configuration = only(OF_1990, Example::is_configuration).text;
     assert!(configuration.contains("\"/dev/ttyUSB0\""), "{configuration}");
     bench.write("named.toml", &configuration.replace("/dev/ttyUSB0", "/dev/no-such-port"));
     let program = bench.build(c_compiler(), STRICT, &["opens.c"]);

@@ -1,10 +1,18 @@
-//! Splits the manual into chapters and entries.
+//! Splits the manuals of the two headers into chapters and entries.
 
 use super::c::root;
 use std::fs;
 
-/// The comments of the header.
+/// The header of the five calls of 1990.
+pub const OF_1990: &str = "Sun2Xp.h";
+
+/// The header of the calls with handles.
+pub const HANDLES: &str = "sun2xp.h";
+
+/// The comments of a header.
 pub struct Manual {
+    /// The name of the header.
+    pub name: &'static str,
     /// The comment at the top of the header.
     chapters: String,
     /// The entry of each call.
@@ -14,6 +22,8 @@ pub struct Manual {
 
 /// A block below a line such as "Example, softer along z:", indented by four blanks.
 pub struct Example {
+    /// The name of the header.
+    pub header: &'static str,
     /// The number of the chapter, or the name of the call.
     pub place: String,
     pub text: String,
@@ -29,8 +39,12 @@ pub struct Entry {
 }
 
 impl Manual {
-    pub fn read() -> Self {
-        let header = fs::read_to_string(root().join("include/Sun2Xp.h")).expect("the header");
+    pub fn both() -> [Self; 2] {
+        [Self::read(OF_1990), Self::read(HANDLES)]
+    }
+
+    pub fn read(name: &'static str) -> Self {
+        let header = fs::read_to_string(root().join("include").join(name)).expect("the header");
         let (opening, rest) = header.split_once("*/").expect("the header begins with a comment");
         let mut entries = Vec::new();
         for after in rest.split("\n/*\n").skip(1) {
@@ -41,7 +55,7 @@ impl Manual {
             let text = text.lines().map(|line| line.strip_prefix(' ').unwrap_or(line)).collect::<Vec<_>>().join("\n");
             entries.push(Entry { call: call.to_string(), declaration: declaration.to_string(), text });
         }
-        Self { chapters: opening.to_string(), entries, header }
+        Self { name, chapters: opening.to_string(), entries, header }
     }
 
     /// The text of a chapter in one line.
@@ -55,16 +69,16 @@ impl Manual {
     pub fn examples(&self) -> Vec<Example> {
         let chapters = self.chapters.split("\n\n\n").skip(1).flat_map(|chapter| {
             let place = chapter.trim_start().split('.').next().unwrap_or_default();
-            examples(place, chapter)
+            examples(self.name, place, chapter)
         });
-        chapters.chain(self.entries.iter().flat_map(|entry| examples(&entry.call, &entry.text))).collect()
+        chapters.chain(self.entries.iter().flat_map(|entry| examples(self.name, &entry.call, &entry.text))).collect()
     }
 
     /// Every line that looks like part of a program but is in no example and no synopsis.
     pub fn stray_code(&self) -> Vec<String> {
         let mut stray = Vec::new();
         for text in [&self.chapters].into_iter().chain(self.entries.iter().map(|entry| &entry.text)) {
-            let examples: String = examples("", text).into_iter().map(|example| example.text).collect();
+            let examples: String = examples(self.name, "", text).into_iter().map(|example| example.text).collect();
             let shown: Vec<_> = examples.lines().map(str::trim).collect();
             let indented = text.lines().filter(|line| indentation(line) >= 4).map(str::trim);
             stray.extend(indented.filter(|line| looks_like_code(line) && !shown.contains(line)).map(str::to_string));
@@ -85,7 +99,11 @@ impl Manual {
 impl Entry {
     /// The errnos of an entry in the order in which they are reported. A line of the list begins with one or several.
     pub fn errnos(&self) -> Vec<&str> {
-        let Some((_, list)) = self.text.split_once("or -1 with\n") else { return Vec::new() };
+        let Some((_, list)) =
+            self.text.split_once("or -1 with\n").or(self.text.split_once("or a negative number with\n"))
+        else {
+            return Vec::new();
+        };
         // Other lines of the list are indented further.
         let lines = list.lines().take_while(|line| !line.is_empty());
         let lines = lines.filter_map(|line| line.strip_prefix("  ").filter(|line| line.starts_with('E')));
@@ -112,7 +130,7 @@ fn indentation(line: &str) -> usize {
     line.len() - line.trim_start().len()
 }
 
-fn examples(place: &str, text: &str) -> Vec<Example> {
+fn examples(header: &'static str, place: &str, text: &str) -> Vec<Example> {
     let lines: Vec<_> = text.lines().collect();
     let mut examples = Vec::new();
     for (index, line) in lines.iter().enumerate() {
@@ -122,7 +140,7 @@ fn examples(place: &str, text: &str) -> Vec<Example> {
         let margin = indentation(line) + 4;
         let block = lines[index + 1..].iter().take_while(|line| line.is_empty() || indentation(line) >= margin);
         let text = block.map(|line| line.get(margin..).unwrap_or_default()).collect::<Vec<_>>().join("\n");
-        examples.push(Example { place: place.to_string(), text: text.trim_matches('\n').to_string() + "\n" });
+        examples.push(Example { header, place: place.to_string(), text: text.trim_matches('\n').to_string() + "\n" });
     }
     examples
 }

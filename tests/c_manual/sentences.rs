@@ -1,6 +1,6 @@
 //! Compares the chapters' statements about all calls with the entries of the calls.
 
-use super::manual::{Manual, listed};
+use super::manual::{HANDLES, Manual, OF_1990, listed};
 
 /// The names between two parts of a sentence of a chapter.
 fn between<'a>(chapter: &'a str, before: &str, after: &str) -> Vec<&'a str> {
@@ -15,7 +15,7 @@ fn sorted(mut names: Vec<&str>) -> Vec<&str> {
 
 #[test]
 fn the_calls_that_do_not_return_int_are_listed() {
-    let manual = Manual::read();
+    let manual = Manual::read(OF_1990);
     let chapter = manual.chapter(2);
     let others = manual.entries.iter().filter(|entry| !entry.declaration.starts_with("int "));
     let others = others.map(|entry| entry.call.as_str()).collect();
@@ -24,29 +24,28 @@ fn the_calls_that_do_not_return_int_are_listed() {
 
 #[test]
 fn the_calls_that_signal_handlers_may_make_are_named() {
-    let manual = Manual::read();
-    let chapter = manual.chapter(6);
+    let manual = Manual::read(HANDLES);
+    let chapter = manual.chapter(5);
     let safe = manual.entries.iter().filter(|entry| entry.threads().contains("signal handler"));
     let safe = safe.map(|entry| entry.call.as_str()).collect();
     assert_eq!(sorted(between(&chapter, "A signal handler may call ", ", and no other")), sorted(safe));
 }
 
-/// The entries of the calls for double and of IdentifyFinger have no list of errnos. The list of an earlier entry
-/// applies to them.
+/// The entry of sun2xp_identify has no list of errnos: the list of sun2xp_zero applies to it. sun2xp_wait_event and
+/// others return more than 0.
 #[test]
 fn the_calls_that_a_forked_child_may_make_are_named() {
-    let manual = Manual::read();
-    let chapter = manual.chapter(6);
-    let refers = ["SendPosD", "SendKxD", "GetPosD", "IdentifyFinger"];
+    let manual = Manual::read(HANDLES);
+    let chapter = manual.chapter(5);
     let works = manual.entries.iter().filter(|entry| !entry.errnos().contains(&"EPERM"));
-    let works = works.map(|entry| entry.call.as_str()).filter(|call| !refers.contains(call)).collect();
+    let works = works.map(|entry| entry.call.as_str()).filter(|&call| call != "sun2xp_identify").collect();
     assert_eq!(sorted(between(&chapter, "is refused with EPERM, except ", "; the parent")), sorted(works));
 }
 
 /// tests/c/locked_memory.c shows that the member stays 1.
 #[test]
 fn the_member_for_locked_memory_says_what_munlockall_does() {
-    let text = Manual::read().member("FingerStatus", "MemoryLocked");
+    let text = Manual::read(HANDLES).member("sun2xp_status", "memory_locked");
     assert!(text.contains("munlockall later, this memory is unlocked too, and this member stays 1"), "{text}");
 }
 
@@ -54,13 +53,13 @@ fn the_member_for_locked_memory_says_what_munlockall_does() {
 /// the timing counts them up to the last cycle.
 #[test]
 fn counts_of_the_status_are_those_of_the_timing() {
-    let manual = Manual::read();
+    let manual = Manual::read(HANDLES);
     let first = |text: String| text.split_once('.').expect("a sentence").0.to_string();
-    let status = |member: &str| first(manual.member("FingerStatus", member));
-    let timing = |member: &str| first(manual.member("FingerTiming", member));
-    assert_eq!(status("LostReplies"), timing("LostReplies"));
-    assert_eq!(status("DamagedFrames"), timing("CorruptReplies"));
-    let skipped = status("SkippedPeriods");
+    let status = |member: &str| first(manual.member("sun2xp_status", member));
+    let timing = |member: &str| first(manual.member("sun2xp_timing", member));
+    assert_eq!(status("lost_replies"), timing("lost_replies"));
+    assert_eq!(status("damaged_replies"), timing("damaged_replies"));
+    let skipped = status("skipped_periods");
     let skipped = skipped.strip_suffix("up to now").expect("it says up to when");
-    assert_eq!(Some(skipped), timing("SkippedPeriods").strip_suffix("up to the last cycle"));
+    assert_eq!(Some(skipped), timing("skipped_periods").strip_suffix("up to the last cycle"));
 }

@@ -263,7 +263,7 @@ impl Bench {
         });
     }
 
-    /// Does what RecoverHand does with a faulted finger: takes the link from the servo, or a new one, shakes hands,
+    /// Does what sun2xp_recover does with a faulted finger: takes the link from the servo, or a new one, shakes hands,
     /// returns the link, and waits until the finger is a spring.
     pub fn recover(&mut self) {
         let before = self.report().recoveries;

@@ -139,7 +139,7 @@ fn a_planner_that_skips_its_exit_handlers_is_stopped_by_the_watchdogs() {
     }
 }
 
-/// A user who configures *hold* has something that must not fall. This applies to StopHand too, which holds with
+/// A user who configures *hold* has something that must not fall. This applies to sun2xp_stop_all too, which holds with
 /// limited torque for a limited time.
 #[test]
 fn an_emergency_stop_releases_at_once_or_holds_for_a_while_as_configured() {
@@ -181,13 +181,16 @@ fn the_documentation_says_what_an_emergency_stop_holds() {
         from.split_once(end).unwrap_or_else(|| panic!("no {end:?}")).0.to_owned()
     };
     for (place, text) in [
-        ("the manual of StopHand", after(&read("include/Sun2Xp.h"), "StopHand - emergency stop", "Threads:")),
+        (
+            "the manual of sun2xp_stop_all",
+            after(&read("include/sun2xp.h"), "sun2xp_stop_all - emergency stop", "Threads:"),
+        ),
         (
             "docs/sun2xp.toml",
             after(&read("docs/sun2xp.toml"), "# What the motors do when commands stop", "hold_time_ms ="),
         ),
         ("docs/faults.md", after(&read("docs/faults.md"), "## Stopping and recovering", "## All faults")),
     ] {
-        assert!(text.contains("StopHand") && text.contains("hold_time_ms"), "{place}: {text}");
+        assert!(text.contains("sun2xp_stop_all") && text.contains("hold_time_ms"), "{place}: {text}");
     }
 }

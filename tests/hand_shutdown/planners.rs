@@ -2,7 +2,7 @@
 
 use crate::EXITED;
 use crate::case::{Action, Stage};
-use std::ffi::{c_int, c_uint, c_void};
+use std::ffi::{c_int, c_void};
 use std::path::PathBuf;
 use std::process::exit;
 use std::ptr::null_mut;
@@ -39,14 +39,14 @@ pub struct InC;
 /// The first members of the structs of the C calls, and more room than they need.
 #[repr(C)]
 struct Filled {
-    size: c_uint,
+    size: usize,
     second: c_int,
     room: [u64; 32],
 }
 
 impl Filled {
     fn new() -> Self {
-        Self { size: size_of::<Self>() as c_uint, second: 0, room: [0; 32] }
+        Self { size: size_of::<Self>(), second: 0, room: [0; 32] }
     }
 }
 
@@ -56,13 +56,14 @@ type Callback = extern "C" fn(*const c_void, *mut c_void);
 unsafe extern "C" {
     safe fn OpenHand() -> c_int;
     safe fn CloseHand() -> c_int;
-    safe fn StopHand() -> c_int;
-    safe fn ZeroFinger(finger: c_int) -> c_int;
-    safe fn RecoverHand(finger: c_int) -> c_int;
-    fn GetStatus(finger: c_int, status: *mut Filled) -> c_int;
-    fn WaitEvent(event: *mut Filled, milliseconds: c_int) -> c_int;
-    fn WaitFingers(count: c_int, fingers: *const c_int, until: c_int, limit: f64) -> c_int;
-    fn OnEvent(callback: Callback, context: *mut c_void) -> c_int;
+    safe fn sun2xp_default_hand() -> *mut c_void;
+    safe fn sun2xp_stop_all() -> c_int;
+    safe fn sun2xp_zero(hand: *mut c_void, finger: c_int) -> c_int;
+    safe fn sun2xp_recover(hand: *mut c_void, finger: c_int) -> c_int;
+    fn sun2xp_status(hand: *mut c_void, finger: c_int, status: *mut Filled) -> c_int;
+    fn sun2xp_wait_event(hand: *mut c_void, event: *mut Filled, seconds: f64) -> c_int;
+    safe fn sun2xp_wait(hand: *mut c_void, finger: c_int, until: c_int, seconds: f64) -> c_int;
+    fn sun2xp_on_event(hand: *mut c_void, callback: Callback, context: *mut c_void) -> c_int;
 }
 
 extern "C" fn close_in_callback(_event: *const c_void, _context: *mut c_void) {
@@ -75,14 +76,14 @@ impl Planner for InC {
     }
 
     fn stop_all(&self) {
-        assert_eq!(StopHand(), 0);
+        assert_eq!(sun2xp_stop_all(), 0);
     }
 
     fn stage(&self) -> Option<Stage> {
         let mut status = Filled::new();
-        // SAFETY: the struct is larger than a FingerStatus, and begins with its size.
-        let filled = unsafe { GetStatus(1, &mut status) };
-        // The numbers FINGER_... of the header.
+        // SAFETY: the struct is larger than a sun2xp_status, and begins with its size.
+        let filled = unsafe { sun2xp_status(sun2xp_default_hand(), 1, &mut status) };
+        // The numbers SUN2XP_STATE_... of the header.
         match status.second {
             _ if filled != 0 => None,
             1 => Some(Stage::Running),
@@ -96,25 +97,24 @@ impl Planner for InC {
     fn act(&self, action: Action) {
         let _ = match action {
             Action::Open => OpenHand(),
-            Action::Calibrate => ZeroFinger(1),
-            Action::Recover => RecoverHand(1),
+            Action::Calibrate => sun2xp_zero(sun2xp_default_hand(), 1),
+            Action::Recover => sun2xp_recover(sun2xp_default_hand(), 1),
             Action::Close | Action::End => CloseHand(),
             Action::CloseInCallback => {
                 // SAFETY: the callback is a function that accepts every argument.
-                unsafe { OnEvent(close_in_callback, null_mut()) };
+                unsafe { sun2xp_on_event(sun2xp_default_hand(), close_in_callback, null_mut()) };
                 // The faults are events.
-                StopHand()
+                sun2xp_stop_all()
             }
             Action::Exit => exit(EXITED),
-            Action::StopAll => StopHand(),
+            Action::StopAll => sun2xp_stop_all(),
             Action::WaitForEvent => {
                 let mut event = Filled::new();
-                // SAFETY: the struct is larger than an Event, and begins with its size.
-                while unsafe { WaitEvent(&mut event, -1) } == 1 {}
+                // SAFETY: the struct is larger than a sun2xp_event, and begins with its size.
+                while unsafe { sun2xp_wait_event(sun2xp_default_hand(), &mut event, -1.0) } == 1 {}
                 0
             }
-            // SAFETY: the pointer points to one number.
-            Action::WaitForFinger => unsafe { WaitFingers(1, &1, 1, WAIT.as_secs_f64()) },
+            Action::WaitForFinger => sun2xp_wait(sun2xp_default_hand(), 1, 1, WAIT.as_secs_f64()),
         };
     }
 }

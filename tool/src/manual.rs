@@ -127,6 +127,19 @@ mod tests {
     }
 
     #[test]
+    fn a_page_of_a_call_with_a_handle_has_its_prototype_and_struct() {
+        let page = page("sun2xp_limits");
+        for part in [
+            "#include <sun2xp.h>",
+            "int sun2xp_limits(sun2xp_hand *hand, int finger, struct sun2xp_limits *limits);",
+            ".SH STRUCTURES",
+            "double stiffness;",
+        ] {
+            assert!(page.contains(part), "{part} is not in\n{page}");
+        }
+    }
+
+    #[test]
     fn the_page_of_the_configuration_has_every_table_and_key() {
         let page = configuration::page(CONFIGURATION).text.render();
         let keys = CONFIGURATION.lines().filter_map(configuration::key);

@@ -23,7 +23,7 @@ use sun2xp::model::ShownPath;
 /// With --json, a file that cannot be replayed leaves standard output empty.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// A file of `sun2xp record`, a file that WriteBlackBox wrote, or one that was written at a fault because
+    /// A file of `sun2xp record`, a file that sun2xp_write_black_box wrote, or one that was written at a fault because
     /// `hand.black_box` is set.
     #[arg(value_name = "FILE")]
     file: PathBuf,

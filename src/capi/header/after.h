@@ -2,10 +2,6 @@
 }
 #endif
 
-#if defined(__clang__) || defined(__GNUC__)
-#pragma pack(pop)
-#endif
-
 
 /* The rest of this file chooses between float and double (chapter 4). */
 

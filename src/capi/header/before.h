@@ -15,10 +15,6 @@
 #endif
 
 @SHIELD@
-#if defined(__clang__) || defined(__GNUC__)
-#pragma pack(push, 16)
-#endif
-
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -7,7 +7,7 @@ use crate::finger::Recording;
 use crate::hand::black_box_file::save_at_fault;
 use crate::hand::dispatcher::collected::Collected;
 use crate::hand::dispatcher::publishing::Publishing;
-use crate::realtime::{PlannerWatch, Priority, is_memory_free, print_line, spawn};
+use crate::realtime::{PlannerWatch, Priority, Severity, is_memory_free, report, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError};
 use parking_lot::Mutex;
 use std::path::{Path, PathBuf};
@@ -42,7 +42,10 @@ pub(super) fn collect(
             collected.collect();
             let Some(folder) = folder.filter(|_| collected.black_box.faulted()) else { continue };
             if !is_memory_free(MEMORY_OF_BLACK_BOX) {
-                print_line("a finger faulted, but there is not enough free memory to write its black box");
+                report(
+                    Severity::Warning,
+                    "a finger faulted, but there is not enough free memory to write its black box",
+                );
                 continue;
             }
             let recording = collected.black_box.recording();

@@ -17,7 +17,7 @@ pub enum PathError {
         most: usize,
     },
     /// The time for which a set point is valid is not usable.
-    #[error("a set point cannot be valid for {0} ms: send 0 for the configured time, or up to 3600000")]
+    #[error("a set point cannot be valid for {0} s: send 0 for the configured time, or up to 3600")]
     Valid(f64),
     /// A time is not later than the one before.
     #[error(

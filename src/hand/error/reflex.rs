@@ -52,7 +52,7 @@ pub enum ReflexError {
         rule: u32,
     },
     /// There is no condition or reaction with this number, which a C program has passed.
-    #[error("there is no {what} {number}: use one of the constants of Sun2Xp.h that begin with {prefix}")]
+    #[error("there is no {what} {number}: use one of the constants of sun2xp.h that begin with {prefix}")]
     NoSuchKind {
         /// Condition, reaction or event.
         what: &'static str,

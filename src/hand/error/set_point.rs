@@ -139,13 +139,13 @@ pub enum SetPointError {
     #[error("a group has 0 to 3 commands, and not {0}")]
     GroupSize(i32),
     /// The condition to wait for does not exist.
-    #[error("there is no condition {0} to wait for: pass WAIT_ARRIVED or WAIT_SETTLED")]
+    #[error("there is no condition {0} to wait for: pass SUN2XP_WAIT_ARRIVED or SUN2XP_WAIT_SETTLED")]
     NoSuchCondition(i32),
     /// A time limit is negative or NaN.
     #[error("the time limit {0} s is not zero or positive")]
     NoSuchLimit(f64),
     /// A command of a group has joint angles and a position of the tip.
-    #[error("the command for finger {0} has Pos and Tip: set one of them to null")]
+    #[error("the command for finger {0} has joint angles and a position of the tip: leave one of them out")]
     TwoPoses(i32),
     /// A group has two commands for a finger.
     #[error("the group has two commands for finger {0}: put them into one")]

@@ -41,7 +41,7 @@ pub enum Command {
     Open,
     /// Moves all running fingers to the middle of the palm.
     Close,
-    /// Stops all fingers at once, as the planner's StopHand does.
+    /// Stops all fingers at once, as the planner's sun2xp_stop_all does.
     Stop,
     /// Makes a stopped or faulted finger a spring again, which holds its present pose. Takes up to some seconds.
     Recover { finger: i32 },

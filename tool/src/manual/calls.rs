@@ -8,6 +8,8 @@ use clap_mangen::roff::{Roff, roman};
 struct Comment<'a> {
     name: &'a str,
     purpose: &'a str,
+    /// The declaration below the comment. A comment may begin with the declaration, with other names of parameters.
+    declaration: &'a str,
     /// The lines after the first, without the space with which they begin.
     lines: Vec<&'a str>,
 }
@@ -44,13 +46,15 @@ fn is_chapter(line: &str) -> bool {
 }
 
 fn comments(header: &str) -> Vec<Comment<'_>> {
-    header.split("\n/*\n").skip(1).filter_map(|rest| comment(rest.split("\n */").next()?)).collect()
+    header.split("\n/*\n").skip(1).filter_map(comment).collect()
 }
 
-fn comment(text: &str) -> Option<Comment<'_>> {
+fn comment(rest: &str) -> Option<Comment<'_>> {
+    let (text, after) = rest.split_once("\n */\n")?;
+    let declaration = after.lines().next()?;
     let mut lines = text.lines().map(|line| line.strip_prefix(' ').unwrap_or(line));
     let (name, purpose) = lines.next()?.split_once(" - ")?;
-    Some(Comment { name, purpose, lines: lines.collect() })
+    Some(Comment { name, purpose, declaration, lines: lines.collect() })
 }
 
 fn page(comment: &Comment, header: &Header) -> Page {
@@ -63,7 +67,11 @@ fn page(comment: &Comment, header: &Header) -> Page {
     text.control("SH", ["SYNOPSIS"]);
     prototype(&mut text, &[&format!("#include <{}.h>", header.name)]);
     text.control("PP", []);
-    let declarations: Vec<&str> = comment.lines[..signature].iter().copied().filter(|line| !line.is_empty()).collect();
+    let mut declarations: Vec<&str> = comment.lines[..signature].iter().copied().collect();
+    declarations.retain(|line| !line.is_empty());
+    if declarations.is_empty() {
+        declarations.push(comment.declaration);
+    }
     prototype(&mut text, &declarations);
     section(&mut text, "PARAMETERS", &comment.lines[signature..parameters]);
 

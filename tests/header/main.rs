@@ -1,7 +1,9 @@
-//! The committed header equals the one generated from the exports. A build script must not write into the source
-//! folder, so this test compares the two, and writes the header if SUN2XP_WRITE_HEADER is set.
+//! The committed headers equal the ones generated from the exports. A build script must not write into the source
+//! folder, so this test compares them, and writes the headers if SUN2XP_WRITE_HEADER is set.
 
-use std::collections::BTreeSet;
+mod shields;
+
+use shields::{names, shields};
 use std::fmt::Write;
 use std::path::Path;
 use std::{env, fs};
@@ -11,61 +13,58 @@ use sun2xp::finger::events::EventKind;
 /// The five calls of 1990 and HandError.
 const CALLS_OF_1990: &[&str] = &["calls.rs"];
 
-/// All other calls, in the order of the manual.
-const OTHER_CALLS: &[&str] = &[
-    "status_calls.rs",
-    "timing_calls.rs",
-    "fingertip_calls.rs",
-    "spring_calls.rs",
-    "group_calls.rs",
-    "object_calls.rs",
-    "touch_calls.rs",
-    "kinematics_calls.rs",
-    "path_calls.rs",
-    "black_box_calls.rs",
-    "calibration_calls.rs",
-    "fault_calls.rs",
-    "recovery_calls.rs",
-    "reflex_calls.rs",
-    "event_calls.rs",
+/// The sections of sun2xp.h: heading and file.
+const SECTIONS: &[(&str, &str)] = &[
+    ("ERRORS", "error_calls.rs"),
+    ("MESSAGES", "log_calls.rs"),
+    ("VERSIONS", "version_calls.rs"),
+    ("OPENING AND CLOSING", "opening_calls.rs"),
+    ("JOINT ANGLES AND STIFFNESS", "position_calls.rs"),
+    ("FINGERTIPS", "fingertip_calls.rs"),
+    ("SPRINGS IN JOINT ANGLES", "spring_calls.rs"),
+    ("GROUPS AND WAITING", "group_calls.rs"),
+    ("PATHS", "path_calls.rs"),
+    ("KINEMATICS AND GRAVITY", "kinematics_calls.rs"),
+    ("LIMITS", "limits_calls.rs"),
+    ("TOUCH", "touch_calls.rs"),
+    ("SIMULATION", "object_calls.rs"),
+    ("ADJUSTMENT", "adjustment_calls.rs"),
+    ("STATUS", "status_calls.rs"),
+    ("TIMING", "timing_calls.rs"),
+    ("FAULTS", "fault_calls.rs"),
+    ("STOP AND RECOVERY", "recovery_calls.rs"),
+    ("CALIBRATION", "calibration_calls.rs"),
+    ("EVENTS", "event_calls.rs"),
+    ("REFLEXES", "reflex_calls.rs"),
+    ("BLACK BOX", "black_box_calls.rs"),
 ];
 
-/// Keywords of C and C++ that the header uses outside of the declarations.
-const KEYWORDS_OF_AFTER: &[&str] =
-    &["class", "extern", "inline", "reinterpret_cast", "return", "sizeof", "template", "typedef", "volatile"];
+/// Files of constants at the beginning of sun2xp.h.
+const CONSTANTS: &[&str] = &["fingers.rs", "error_numbers.rs"];
 
-/// Three of these are macros of the header itself, so it cannot restore a planner's macro of the same name. These
-/// macros use the other three.
-const MACROS: &[&str] = &["GetPos", "GetPosD", "SendKx", "SendKxD", "SendPos", "SendPosD"];
-
-/// The column of the comments beside constants and members: behind the longest of them.
-const COMMENT_COLUMN: usize = 36;
-
-/// Headings of the two groups of constants.
-const HEADINGS: &[(&str, &str)] = &[
-    ("FINGER_", "State of a finger (FingerStatus.State, FingerRecord.State)"),
-    ("WHEN_", "Condition of a reflex (Reflex.Condition)"),
-    ("THEN_", "Reaction of a reflex (Reflex.Reaction)"),
-    ("WAIT_", "Condition of a wait (WaitFingers)"),
-    ("TIMING_", "Stage of a cycle (GetTiming, FingerTiming.Stage)"),
-];
+/// The column of the comments beside constants and members: behind most of them.
+const COMMENT_COLUMN: usize = 44;
 
 /// A constant for each fault.
 fn faults() -> String {
     let line = |kind: &FaultKind| {
         let description = kind.description();
-        format!("#define FAULT_{:<22} {:>2} /* {} */", description.constant, kind.number(), description.name)
+        constant("SUN2XP_FAULT_", description.constant, kind.number().into(), description.name)
     };
-    FaultKind::ALL.iter().map(line).collect::<Vec<_>>().join("\n")
+    FaultKind::ALL.iter().map(line).collect()
 }
 
 /// A constant for each kind of event.
 fn events() -> String {
     let line = |kind: &EventKind| {
         let description = kind.description();
-        format!("#define EVENT_{:<22} {:>2} /* {} */", description.constant, kind.number(), description.name)
+        constant("SUN2XP_EVENT_", description.constant, kind.number().into(), description.name)
     };
-    EventKind::ALL.iter().map(line).collect::<Vec<_>>().join("\n")
+    EventKind::ALL.iter().map(line).collect()
+}
+
+fn constant(prefix: &str, name: &str, number: u32, meaning: &str) -> String {
+    beside(&format!("#define {:<35} {number:>2}", format!("{prefix}{name}")), meaning)
 }
 
 /// The chapters of the manual as a C comment.
@@ -83,8 +82,13 @@ fn declarations(config: cbindgen::Config, files: &[&str]) -> String {
     let mut made = Vec::new();
     builder.generate().expect("the exports can be parsed").write(&mut made);
     let made = String::from_utf8(made).expect("declarations are text");
-    let lines: Vec<_> = made.lines().map(without_parameter_names).collect();
+    let lines: Vec<_> = made.lines().map(str::to_string).collect();
     with_comments_beside(&lines)
+}
+
+/// The declarations without the names of their parameters.
+fn without_names(declarations: &str) -> String {
+    declarations.lines().map(|line| without_parameter_names(line) + "\n").collect()
 }
 
 /// Moves the comment above each constant and member to its right: each of these takes one line then, or a few.
@@ -101,7 +105,7 @@ fn with_comments_beside(lines: &[String]) -> String {
         if declaration.starts_with("#define ") || declaration.starts_with("    ") {
             text += &beside(declaration, &comment.join(" "));
             if declaration.starts_with("#define ") {
-                rest.next().filter(|line| line.is_empty()).expect("an empty line follows each constant");
+                assert!(rest.next().is_none_or(String::is_empty), "an empty line follows each constant");
             }
             continue;
         }
@@ -118,7 +122,7 @@ fn with_comments_beside(lines: &[String]) -> String {
 
 /// A declaration with its comment to the right, wrapped.
 fn beside(declaration: &str, comment: &str) -> String {
-    let mut line = format!("{declaration:<COMMENT_COLUMN$}/*");
+    let mut line = format!("{declaration:<0$} /*", COMMENT_COLUMN - 1);
     let mut text = String::new();
     for word in comment.split_whitespace() {
         if line.len() + 1 + word.len() + " */".len() > 120 {
@@ -164,14 +168,6 @@ fn code(declarations: &str) -> String {
     code.concat()
 }
 
-/// Every name that the declarations use, and the C keywords around them.
-fn names(code: &str) -> BTreeSet<&str> {
-    let lines = code.lines().filter(|line| !line.starts_with('#'));
-    let words = lines.flat_map(|line| line.split(|letter: char| !letter.is_alphanumeric() && letter != '_'));
-    let names = words.filter(|word| word.starts_with(|letter: char| letter.is_alphabetic()));
-    names.filter(|name| !MACROS.contains(name)).chain(KEYWORDS_OF_AFTER.iter().copied()).collect()
-}
-
 /// Checks that do not compile if a 64-bit compiler lays out a struct differently than the library.
 fn sizes(code: &str) -> String {
     let mut lines = String::new();
@@ -183,7 +179,7 @@ fn sizes(code: &str) -> String {
             let (kind, rest) = member.rsplit_once(' ').expect("a member has a type and a name");
             let part = match kind {
                 "int" | "unsigned int" => 4,
-                "double" | "unsigned long" => 8,
+                "double" | "unsigned long" | "size_t" => 8,
                 // With LP64 a pointer has 64 bits.
                 _ if rest.starts_with('*') => 8,
                 _ => panic!("the size of {kind} is not known here"),
@@ -193,8 +189,7 @@ fn sizes(code: &str) -> String {
             alignment = alignment.max(part);
         }
         let (name, size) = (name.trim(), size.next_multiple_of(alignment));
-        writeln!(lines, "typedef char Sun2Xp{name}Size[sizeof(struct {name}) == {size} ? 1 : -1];")
-            .expect("a String grows");
+        writeln!(lines, "typedef char {name}_size[sizeof(struct {name}) == {size} ? 1 : -1];").expect("a String grows");
     }
     format!(
         "/* These do not compile if the compiler lays out structs differently than the library. */\n\
@@ -202,61 +197,78 @@ fn sizes(code: &str) -> String {
     )
 }
 
-/// Directives that save the planner's macros, and directives that restore them.
-fn shields(names: &BTreeSet<&str>) -> (String, String) {
-    let pragmas = |pragma: &str| {
-        let mut lines = Vec::<String>::new();
-        for name in names {
-            let next = format!("_Pragma(\"{pragma}_macro(\\\"{name}\\\")\")");
-            match lines.last_mut() {
-                Some(last) if last.len() + next.len() < 120 => write!(last, " {next}").expect("a String grows"),
-                _ => lines.push(next),
-            }
-        }
-        lines.join("\n")
-    };
-    let undefine: String = names.iter().map(|name| format!("#undef {name}\n")).collect();
-    let shield = format!(
-        "/* Macros of the planner whose names are used below are saved here and restored at the end. */\n\
-         #if defined(__clang__) || (defined(__GNUC__) && (__GNUC__ > 4 || (__GNUC__ == 4 && __GNUC_MINOR__ >= 6)))\n\
-         #define SUN2XP_SETS_MACROS_ASIDE\n#endif\n\n\
-         #ifdef SUN2XP_SETS_MACROS_ASIDE\n{}\n{undefine}#endif\n",
-        pragmas("push")
-    );
-    (shield, format!("#ifdef SUN2XP_SETS_MACROS_ASIDE\n{}\n#endif\n", pragmas("pop")))
-}
-
 #[test]
 fn the_committed_header_is_the_one_of_the_exports() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml can be used");
     let part = |name| fs::read_to_string(root.join("src/capi/header").join(name)).expect("a part of the header");
-    let calls_of_1990 = declarations(config.clone(), CALLS_OF_1990);
-    let others = HEADINGS.iter().fold(declarations(config, OTHER_CALLS), |text, (prefix, heading)| {
-        let first = format!("#define {prefix}");
-        text.replacen(&first, &format!("\n/* {heading} */\n{first}"), 1)
-    });
-    let sizes = sizes(&code(&others));
-    let body = format!(
-        "{calls_of_1990}\n\n\
-         #ifndef SUN2XP_FIVE_CALLS\n\n\
-         /* The faults (chapter 10). Numbers never change. */\n{}\n\n\
-         /* The kinds of events (docs/events.md). Numbers never change. */\n{}\n{others}\n\n{sizes}\n\
-         #endif /* SUN2XP_FIVE_CALLS */\n",
-        faults(),
-        events()
-    );
-    let (shield, unshield) = shields(&names(&code(&format!("{calls_of_1990}{others}"))));
+    let calls = without_names(&declarations(config, CALLS_OF_1990));
+    let (shield, unshield) = shields(&names(&code(&calls)));
     let (before, after) =
         (part("before.h").replace("@SHIELD@", &shield), part("after.h").replace("@UNSHIELD@", &unshield));
-    let made = format!("{}\n{before}\n{body}\n{after}", manual(&part("manual.txt")));
+    let made = format!("{}\n{before}\n{calls}\n\n{after}", manual(&part("manual.txt")));
+    assert_committed("Sun2Xp.h", &made);
+}
 
-    let committed = root.join("include/Sun2Xp.h");
+/// The versions as constants.
+fn versions() -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    let parts: Vec<u32> = version.split(['.', '-', '+']).take(3).map(|part| part.parse().expect("a number")).collect();
+    let number = parts.iter().fold(0, |number, part| number * 100 + part);
+    format!(
+        "/* The version of this header. Compare with sun2xp_version_number. */\n\
+         #define SUN2XP_VERSION \"{version}\"\n#define SUN2XP_VERSION_MAJOR {}\n#define SUN2XP_VERSION_MINOR {}\n\
+         #define SUN2XP_VERSION_PATCH {}\n#define SUN2XP_VERSION_NUMBER {number}\n",
+        parts[0], parts[1], parts[2]
+    )
+}
+
+#[test]
+fn the_committed_header_with_handles_is_the_one_of_the_exports() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let config = cbindgen::Config::from_file(root.join("cbindgen-handles.toml")).expect("the file can be used");
+    let part = |name| fs::read_to_string(root.join("src/capi/header").join(name)).expect("a part of the header");
+    let mut declared = declarations(config.clone(), CONSTANTS);
+    for (heading, file) in SECTIONS {
+        let constants = match *heading {
+            "FAULTS" => format!("/* Faults (docs/faults.md). Numbers never change. */\n{}", faults()),
+            "EVENTS" => format!("/* Kinds of events (docs/events.md). Numbers never change. */\n{}", events()),
+            _ => String::new(),
+        };
+        let section = declarations(config.clone(), &[file]);
+        let rule = "-".repeat(108 - heading.len());
+        write!(declared, "\n\n/* ---- {heading} {rule} */\n\n{constants}{}", section.trim_start_matches('\n'))
+            .expect("a String grows");
+    }
+    let sizes = sizes(&code(&declared));
+    let (before, after) = (part("handles-before.h"), part("handles-after.h"));
+    let made = format!("{}\n{before}\n{}\n{declared}\n{sizes}\n{after}", manual(&part("handles.txt")), versions());
+    assert_committed("sun2xp.h", &made);
+}
+
+#[test]
+fn the_abi_has_one_number() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |path: &str| fs::read_to_string(root.join(path)).expect("a source file");
+    let number = |text: &str, before: &str| {
+        let (_, rest) = text.split_once(before).unwrap_or_else(|| panic!("{before}"));
+        rest.split([';', '\n']).next().map(str::to_string).expect("a number")
+    };
+    let of_build = number(&read("build.rs"), "const ABI: u32 = ");
+    assert_eq!(of_build, number(&read("src/capi/version_calls.rs"), "const SUN2XP_ABI_VERSION: c_uint = "));
+    assert_eq!(
+        of_build,
+        number(&read("include/sun2xp.h"), "#define SUN2XP_ABI_VERSION").split_whitespace().next().expect("a number")
+    );
+}
+
+fn assert_committed(name: &str, made: &str) {
+    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("include").join(name);
     if env::var_os("SUN2XP_WRITE_HEADER").is_some() {
-        fs::write(&committed, &made).expect("include/Sun2Xp.h can be written");
+        fs::write(&committed, made).expect("the header can be written");
     }
     assert!(
         fs::read_to_string(&committed).is_ok_and(|text| text == made),
-        "include/Sun2Xp.h is stale. To renew it: SUN2XP_WRITE_HEADER=1 cargo test --test header"
+        "include/{name} is stale. To renew it: SUN2XP_WRITE_HEADER=1 cargo test --test header"
     );
 }

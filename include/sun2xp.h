@@ -1,0 +1,2185 @@
+/* sun2xp.h - hands as sets of springs: the C interface of new programs
+
+   GENERATED from src/capi/; do not edit. To renew it:
+
+       SUN2XP_WRITE_HEADER=1 cargo test --test header
+
+       1. Quick start             4. Structs
+       2. Results and errors      5. Threads, signals, fork, exit
+       3. Units, frames, order    6. Servo and real time
+
+   The calls follow in sections, each with its manual. Sun2Xp.h has the five calls of 1990, which share
+   their hand with this header: sun2xp_default_hand returns its handle.
+
+
+   1. QUICK START
+
+   Example, planner.c:
+
+       #include <stdio.h>
+       #include <sun2xp.h>
+
+       int main(void)
+       {
+           double stiffness[9] = {3, 0, 0, 0, 3, 0, 0, 0, 3};
+           double position[3] = {0.0, 0.5, 0.8};
+           sun2xp_hand *hand;
+
+           if (sun2xp_open(NULL, &hand) != 0) {
+               fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
+               return 1;
+           }
+           sun2xp_send_stiffness(hand, 1, stiffness);
+           sun2xp_send_position(hand, 1, position);
+           sun2xp_wait(hand, 1, SUN2XP_WAIT_SETTLED, 5.0);
+           if (sun2xp_position(hand, 1, position) == 0)
+               printf("%.2f %.2f %.2f\n", position[0], position[1], position[2]);
+           return sun2xp_close(hand) != 0;
+       }
+
+   Example, how to compile and run it:
+
+       cc planner.c -I include -L lib -lsun2xp -Wl,-rpath,lib
+       ./a.out
+
+   Each finger is a spring: it pulls its tip toward the position sent last, with the stiffness sent last.
+   Without a configuration file the program moves a simulated hand.
+
+
+   2. RESULTS AND ERRORS
+
+   A call that returns an int returns 0, or a number above 0 that its entry describes. A refused call
+   returns the negative of a SUN2XP_ERROR_ number, sets errno, and changes nothing unless its entry says
+   otherwise. sun2xp_error gives number, text and remedy of the calling thread's last refused call, for
+   one hand or for any. A call that succeeds changes neither errno nor these. If several reasons apply, a
+   call reports the one that its entry lists first:
+
+       EPERM      SUN2XP_ERROR_FORKED          the process is a forked child (chapter 5)
+       EFAULT     SUN2XP_ERROR_ARGUMENT        an argument is a null pointer
+       ENODEV     SUN2XP_ERROR_NO_HAND         the handle is null, foreign, or of a closed hand
+       EINVAL     SUN2XP_ERROR_ARGUMENT        no such finger; NaN or infinity; a wrong size
+       EINVAL     SUN2XP_ERROR_CONFIGURATION   an unusable configuration
+       ERANGE     SUN2XP_ERROR_LIMIT           outside the limits of the finger
+       EDOM       SUN2XP_ERROR_LIMIT           a matrix that is not symmetric, or has a negative eigenvalue
+       EIO        SUN2XP_ERROR_FAULTED         the finger has stopped by itself
+       EBUSY      SUN2XP_ERROR_BUSY            opened, closed, calibrated or recovered by another call
+       ETIMEDOUT  SUN2XP_ERROR_TIMED_OUT       a time limit is over
+       ENOTSUP    SUN2XP_ERROR_NOT_SUPPORTED   only for simulated fingers or objects
+       ESHUTDOWN  SUN2XP_ERROR_EXITING         the process is exiting (chapter 5)
+       others     errno of the system, or the nearest
+
+   Arrays, structs and texts are read and written only during the call. An output is written only if the
+   call succeeds, and by sun2xp_next_event and sun2xp_wait_event only if they return 1.
+
+   The first refusal of each kind in a process is also a message, unless hand.print_refusals is false.
+   Messages go to the callback of sun2xp_set_log, or to standard error.
+
+
+   3. UNITS, FRAMES, ORDER
+
+   Angles are in rad, lengths in cm, forces in N, torques in N cm, stiffness in N/cm, times in s unless an
+   entry says otherwise. Fingers are 1, 2 and 3; 3 is the thumb. SUN2XP_ALL_FINGERS (0) is accepted only
+   where an entry says so. Joints are 0, 1 and 2: 0 turns the finger sideways, 1 and 2 bend it. Matrices
+   are in row-major order: pass matrix[9], or &matrix[0][0] of matrix[3][3].
+
+   The frame of a finger has its origin at the finger's base. With link lengths l0, l1, l2 the tip is at
+
+       x = (l0 + l1 cos(j1) + l2 cos(j1 + j2)) sin(j0)
+       y = -l1 sin(j1) - l2 sin(j1 + j2)
+       z = (l0 + l1 cos(j1) + l2 cos(j1 + j2)) cos(j0)
+
+
+   4. STRUCTS
+
+   The first member of every struct is size. Set it to the sizeof of the struct before the call. A smaller
+   size is refused. Later versions of the library add members at the end: a program that was compiled with
+   a newer header finds zeros in results that an older library does not know. The library never changes
+   size.
+
+
+   5. THREADS, SIGNALS, FORK, EXIT
+
+   Threads: any thread may make any call, also while other threads make calls. A servo never waits for a
+   call, and no call waits for the opening or closing of another hand. If two threads command one finger,
+   the later call wins; each command takes effect as a whole.
+
+   Signals: the servo threads block all signals. A signal handler may call sun2xp_stop_all, and no other
+   call. C does not guarantee that exit works in a signal handler. If a handler calls exit nevertheless,
+   the library closes the hands. If the signal interrupted a call that opens or closes a hand, the process
+   may end before that hand is closed. Then the boards' watchdogs end the motion.
+
+   The program's arrays, structs and texts may lie in pages that its own handler of SIGSEGV or SIGBUS makes
+   accessible when a call first accesses them.
+
+   Standard error: lines of the library are lost if standard error is a pipe without a reader, or a file
+   that may not grow. The program gets no SIGPIPE and no SIGXFSZ for these lines. A call that prints a line
+   waits until the line is written, but no servo does.
+
+   Stack: a call needs up to 16 KiB of its thread's stack. The stack of each thread of the library contains
+   a copy of the program's thread-local data (__thread). Large thread-local data therefore enlarge the
+   locked memory of each servo.
+
+   Sandbox: install a sandbox (seccomp) before a hand is opened. If it forbids a system call that threads,
+   waits, ports or pseudo-terminals need, opening is refused with the errno of the sandbox.
+
+   Slow calls: the calls that open and close hands, sun2xp_recover, sun2xp_zero, sun2xp_identify,
+   sun2xp_adjust, sun2xp_set_gravity, sun2xp_write_black_box, sun2xp_wait, sun2xp_on_event,
+   sun2xp_event_descriptor and sun2xp_wait_event (while there is no event) run in a thread of the library,
+   and the program's thread waits for it. A signal handler may jump out of that wait (siglongjmp). The call
+   then continues to its end. A sun2xp_wait_event that is left takes no event, and a call that opens a hand
+   and is left writes no handle: the hand stays open until exit.
+
+   Undefined behaviour: the behaviour is undefined if a signal handler jumps out of any other call
+   (longjmp, siglongjmp). The same holds if a handler that interrupted a call calls pthread_exit or, in
+   C++, lets an exception escape.
+
+   Memory: opening allocates the memory for the servos, for closing and for all calls that are not slow,
+   except sun2xp_send_path. These calls work even if malloc later returns NULL. Opening (12 MiB),
+   sun2xp_recover, sun2xp_zero, sun2xp_identify, sun2xp_adjust, sun2xp_set_gravity and
+   sun2xp_write_black_box (4 MiB), sun2xp_send_path (1 MiB), sun2xp_wait, sun2xp_on_event,
+   sun2xp_event_descriptor and sun2xp_wait_event (64 KiB) are refused with ENOMEM if that much memory is
+   not free. If memory runs out while one of them runs, the process is aborted, and the boards' watchdogs
+   end the motion. If less than 4 MiB are free when a finger faults, no black box is written, and a message
+   says so. If the library was loaded with dlopen, the first call of a thread needs memory for its
+   thread-local data. If there is none, the C library aborts the process.
+
+   Cancellation: pthread_cancel does not interrupt a call. It takes effect at the program's next
+   cancellation point or, with asynchronous cancellation, when the call returns.
+
+   Floating point: the library computes in the default environment. A call leaves the program's rounding
+   mode, traps, treatment of denormals and exception flags as they were.
+
+   Fork: a child process has no servo threads. Once a process has opened a hand, every call in a child
+   forked from it is refused with EPERM, except sun2xp_error, sun2xp_error_text, sun2xp_version,
+   sun2xp_version_number, sun2xp_abi_version, sun2xp_default_hand, sun2xp_fault_text and sun2xp_stop_all;
+   the parent is not affected. This applies to children of fork, of _Fork and of the system calls fork and
+   clone, and already inside handlers of pthread_atfork. Before Linux 4.14 it applies only to children of
+   fork, and only after these handlers have run. A child that shares the memory of its parent (vfork) may
+   only call exec. A child that calls exec starts afresh. A hand that is closed releases its ports even if
+   forked children are alive. If the program ends without closing, its ports stay locked until those
+   children have ended too.
+
+   Descriptors: a daemon must detach before it opens a hand. The library's descriptors close at exec. Their
+   numbers are 512 or more if the limit (ulimit -n) permits it, so a program may close all descriptors up
+   to 255 and keep its hands. If a program closes all descriptors, the fingers fault with
+   SUN2XP_FAULT_PORT_CLOSED or SUN2XP_FAULT_PORT_VANISHED. The library does not touch files that the
+   program then opens under these numbers. Closing and opening start a hand again.
+
+   Exit: when a program exits with hands open, an exit handler of the library brings the fingers to their
+   end state, as closing does. The first opening registers that handler (atexit). Exit handlers that the
+   program registers later run before it and find the hands open. Those registered earlier run after it and
+   find the hands closed: calls that only read still work, and calls that would open or move a hand are
+   refused with ESHUTDOWN.
+
+   A program that is killed or calls _exit leaves the motors to the boards, which receive no more commands
+   and enter the configured end state. If the last thread of a process ends by pthread_exit with a hand
+   open, the library ends the process within some seconds, as exit (0) does. dlclose does not unload the
+   library, and the hands stay open.
+
+
+   6. SERVO AND REAL TIME
+
+   By default each finger has its own servo thread, which runs 1000 times a second under SCHED_FIFO, with
+   locked memory and on the configured core. If the system does not permit that, opening follows
+   hand.real_time:
+
+       "try"      the hand works without it, with the jitter of an ordinary process; a message and
+                  sun2xp_status report that
+       "enforce"  opening is refused, and sun2xp_error_text says what to change
+       "ignore"   opening does not try to get real time
+
+   RLIMIT_RTTIME (ulimit -R) limits how long a thread under SCHED_FIFO may run without waiting. A servo
+   waits in every cycle, but the system counts the time in ticks of up to 10 ms. Set the limit to 100000
+   (microseconds) or more, or to unlimited, or set hand.real_time to "ignore".
+
+   sun2xp doctor examines a machine and says what to change. sun2xp_timing reports where the time of a
+   cycle goes. */
+
+#ifndef SUN2XP_HANDLES_H
+#define SUN2XP_HANDLES_H
+
+#include <stddef.h>
+
+/* The structs have the library's layout even after #pragma pack of the program. */
+#if defined(__clang__) || defined(__GNUC__)
+#pragma pack(push, 16)
+#endif
+
+/* Some calls have the name of their struct, which -Wshadow of g++ takes for a hidden constructor. */
+#if defined(__cplusplus) && defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* An open hand. A handle is never dereferenced: a null, foreign or closed handle is refused. */
+typedef struct sun2xp_hand sun2xp_hand;
+
+/* The version of this header. Compare with sun2xp_version_number. */
+#define SUN2XP_VERSION "0.1.0"
+#define SUN2XP_VERSION_MAJOR 0
+#define SUN2XP_VERSION_MINOR 1
+#define SUN2XP_VERSION_PATCH 0
+#define SUN2XP_VERSION_NUMBER 100
+
+#define SUN2XP_ALL_FINGERS 0                /* Takes all fingers of a hand, where the entry of a call says so. Every
+                                               other call refuses it. */
+#define SUN2XP_ERROR_DEFECT 1               /* The library has a defect. Please report it. */
+#define SUN2XP_ERROR_FORKED 2               /* The process is a forked child, which has no servo threads. */
+#define SUN2XP_ERROR_EXITING 3              /* The process is exiting, and its hands are closed. */
+#define SUN2XP_ERROR_NO_HAND 4              /* The handle is not that of an open hand. */
+#define SUN2XP_ERROR_BUSY 5                 /* Hand or finger is busy: being opened, closed, calibrated or recovered.
+                                               Call again later. */
+#define SUN2XP_ERROR_TOO_MANY 6             /* Too many hands, groups or reflexes. */
+#define SUN2XP_ERROR_ARGUMENT 7             /* An argument makes no sense: null, NaN, no such finger, a struct that
+                                               is too small. */
+#define SUN2XP_ERROR_LIMIT 8                /* An argument is outside the limits of the finger: out of reach, too
+                                               fast, too stiff. */
+#define SUN2XP_ERROR_FAULTED 9              /* The finger has stopped because of a fault. */
+#define SUN2XP_ERROR_CONFIGURATION 10       /* The configuration cannot be read, used, changed or stored. */
+#define SUN2XP_ERROR_PORT 11                /* A port or board does not work. */
+#define SUN2XP_ERROR_SYSTEM 12              /* The system refuses a thread, a file or another resource. */
+#define SUN2XP_ERROR_NO_MEMORY 13           /* There is not enough memory. */
+#define SUN2XP_ERROR_TIMED_OUT 14           /* The time limit is over. */
+#define SUN2XP_ERROR_CALIBRATION 15         /* A calibration failed. */
+#define SUN2XP_ERROR_NOT_SUPPORTED 16       /* The hand has not what the call needs, such as a simulated finger or
+                                               object. */
+#define SUN2XP_ERROR_NOT_FOUND 17           /* There is no such record or reflex. */
+#define SUN2XP_ERROR_REAL_TIME 18           /* hand.real_time is "enforce", and real time is not available. */
+
+
+/* ---- ERRORS ------------------------------------------------------------------------------------------------------ */
+
+/* A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread. */
+struct sun2xp_error {
+    size_t size;                            /* In: sizeof (struct sun2xp_error). */
+    int number;                             /* SUN2XP_ERROR_..., or 0 if no call was refused. */
+    int system_errno;                       /* errno of the refusal. */
+    const char *call;                       /* Name of the call; never null. */
+    const char *text;                       /* One line with the name of the call, the cause and the remedy; never
+                                               null. */
+    const char *remedy;                     /* Calls that help, in their order, separated by commas; empty if the
+                                               text has another remedy; never null. */
+};
+
+/*
+ sun2xp_error - the last refused call of the calling thread
+
+   hand    a hand, open or closed; null: any hand
+   error   result; set error->size before the call
+
+ Every thread has its own refusals. It remembers the last one of each of the four hands that have
+ refused a call of this thread most recently. Refusals without a usable handle count for no hand. A
+ call that succeeds does not change the refusals.
+
+ Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
+
+ Threads: any. Works in a forked child too.
+
+ Example:
+
+     struct sun2xp_error error;
+     error.size = sizeof error;
+     if (sun2xp_error(hand, &error) == 0 && error.number == SUN2XP_ERROR_FAULTED)
+         fprintf(stderr, "%s\n", error.text);
+ */
+int sun2xp_error(const sun2xp_hand *hand, struct sun2xp_error *error);
+
+/*
+ sun2xp_error_text - the text of the last refused call of the calling thread
+
+   hand    a hand, open or closed; null: any hand
+
+ Returns the text of sun2xp_error, or an empty string if no call was refused. The pointer is never
+ null, and is valid until the next refused call of the same thread.
+
+ Threads: any. Works in a forked child too.
+ */
+const char *sun2xp_error_text(const sun2xp_hand *hand);
+
+
+/* ---- MESSAGES ---------------------------------------------------------------------------------------------------- */
+
+#define SUN2XP_LOG_REFUSAL 1                /* A call was refused. */
+#define SUN2XP_LOG_WARNING 2                /* The library continues, but not as the user may expect. */
+
+/* A function that takes messages: severity (SUN2XP_LOG_...), one line of text, and the argument of sun2xp_set_log. */
+typedef void (*sun2xp_log)(int severity, const char *text, void *user);
+
+/*
+ sun2xp_set_log - take the messages of the library
+
+   callback   function to call with each message; null: messages go to standard error again
+   user       third argument of each call of the function
+
+ With a callback the library prints nothing. It calls the function where it would print a line: in a
+ thread that opens a hand, in a thread whose call is refused (the first refusal of each kind, unless
+ hand.print_refusals is false), and in a thread of the library that is not real-time. Several threads
+ may call it at the same time. It must make no calls of the library, and must return. The text is
+ valid only during the call. There is one callback for all hands of the process.
+
+ When sun2xp_set_log has returned, the previous callback is not running and is not called again.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EBUSY    the callback itself makes this call
+
+ Threads: any. Waits until the previous callback has returned.
+ */
+int sun2xp_set_log(sun2xp_log callback, void *user);
+
+
+/* ---- VERSIONS ---------------------------------------------------------------------------------------------------- */
+
+#define SUN2XP_ABI_VERSION 0                /* Rises only when programs must be compiled again. build.rs has the same
+                                               number. */
+
+/*
+ sun2xp_version - the version of the library that runs
+
+ Returns a text such as "0.1.0", which stays valid. SUN2XP_VERSION is that of the header.
+
+ Threads: any. Works in a forked child too.
+ */
+const char *sun2xp_version(void);
+
+/*
+ sun2xp_version_number - the version as a number that rises
+
+ Returns 10000 times the major, plus 100 times the minor, plus the patch number, as SUN2XP_VERSION_NUMBER.
+
+ Threads: any. Works in a forked child too.
+ */
+unsigned int sun2xp_version_number(void);
+
+/*
+ sun2xp_abi_version - the number of the binary interface
+
+ A program must not run if this differs from its SUN2XP_ABI_VERSION. The number is part of the name of the shared
+ library, so only a program that loads the library by dlopen needs to compare.
+
+ Threads: any. Works in a forked child too.
+ */
+unsigned int sun2xp_abi_version(void);
+
+
+/* ---- OPENING AND CLOSING ----------------------------------------------------------------------------------------- */
+
+/*
+ sun2xp_open - open the hand of a configuration file
+
+   path   the file; null: the file that OpenHand finds, or the simulated hand if there is none
+   hand   result: the handle of the hand
+
+ Opens the ports, starts the servos and brings the tendons under tension. Returns when every finger has
+ answered and holds its present pose at the configured initial stiffness. Takes at most about a second
+ for a simulated hand. A program may open 16 hands.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   hand is null
+   ENOMEM   there is not enough memory
+   EMFILE   16 hands are open
+   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
+   EINVAL   the configuration is unusable; sun2xp_error_text names file, line and reason
+   ENOENT, EACCES, EBUSY ...  a port cannot be opened; errno of the system
+   ETIMEDOUT and other errnos of a link: a board does not answer, or the device is not a board
+   EIO      a finger does not come under tension in time, or faults before it does
+   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
+            configured core is not available
+
+ Threads: any. Several threads may open hands at the same time.
+
+ Example:
+
+     sun2xp_hand *other;
+     if (sun2xp_open(NULL, &other) != 0) {
+         fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
+         exit(1);
+     }
+ */
+int sun2xp_open(const char *path, sun2xp_hand **hand);
+
+/*
+ sun2xp_open_text - open the hand of a configuration in memory
+
+   configuration   the text, as in a configuration file (TOML, UTF-8)
+   hand            result: the handle of the hand
+
+ A finger without a port in the text is simulated. Calibration results are in force until the hand is
+ closed, and are not stored.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   configuration or hand is null
+   others   as sun2xp_open
+
+ Threads: any.
+
+ Example, a hand of 500 cycles a second:
+
+     sun2xp_hand *other;
+     sun2xp_open_text("[hand]\nrate = 500\n", &other);
+     sun2xp_close(other);
+ */
+int sun2xp_open_text(const char *configuration, sun2xp_hand **hand);
+
+/*
+ sun2xp_open_named - open a simulated hand by its name
+
+   name   "nominal", "worn", "sheathed" or "cheap": what the simulated tendons, gauges and motors are
+          like (docs/real-tendons.md)
+   hand   result: the handle of the hand
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   name or hand is null
+   EINVAL   no hand has this name
+   others   as sun2xp_open
+
+ Threads: any.
+
+ Example:
+
+     sun2xp_hand *other;
+     sun2xp_open_named("nominal", &other);
+     sun2xp_close(other);
+ */
+int sun2xp_open_named(const char *name, sun2xp_hand **hand);
+
+/*
+ sun2xp_close - stop a hand
+
+ Brings every finger to the configured end state and stops the servos, as CloseHand does. The handle
+ is not that of an open hand afterwards, and no later hand has the same handle. At exit the library
+ closes all hands that are still open.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   ENODEV   no such hand
+   EBUSY    in a callback of sun2xp_on_event: another thread is closing the hand
+
+ Threads: any. Waits until the callback of sun2xp_on_event has returned, except in a callback.
+ */
+int sun2xp_close(sun2xp_hand *hand);
+
+/*
+ sun2xp_default_hand - the hand that OpenHand has opened
+
+ Returns the handle, or null if that hand is not open. CloseHand and sun2xp_close close it.
+
+ Threads: any. Works in a forked child too.
+ */
+sun2xp_hand *sun2xp_default_hand(void);
+
+
+/* ---- JOINT ANGLES AND STIFFNESS ---------------------------------------------------------------------------------- */
+
+/*
+ sun2xp_send_position - send desired joint angles to a finger
+
+   finger     1 to 3
+   position   position[3]: desired angles of joints 0, 1, 2, rad
+
+ As SendPos (Sun2Xp.h): all three angles take effect together. From the next cycle on the anchor of the
+ fingertip's spring moves to position, along a straight line in joint angles and at a bounded speed.
+ The call does not wait until the finger arrives.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   position is null
+   ENODEV   no such hand
+   EINVAL   no such finger; an angle is NaN or infinite
+   ERANGE   an angle is outside the joint limits (hand.out_of_range = "clamp" clamps it instead)
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo. Takes about 100 ns.
+
+ Example:
+
+     double position[3] = {0.0, 0.5, 0.8};
+     sun2xp_send_position(hand, 1, position);
+ */
+int sun2xp_send_position(sun2xp_hand *hand, int finger, const double *position);
+
+/*
+ sun2xp_send_stiffness - set the stiffness of a fingertip
+
+   finger      1 to 3
+   stiffness   stiffness[9] or &stiffness[0][0] of stiffness[3][3], row by row: entry [row][column] is
+               the force along axis row (x, y, z of the finger's frame) for a displacement of 1 cm
+               along axis column, N/cm
+
+ As SendKx (Sun2Xp.h), which describes the permitted matrices.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   stiffness is null
+   ENODEV   no such hand
+   EINVAL   no such finger; an entry is NaN or infinite
+   EDOM     the matrix is not symmetric, or has a negative eigenvalue
+   ERANGE   the matrix is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
+   EIO      the finger is faulted
+   ERANGE   the matrix is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio)
+
+ Threads: any. Never waits for a servo. Takes about 1 us.
+
+ Example, softer along z:
+
+     double stiffness[9] = {3, 0, 0, 0, 3, 0, 0, 0, 1};
+     sun2xp_send_stiffness(hand, 1, stiffness);
+ */
+int sun2xp_send_stiffness(sun2xp_hand *hand, int finger, const double *stiffness);
+
+/*
+ sun2xp_position - read the joint angles of a finger
+
+   finger     1 to 3
+   position   result: position[3]: measured angles of joints 0, 1, 2, rad, from the last cycle
+
+ While the servo thread does not run, the angles stay those of its last cycle, and skipped_periods of
+ sun2xp_status grows.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   position is null
+   ENODEV   no such hand
+   EINVAL   no such finger
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo. Takes about 100 ns.
+
+ Example:
+
+     double position[3];
+     if (sun2xp_position(hand, 2, position) == 0)
+         printf("%g %g %g\n", position[0], position[1], position[2]);
+ */
+int sun2xp_position(sun2xp_hand *hand, int finger, double *position);
+
+
+/* ---- FINGERTIPS -------------------------------------------------------------------------------------------------- */
+
+/* Result of sun2xp_tip. Vectors are in the finger's frame. */
+struct sun2xp_tip {
+    size_t size;                            /* sizeof (struct sun2xp_tip), set before the call. */
+    int force_directions;                   /* Number of directions of force that the joints can measure: 3, or fewer
+                                               near singular poses. */
+    double position[3];                     /* Position of the tip: x, y, z, cm. */
+    double force[3];                        /* Force of the tip on the object that it touches: x, y, z, N. It is
+                                               computed from the measured tensions, so it includes friction, weight
+                                               and inertia of the finger. It is never NaN, and is zero along
+                                               directions that the joints cannot measure. */
+    double tensions[4];                     /* Measured tendon tensions, N. */
+    double stiffness[3][3];                 /* Stiffness of the tip in its present pose, N/cm, row by row: the
+                                               fraction of Kx that is in force, plus what joint limits, nearness to
+                                               the axis of joint 0 and the rotational stiffness of a contact add. It
+                                               is zero along directions that the joints cannot measure, and while the
+                                               finger is not running. */
+    double contact_force[3];                /* Force of the tip on the object that it touches: x, y, z, N, without
+                                               friction, weight and inertia of the finger, and without constant
+                                               errors of the gauges. It is zero while the finger is not running. */
+    double slide_speed;                     /* Speed of the tip perpendicular to contact_force, cm/s, while touching:
+                                               the tip slides on the object, or moves it. */
+    int touching;                           /* 1: according to tensions and motion, the finger touches something. 0:
+                                               it does not. */
+};
+
+/*
+ sun2xp_send_tip - send a desired fingertip position to a finger
+
+   finger   1 to 3
+   tip   tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm
+
+ From the next cycle on the anchor of the fingertip's spring moves to Tip, along a straight line in joint
+ angles and at a bounded speed. The stiffness is the one sent last. When the anchor is at Tip and p is
+ the position of the fingertip, the force is Kx (Tip - p) at any distance, whatever the configured
+ controller.law. If several joint solutions are within the joint limits, the call takes the one nearest
+ to the present pose.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   tip is null
+   ENODEV   no such hand
+   EINVAL   no such finger; an entry is NaN or infinite
+   ERANGE   tip is too far, too near, or outside the joint limits; it is never clamped
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo. Takes less than 1 us.
+
+ Example:
+
+     double tip[3] = {0.0, -6.0, 8.0};
+     sun2xp_send_tip(hand, 1, tip);
+ */
+int sun2xp_send_tip(sun2xp_hand *hand, int finger, const double *tip);
+
+/*
+ sun2xp_tip - read position, force and stiffness of a fingertip, and the tendon tensions
+
+   finger   1 to 3
+   tip   result, from the last cycle of the servo; set tip->size before the call
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   tip is null
+   ENODEV   no such hand
+   EINVAL   size is too small; no such finger
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo. Takes about 1 us.
+
+ Example:
+
+     struct sun2xp_tip tip;
+     tip.size = sizeof tip;
+     if (sun2xp_tip(hand, 1, &tip) == 0)
+         printf("%g n along z\n", tip.force[2]);
+ */
+int sun2xp_tip(sun2xp_hand *hand, int finger, struct sun2xp_tip *tip);
+
+/*
+ sun2xp_send_contact - make a fingertip the spring of a contact type
+
+   finger   1 to 3
+   dimensions   dimensions of the contact (section 4.2 of the report):
+            1   frictionless point: a force along the normal
+            3   hard finger with friction: three forces; sun2xp_send_contact (i, 3, Kx, 0) is the same as
+                sun2xp_send_stiffness (i, Kx)
+            4   soft finger: three forces and a moment about the normal
+   stiffness   stiffness[D][D] or K[D * D], row by row. For D = 1: N/cm along the normal.
+               For D = 3 and 4, rows and columns 0 to 2 are x, y, z of the finger's frame, N/cm. For D =
+               4, row and column 3 are the rotation about the normal: N cm/rad on the diagonal, else
+               N/rad
+   normal   normal[3]: the contact normal in the finger's frame, of any length but zero. Always
+            double. Not used for D = 3, and may be null there
+
+ The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last, and
+ a later sun2xp_send_stiffness replaces it. In directions outside the contact, the finger is limp but
+ still damped. K must be symmetric and must have no negative eigenvalue, as for sun2xp_send_stiffness. To
+ compare it with the bound, a rotational stiffness of k N cm/rad is converted to k / (l2 l2) N/cm, where
+ l2 is the length of the last link.
+
+ D = 4 is not a spring in four independent directions, because three joints turn the tip only by moving
+ it. A tip that moves by v cm turns about Normal by c . v rad, and the vector c depends on the pose. A
+ rotational stiffness of k N cm/rad therefore stiffens the tip along c, by k |c| |c| N/cm, and the tip
+ exerts no moment that is independent of its force. In the pose 0, 0.5, 0.8 rad the example below gives
+ 3.24, 3 and 3 N/cm along x, y and z. With Normal along x it gives 3, 3.56 and 4.87 N/cm, and -1.02 N/cm
+ between y and z. Stiffness of sun2xp_tip is the stiffness that results.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   stiffness is null; normal is null for D = 1 or 4
+   ENODEV   no such hand
+   EINVAL   no such finger; no such D; an entry is NaN or infinite
+   EDOM     stiffness is not symmetric, or has a negative eigenvalue; normal is zero
+   ERANGE   stiffness is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
+   EIO      the finger is faulted
+   ERANGE   stiffness is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio
+            instead)
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example, a soft finger:
+
+     double stiffness[4][4] = {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 20}};
+     double normal[3] = {0, -1, 0};
+     sun2xp_send_contact(hand, 1, 4, &stiffness[0][0], normal);
+ */
+int sun2xp_send_contact(sun2xp_hand *hand, int finger, int dimensions, const double *stiffness, const double *normal);
+
+/*
+ sun2xp_send_damping - set the damping of a fingertip
+
+   finger  1 to 3
+   ratio   damping relative to what the controller chooses from the stiffness; 1 after sun2xp_open
+
+ The ratio changes without a jump in torque and stays until another ratio is sent. A finger with much
+ less or much more damping does not come to rest. The range therefore depends on controller, rate and the
+ largest eigenvalue k of the stiffness, N/cm:
+
+                                     1000 Hz and above    below 1000 Hz
+   state feedback         smallest   0.40 + 0.09 k        0.70 + 0.07 k
+                          largest    2.50 - 0.22 k        2.00 - 0.20 k
+   figures 9, 10, 11      smallest   1                    1
+                          largest    2.50 - 0.22 k        2.00 - 0.20 k
+
+ By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1. For a
+ finger with other links or tendons, k is first multiplied by 12.3 N/cm divided by S. S is the smallest
+ stiffness that the tendons give the tip in any direction, with locked motors and with the joints in the
+ middle of their ranges. For the default finger S is 12.3 N/cm. sun2xp_send_stiffness and
+ sun2xp_send_contact refuse a stiffness whose range does not include the ratio sent last.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   ENODEV   no such hand
+   EINVAL   no such finger; ratio is NaN or infinite
+   EIO      the finger is faulted
+   ERANGE   ratio is outside the range that sun2xp_error_text gives (hand.out_of_range = "clamp" clamps
+            it)
+
+ Threads: any. Never waits for a servo. Takes about 100 ns.
+ */
+int sun2xp_send_damping(sun2xp_hand *hand, int finger, double ratio);
+
+
+/* ---- SPRINGS IN JOINT ANGLES ------------------------------------------------------------------------------------- */
+
+/*
+ sun2xp_send_joint_stiffness - make the joints of a finger springs
+
+   finger   1 to 3
+   stiffness   stiffness[3][3] or K[9], row by row: entry [row][column] is the torque of joint row for a
+               deflection of joint column from its set point, N cm/rad
+
+ The torque of the joints is K (Pos - p), with the desired angles Pos and the measured angles p of joints
+ 0, 1 and 2. K takes effect like Kx, without a jump in torque: 95 % of the change has taken effect after
+ 50 ms. It replaces the Kx or contact that was sent last, and a later sun2xp_send_stiffness,
+ sun2xp_send_contact, or Kx of sun2xp_send_group or sun2xp_send_path replaces it. The torque of
+ sun2xp_send_joint_torque stays. K must be symmetric and must have no negative eigenvalue, as for
+ sun2xp_send_stiffness. It may be zero.
+
+ The largest eigenvalue of K may be at most the bound of Kx times l2 l2, where l2 is the length of the
+ last link: by default 96 N cm/rad at 1000 Hz and above, and 80 N cm/rad below. This is the stiffness
+ that a Kx at its bound gives joint 2 in every pose.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   stiffness is null
+   ENODEV   no such hand
+   EINVAL   no such finger; an entry is NaN or infinite
+   EDOM     stiffness is not symmetric, or has a negative eigenvalue
+   ERANGE   stiffness is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
+   EIO      the finger is faulted
+   ERANGE   stiffness is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio
+            instead)
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example:
+
+     double stiffness[3][3] = {{80, 0, 0}, {0, 80, 0}, {0, 0, 50}};
+     sun2xp_send_joint_stiffness(hand, 1, &stiffness[0][0]);
+ */
+int sun2xp_send_joint_stiffness(sun2xp_hand *hand, int finger, const double *stiffness);
+
+/*
+ sun2xp_send_joint_torque - add a constant torque to the joints of a finger
+
+   finger   1 to 3
+   torque   torque[3]: torque of joints 0, 1, 2, N cm; positive torques increase the angles. Always
+            double
+
+ The torque acts in addition to the spring of Kx, of a contact or of sun2xp_send_joint_stiffness, until
+ the next call replaces it; zero ends it. It takes effect like Kx, without a jump. If the stiffness is
+ zero, the finger is controlled by torque alone: a free finger then moves to its joint limits, at a speed
+ that only damping and friction limit. A fault, a calibration, the reactions of reflexes that hold,
+ retract or soften the finger, and a set point that expires end the torque.
+
+ A torque is refused if it needs more tension than a tendon and its motor permit. If the spring, the
+ compensation of gravity and the torque together need more, the servo scales their sum down.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   torque is null
+   ENODEV   no such hand
+   EINVAL   no such finger; a torque is NaN or infinite
+   ERANGE   the tendons cannot make Torque (hand.out_of_range = "clamp" scales it instead)
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo. Takes about 1 us.
+
+ Example:
+
+     double torque[3] = {0, 3, 1.5};
+     sun2xp_send_joint_torque(hand, 1, torque);
+ */
+int sun2xp_send_joint_torque(sun2xp_hand *hand, int finger, const double *torque);
+
+
+/* ---- GROUPS AND WAITING ------------------------------------------------------------------------------------------ */
+
+#define SUN2XP_WAIT_ARRIVED 1               /* Every joint has been within finger.events.arrived_degrees of the set
+                                               point sent last. */
+#define SUN2XP_WAIT_SETTLED 2               /* Since the set point sent last took effect, no joint has moved by more
+                                               than finger.events.settled_degrees for finger.events.settled_ms. */
+
+/* Command to one finger of a group (sun2xp_send_group). */
+struct sun2xp_set_point {
+    size_t size;                            /* sizeof (struct sun2xp_set_point), the same in every command of the
+                                               group. */
+    int finger;                             /* Finger, 1 to 3. */
+    const double *position;                 /* Angles of sun2xp_send_position. Null: the pose stays, or is that of
+                                               tip. */
+    const double *tip;                      /* Position of sun2xp_send_tip. Null: the pose stays, or is that of
+                                               position. */
+    const double *stiffness;                /* Matrix of sun2xp_send_stiffness. Null: the stiffness stays. */
+    double damping;                         /* Ratio of sun2xp_send_damping. 0: the damping stays. */
+};
+
+/*
+ sun2xp_send_group - command several fingers in the same cycle
+
+   count      number of commands, 0 to 3
+   set_points   set_points[count]: one command for each finger of the group, in any order; set Size of
+              every command, and set members that are not used to 0
+
+ Each command has the effect of sun2xp_send_position or sun2xp_send_tip, sun2xp_send_stiffness and
+ sun2xp_send_damping. All fingers of the group follow their commands from the same cycle on, also if
+ different threads serve them: the periods of the servos are numbered for the whole hand, and the group
+ takes effect in the same period for every finger, within two periods. If the call is refused, no finger
+ gets its command.
+
+ If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
+ "board" the periods of the threads follow different clocks. Then a finger may follow one period later,
+ about once in the time in which two of the clocks differ by a period.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   set_points is null
+   ENODEV   no such hand
+   EINVAL   size is too small; count is not 0 to 3; no such finger; two commands for one finger, or
+            position and tip for one finger; an entry is NaN or infinite
+   EDOM, ERANGE  as sun2xp_send_position, sun2xp_send_tip, sun2xp_send_stiffness and sun2xp_send_damping
+   EIO      a finger of the group is faulted
+   EBUSY    16 groups of a finger have not taken effect yet, because they are sent faster than one in
+            a period, or the servo does not run
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example, two fingers close together:
+
+     double position_1[3] = {0.0, 0.5, 0.8}, position_2[3] = {0.0, 0.6, 0.9};
+     static struct sun2xp_set_point set_points[2];
+
+     set_points[0].size = set_points[1].size = sizeof set_points[0];
+     set_points[0].finger = 1;
+     set_points[0].position = position_1;
+     set_points[1].finger = 2;
+     set_points[1].position = position_2;
+     sun2xp_send_group(hand, 2, set_points);
+ */
+int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_point *set_points);
+
+/*
+ sun2xp_wait - wait until fingers have arrived or settled
+
+   finger    1 to 3, or SUN2XP_ALL_FINGERS
+   until     SUN2XP_WAIT_ARRIVED or SUN2XP_WAIT_SETTLED
+   seconds   longest time to wait
+
+ Returns at once if the condition holds already. For all fingers it must hold at the same time. A finger
+ that an object blocks settles without arriving. With a set point of sun2xp_send_tip or a group, the joint
+ angles are those that the call has computed. Other calls work meanwhile. sun2xp_close works too, and this
+ call is then refused.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   ENODEV   no such hand, or it was closed meanwhile
+   EINVAL   no such finger; no such until; seconds is negative or NaN
+   EIO      a finger is faulted
+   EBUSY    a finger is limp, calibrated or closed
+   ETIMEDOUT  the time is over; sun2xp_error_text names a finger that has not arrived or settled
+
+ Threads: any.
+
+ Example:
+
+     if (sun2xp_wait(hand, SUN2XP_ALL_FINGERS, SUN2XP_WAIT_SETTLED, 5.0) != 0)
+         fprintf(stderr, "%s\n", sun2xp_error_text(hand));
+ */
+int sun2xp_wait(sun2xp_hand *hand, int finger, int until, double seconds);
+
+
+/* ---- PATHS ------------------------------------------------------------------------------------------------------- */
+
+/* Pose of a path (sun2xp_send_path). */
+struct sun2xp_path_pose {
+    size_t size;                            /* sizeof (struct sun2xp_path_pose), the same in every pose of the path. */
+    int is_tip;                             /* 0: place holds joint angles. Otherwise: place holds a position of the
+                                               tip. The same in every pose. */
+    double time;                            /* Time since the beginning of the path, s. */
+    double place[3];                        /* Angles of joints 0, 1, 2, rad, or x, y, z of the tip in the finger's
+                                               frame, cm. */
+    const double *stiffness;                /* Matrix of sun2xp_send_stiffness at this pose. Null: the pose does not
+                                               affect the stiffness. */
+};
+
+/*
+ sun2xp_send_path - send a timed path to a finger
+
+   finger    1 to 3
+   count     number of poses, 1 to 128
+   poses     poses[count], in the order of their times; set size of every pose
+   seconds   how long the end of the path is valid, s; 0 for finger.motion.valid_ms
+
+ The path begins at once where the anchor of the fingertip's spring is, continues its motion, passes
+ every pose at its time and rests at the last one. Between poses the joint angles, or the tip, follow a
+ spline. From rest to a single position of the tip, the tip moves along a straight line. Speed,
+ acceleration and jerk are continuous. Because they are fed forward, the finger follows without the lag
+ of sun2xp_send_position. Kx changes linearly from the last pose that has a Kx, or from the beginning.
+
+ The whole path is checked before anything moves: against the joint limits, and against speed,
+ acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
+ slower as a whole instead. Another path, sun2xp_send_position or sun2xp_send_tip replaces the path
+ without a jump, even while the finger follows it. A Kx that is sent while a path runs takes effect at
+ once, and the path no longer changes Kx. After a refused call the finger continues as before.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   poses is null
+   ENOMEM   there is not enough memory for the computation
+   ENODEV   no such hand
+   EINVAL   size is too small; no such finger; count is not 1 to 128; a time is less than 1 ms later
+            than the one before; joint angles and tip positions are mixed; an entry is NaN or infinite
+   EDOM     a Kx is not symmetric, or has a negative eigenvalue
+   ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is too
+            stiff, or the path is too fast; sun2xp_error_text names the pose, and the factor by which the
+            path must be slower
+   EIO      the finger is faulted
+   EBUSY    the finger is being opened or calibrated, or is limp
+   EAGAIN   the finger has become a spring again during the call
+
+ Threads: any. Never waits for a servo. Takes about 1 ms, depending on the number of poses.
+
+ Example:
+
+     static struct sun2xp_path_pose poses[2];
+
+     poses[0].size = poses[1].size = sizeof poses[0];
+     poses[0].time = 0.5;
+     poses[0].place[1] = 0.5, poses[0].place[2] = 0.8;
+     poses[1].time = 1.0;
+     poses[1].place[1] = 0.7, poses[1].place[2] = 1.1;
+     if (sun2xp_send_path(hand, 1, 2, poses, 0) != 0)
+         fprintf(stderr, "%s\n", sun2xp_error_text(hand));
+ */
+int sun2xp_send_path(sun2xp_hand *hand, int finger, int count, const struct sun2xp_path_pose *poses, double seconds);
+
+/*
+ sun2xp_send_position_for - send desired joint angles that expire
+
+   finger    1 to 3
+   position  position[3]: desired angles of joints 0, 1, 2, rad, as for sun2xp_send_position. Always
+             double
+   seconds   how long the angles are valid, s; 0 for finger.motion.valid_ms
+
+ Has the effect of sun2xp_send_position. If no other command of the planner arrives within seconds, the
+ finger no longer follows the angles: by default it holds the pose in which it then is with the soft
+ finger.motion.expired_stiffness. With finger.motion.on_expiry = "end state" it faults.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   position is null
+   ENODEV   no such hand
+   EINVAL   seconds is NaN, negative or more than 3600; no such finger; an angle is NaN or infinite
+   ERANGE   an angle is outside the joint limits (hand.out_of_range = "clamp" clamps it instead)
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo. Takes about 200 ns.
+
+ Example, from a planner that sends every 20 ms:
+
+     double position[3] = {0.0, 0.5, 0.8};
+     sun2xp_send_position_for(hand, 1, position, 0.06);
+ */
+int sun2xp_send_position_for(sun2xp_hand *hand, int finger, const double *position, double seconds);
+
+
+/* ---- KINEMATICS AND GRAVITY -------------------------------------------------------------------------------------- */
+
+/* Result of sun2xp_joint_torques. */
+struct sun2xp_joint_torques {
+    size_t size;                            /* sizeof (struct sun2xp_joint_torques), set before the call. */
+    double measured[3];                     /* Torques of joints 0, 1, 2 from the measured tensions, N cm. They
+                                               include friction, weight and inertia. */
+    double commanded[3];                    /* Torques that the servo commands, N cm, within the tension limits. */
+};
+
+/* Result of sun2xp_palm_pose. Positions and axes are in the palm's frame. */
+struct sun2xp_palm_pose {
+    size_t size;                            /* sizeof (struct sun2xp_palm_pose), set before the call. */
+    double base[3];                         /* Origin of the finger's frame: x, y, z, cm. */
+    double rotation[3][3];                  /* Axes of the finger's frame as columns, row by row. It turns a vector
+                                               of the finger's frame into one of the palm's. */
+    double tip[3];                          /* Position of the tip, from the measured joint angles: x, y, z, cm. */
+    double tip_rotation[3][3];              /* Axes of the last link as columns, row by row. Its z axis points from
+                                               joint 2 to the tip. */
+};
+
+/*
+ sun2xp_jacobian - compute the Jacobian of a fingertip
+
+   finger   1 to 3
+   position   position[3]: angles of joints 0, 1, 2, rad. Null: the measured angles
+   jacobian   result: J[3][3] or J[9], row by row. J[row][column] is the motion of the tip
+         along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8)
+
+ A force f on the tip acts on joint k as the sum over the axes of J[axis][k] f[axis], N cm.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   jacobian is null
+   ENODEV   no such hand
+   EINVAL   no such finger; an angle is NaN or infinite
+   EIO      position is null and the finger is faulted
+
+ Threads: any. Never waits for a servo.
+
+ Example:
+
+     double jacobian[3][3];
+     if (sun2xp_jacobian(hand, 1, NULL, &jacobian[0][0]) == 0)
+         printf("%g cm/rad\n", jacobian[0][0]);
+ */
+int sun2xp_jacobian(sun2xp_hand *hand, int finger, const double *position, double *jacobian);
+
+/*
+ sun2xp_forward_kinematics - compute where a tip is at given joint angles
+
+   finger   1 to 3
+   position   position[3]: angles of joints 0, 1, 2, rad; they may be outside the joint limits. Always
+              double
+   tip   result: Tip[3]: x, y, z of the tip in the finger's frame, cm
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   position or tip is null
+   ENODEV   no such hand
+   EINVAL   no such finger; an angle is NaN or infinite
+
+ Threads: any. Never waits for a servo.
+
+ Example:
+
+     double position[3] = {0.0, 0.5, 0.8}, tip[3];
+     sun2xp_forward_kinematics(hand, 1, position, tip);
+ */
+int sun2xp_forward_kinematics(sun2xp_hand *hand, int finger, const double *position, double *tip);
+
+/*
+ sun2xp_inverse_kinematics - compute the joint angles at which a tip is at a position
+
+   finger   1 to 3
+   tip   tip[3]: x, y, z of the tip in the finger's frame, cm
+   position   result: Pos[3]: angles of joints 0, 1, 2, rad
+
+ If several joint solutions are within the joint limits, the result is the one nearest to the present
+ pose, as with sun2xp_send_tip.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   tip or position is null
+   ENODEV   no such hand
+   EINVAL   no such finger; an entry is NaN or infinite
+   ERANGE   tip is too far, too near, or outside the joint limits
+
+ Threads: any. Never waits for a servo.
+
+ Example:
+
+     double tip[3] = {0.0, -6.0, 8.0}, position[3];
+     if (sun2xp_inverse_kinematics(hand, 1, tip, position) == 0)
+         printf("%g %g %g\n", position[0], position[1], position[2]);
+ */
+int sun2xp_inverse_kinematics(sun2xp_hand *hand, int finger, const double *tip, double *position);
+
+/*
+ sun2xp_joint_torques - read the joint torques of a finger
+
+   finger    1 to 3
+   torques   result, from the last cycle of the servo; set torques->size before the call
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   torques is null
+   ENODEV   no such hand
+   EINVAL   size is too small; no such finger
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo.
+ */
+int sun2xp_joint_torques(sun2xp_hand *hand, int finger, struct sun2xp_joint_torques *torques);
+
+/*
+ sun2xp_palm_pose - read where a finger and its tip are in the palm
+
+   finger   1 to 3
+   pose   result, from the last cycle of the servo; set pose->size before the call
+
+ Base and Rotation follow from the configuration, finger.base and finger.turn_degrees. By default two
+ fingers are side by side, and the thumb is opposite to them.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   pose is null
+   ENODEV   no such hand
+   EINVAL   size is too small; no such finger
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo.
+ */
+int sun2xp_palm_pose(sun2xp_hand *hand, int finger, struct sun2xp_palm_pose *pose);
+
+/*
+ sun2xp_set_gravity - set gravity in the palm's frame, for a hand on a moving arm
+
+   gravity   gravity[3]: gravity along x, y, z of the palm's frame, m/s^2
+
+ Replaces hand.gravity until sun2xp_close. Every finger compensates the new gravity within a cycle and
+ without a jump in torque. It also acts on simulated fingers and on a simulated object. The monitors
+ begin again with every change, so a planner should not change gravity more often than it needs.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   gravity is null
+   ENODEV   no such hand
+   EINVAL   an entry is NaN, infinite or beyond 100 m/s^2
+   EIO      a finger is faulted; the other fingers have the new gravity, and this finger needs another
+            call after sun2xp_recover
+
+ Threads: any. Never waits for a servo. Takes some hundred us, and allocates memory.
+
+ Example, a palm whose x axis points down:
+
+     double gravity[3] = {9.81, 0, 0};
+     sun2xp_set_gravity(hand, gravity);
+ */
+int sun2xp_set_gravity(sun2xp_hand *hand, const double *gravity);
+
+
+/* ---- LIMITS ------------------------------------------------------------------------------------------------------ */
+
+/* Result of sun2xp_limits. */
+struct sun2xp_limits {
+    size_t size;                            /* sizeof (struct sun2xp_limits), set before the call. */
+    double joint_minimum[3];                /* Smallest angles of joints 0, 1, 2, rad. */
+    double joint_maximum[3];                /* Largest angles of joints 0, 1, 2, rad. */
+    double tension_minimum;                 /* Smallest tension of a tendon, N. */
+    double tension_maximum;                 /* Largest tension of a tendon, N. */
+    double motor_torque[4];                 /* Largest torques of the motors, N cm. */
+    double stiffness;                       /* Largest eigenvalue of a stiffness, N/cm. */
+};
+
+/*
+ sun2xp_limits - read the limits of a finger
+
+   finger   1 to 3
+   limits   result; set limits->size before the call
+
+ The limits come from the configuration; sun2xp_adjust can change them.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   limits is null
+   ENODEV   no such hand
+   EINVAL   size is too small; no such finger
+
+ Threads: any. Never waits for a servo.
+
+ Example:
+
+     struct sun2xp_limits limits;
+     limits.size = sizeof limits;
+     if (sun2xp_limits(hand, 1, &limits) == 0)
+         printf("joint 1 bends to %g rad\n", limits.joint_maximum[1]);
+ */
+int sun2xp_limits(sun2xp_hand *hand, int finger, struct sun2xp_limits *limits);
+
+
+/* ---- TOUCH ------------------------------------------------------------------------------------------------------- */
+
+/* Result of sun2xp_touch. */
+struct sun2xp_touch {
+    size_t size;                            /* sizeof (struct sun2xp_touch), set before the call. */
+    int valid;                              /* 1 if the board has reported this element since sun2xp_open and could
+                                               read it, otherwise 0. If it is 0, pressed, count and force are 0 too. */
+    int pressed;                            /* 1 if something presses the element, otherwise 0. */
+    unsigned int count;                     /* The raw count of the element. */
+    double force;                           /* Force on the element, N: its count minus its zero, times
+                                               newton_per_count of the configuration. */
+    unsigned long lost_events;              /* Tactile events of the finger that were lost since sun2xp_open, because
+                                               they did not fit into the queue of the board or because their element
+                                               is not configured. */
+};
+
+/*
+ sun2xp_touch - the newest reading of a tactile element
+
+   finger   1 to 3
+   element  element, from 0, in the order of [finger.touch] in the configuration
+   touch    result; set touch->size before the call
+
+ A board reports an element when its reading changes. The servo fetches one such event of a finger in
+ each period in which the line has time for it. A faulted finger keeps its last readings.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   touch is null
+   ENODEV   no such hand
+   EINVAL   size is too small; no such finger; no such Element
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example:
+
+     struct sun2xp_touch touch;
+     touch.size = sizeof touch;
+     if (sun2xp_touch(hand, 1, 0, &touch) == 0 && touch.valid)
+         printf("%.3f n\n", touch.force);
+ */
+int sun2xp_touch(sun2xp_hand *hand, int finger, int element, struct sun2xp_touch *touch);
+
+/*
+ sun2xp_tare_touch - make the present readings of a finger's tactile elements their zeros
+
+   finger   1 to 3
+
+ Call sun2xp_tare_touch while nothing touches the finger. An element without a valid reading keeps its
+ zero. The zeros are in force until sun2xp_close. The configuration keeps its own zeros.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   ENODEV   no such hand
+   EINVAL   no such finger
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example:
+
+     sun2xp_tare_touch(hand, 1);
+ */
+int sun2xp_tare_touch(sun2xp_hand *hand, int finger);
+
+
+/* ---- SIMULATION -------------------------------------------------------------------------------------------------- */
+
+/* Result of sun2xp_object. Vectors are in the palm's frame. */
+struct sun2xp_object {
+    size_t size;                            /* sizeof (struct sun2xp_object), set before the call. */
+    int touching;                           /* Number of fingers that touch the object. */
+    double time;                            /* Simulated time since sun2xp_open, s. It stops while the machine is too
+                                               busy for the simulation. */
+    double position[3];                     /* Position of the middle: x, y, z, cm. */
+    double rotation[3][3];                  /* Rotation matrix from the object's frame to the palm's, row by row. At
+                                               the start it is the unit matrix. */
+    double velocity[3];                     /* Velocity of the middle, cm/s. */
+    double angular_velocity[3];             /* Angular velocity, rad/s. */
+    double force[3][3];                     /* Force of each finger on the object, N: Force[0] is that of finger 1.
+                                               It is the true force, without the errors of sun2xp_tip. It is zero for
+                                               a finger that does not touch the object. */
+};
+
+/*
+ sun2xp_object - read pose and motion of the object in the simulated hand
+
+   object   result, some milliseconds old at most; set object->size before the call
+
+ All simulated fingers touch one object if hand.simulated_object is configured: a ball or a box with
+ mass, friction and gravity, on a table or not. hand.gravity is its gravity.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   object is null
+   ENODEV   no such hand
+   EINVAL   size is too small
+   ENOTSUP  no object is configured; no finger is simulated
+
+ Threads: any. Never waits for a servo or for the simulation. Takes less than 1 us.
+
+ Example:
+
+     struct sun2xp_object object;
+     object.size = sizeof object;
+     if (sun2xp_object(hand, &object) == 0)
+         printf("z is %g cm, %d fingers touch\n", object.position[2], object.touching);
+ */
+int sun2xp_object(sun2xp_hand *hand, struct sun2xp_object *object);
+
+/*
+ sun2xp_push - push the fingertip of a simulated finger
+
+   finger  1 to 3
+   force   force[3]: force on the fingertip along x, y, z of the finger's frame, N. It
+           acts until the next call; zero ends it
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   force is null
+   ENODEV   no such hand
+   EINVAL   no such finger; an entry is NaN or infinite
+   ENOTSUP  the finger is on a real port
+   ERANGE   a component is beyond 1000 N
+
+ Threads: any.
+ */
+int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
+
+
+/* ---- ADJUSTMENT -------------------------------------------------------------------------------------------------- */
+
+/*
+ sun2xp_adjust - change the configuration of a finger while it runs
+
+   finger   1 to 3
+   keys   lines of TOML, in UTF-8, as under [finger.i] of the configuration file (chapter 8)
+
+ All keys take effect together, within a cycle and without a jump in torque; other keys stay as they are.
+ The change lasts until sun2xp_close: the file is not written. A new controller.law applies from the next
+ sun2xp_send_position on. These keys cannot change while the hand is open: port, baud, reconnect,
+ address, thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
+ motor.torque_constant, stiffness.initial and simulation.
+
+ A configured stiffness.bound was chosen for the configured controller.scheme. If Keys changes
+ controller.scheme but does not set stiffness.bound, the smaller of the configured bound and the default
+ bound applies.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   keys is null
+   ENODEV   no such hand
+   EINVAL   no such finger; keys is not TOML
+   EBUSY    a key cannot change while the hand is open
+   EINVAL   an unknown key; an unusable configuration
+   ERANGE   the position or stiffness sent last is outside the new limits (hand.out_of_range =
+            "clamp" clamps it instead)
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo. Takes about 200 us, and allocates memory.
+
+ Example:
+
+     sun2xp_adjust(hand, 1, "tendon.minimum = 6\ncontroller.tension_gain = 3");
+ */
+int sun2xp_adjust(sun2xp_hand *hand, int finger, const char *keys);
+
+
+/* ---- STATUS ------------------------------------------------------------------------------------------------------ */
+
+#define SUN2XP_STATE_RUNNING 1              /* The fingertip is the spring that the planner has commanded. */
+#define SUN2XP_STATE_FAULTED 2              /* The finger has stopped because of a fault. Its motors are in the
+                                               configured end state. Calls for the finger are refused with EIO until
+                                               sun2xp_recover, or sun2xp_close and sun2xp_open. */
+#define SUN2XP_STATE_LIMP 3                 /* The motors are off after a refused calibration. Set points have no
+                                               effect. The finger becomes a spring again after another calibration,
+                                               or after sun2xp_close and sun2xp_open. */
+#define SUN2XP_STATE_CALIBRATING 4          /* sun2xp_zero or sun2xp_identify moves the finger. Set points have no
+                                               effect. */
+#define SUN2XP_STATE_TENSIONING 5           /* sun2xp_recover or the end of a calibration brings the tendons under
+                                               tension. Set points have no effect. */
+#define SUN2XP_STATE_CLOSED 6               /* The process exits without sun2xp_close, and the finger goes to its
+                                               configured end state or is in it. Only exit handlers and remaining
+                                               threads see this state. */
+
+/* Result of sun2xp_status. */
+struct sun2xp_status {
+    size_t size;                            /* sizeof (struct sun2xp_status), set before the call. */
+    int state;                              /* SUN2XP_STATE_RUNNING to SUN2XP_STATE_CLOSED. */
+    int realtime;                           /* 1: all servo threads of the hand run under SCHED_FIFO. 0: at least one
+                                               does not. */
+    double rate;                            /* Configured servo rate, Hz. */
+    double measured_rate;                   /* Measured servo rate since sun2xp_open, Hz: cycles divided by the time
+                                               up to this call. It falls while the servo does not run. */
+    double wake_up_median;                  /* Jitter: median delay of the start of a cycle, since sun2xp_open or
+                                               sun2xp_reset_timing, us. */
+    double wake_up_p99;                     /* Delay that 99 of 100 cycles did not exceed, over the same time, us. */
+    double wake_up_maximum;                 /* Maximum delay over the same time, us. */
+    double torque_scale;                    /* Fraction of the joint torque that the tension limits admitted in the
+                                               last cycle, 0 to 1. The direction of the torque is kept. */
+    unsigned long cycles;                   /* Cycles since sun2xp_open. */
+    unsigned long skipped_periods;          /* Whole periods in which no cycle began because the previous cycle was
+                                               not over or the servo thread did not run, up to now. One late cycle
+                                               may skip many. */
+    unsigned long lost_replies;             /* Cycles without a valid reply in time. */
+    unsigned long damaged_replies;          /* Pieces of bad data on the finger's port: damaged frames, truncated
+                                               frames and noise. Whole frames that no finger expected count in
+                                               sun2xp_timing.foreign_frames. */
+    double calibration;                     /* Progress of a calibration, 0 to 1. It is 0 if no calibration runs. */
+    int memory_locked;                      /* 1: sun2xp_open has locked the memory of every servo thread, so that no
+                                               servo thread waits for a page. 0: the memory of at least one is not
+                                               locked. If the planner calls munlockall later, this memory is unlocked
+                                               too, and this member stays 1. sun2xp_close and sun2xp_open lock the
+                                               memory again. */
+    int on_core;                            /* 1: each servo thread with a configured core runs on that core. 0: at
+                                               least one does not. */
+    double stiffness_scale;                 /* Fraction of Kx in force in the last cycle, 0 to 1, with every
+                                               controller and law. It is below 1 in poses in which the tendons cannot
+                                               provide the whole Kx, for example near the straight pose. A joint
+                                               beyond its limit can reduce it too, because the spring of the limit
+                                               needs a part of what the tendons provide. sun2xp_tip gives the
+                                               stiffness that results. */
+};
+
+/*
+ sun2xp_status - rate, jitter and losses of a finger's servo
+
+   finger   1 to 3
+   status   result; set status->size before the call
+
+ Works on a faulted finger too. A servo thread does not run while a thread with a higher priority
+ occupies its core, or while a debugger stops it. Then State stays that of the last cycle, and Cycles
+ does not grow. skipped_periods grows with every period, so a planner can compare it with an earlier
+ value to compute how old the pose of sun2xp_position is.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   status is null
+   ENODEV   no such hand
+   EINVAL   size is too small; no such finger
+
+ Threads: any.
+
+ Example:
+
+     struct sun2xp_status status;
+     status.size = sizeof status;
+     if (sun2xp_status(hand, 1, &status) == 0)
+         printf("%.1f hz\n", status.measured_rate);
+ */
+int sun2xp_status(sun2xp_hand *hand, int finger, struct sun2xp_status *status);
+
+
+/* ---- TIMING ------------------------------------------------------------------------------------------------------ */
+
+#define SUN2XP_STAGE_WAKE_UP 0              /* From the scheduled start of a cycle to the thread's first instruction. */
+#define SUN2XP_STAGE_WRITE 1                /* Passing the commands of the port to the system. */
+#define SUN2XP_STAGE_WIRE 2                 /* From the end of SUN2XP_STAGE_WRITE until the reply can be read: the
+                                               line in both directions, and the board. */
+#define SUN2XP_STAGE_READ 3                 /* Reading the reply. */
+#define SUN2XP_STAGE_DECODE 4               /* Decoding the bytes to the finger's reply, including all checks. */
+#define SUN2XP_STAGE_COMPUTE 5              /* Computing the command and the report. */
+#define SUN2XP_STAGE_CYCLE 6                /* From the scheduled start of a cycle to the end of its computation. */
+#define SUN2XP_STAGE_AGE 7                  /* Age of the newest measurement when the command computed from it takes
+                                               effect, by the board's clock. One period if nothing is late. */
+
+/*
+ Result of sun2xp_timing. All times are in ns, accurate to 1 %, at most 4.29e9, and 0 if no cycle had the
+ stage. All values count from sun2xp_open or the last sun2xp_reset_timing of the finger.
+ */
+struct sun2xp_timing {
+    size_t size;                            /* sizeof (struct sun2xp_timing), set before the call. */
+    int stage;                              /* The requested stage. */
+    unsigned long count;                    /* Cycles that had this stage. */
+    unsigned long minimum;                  /* Shortest time of the stage. */
+    unsigned long median;                   /* Half of the cycles took no longer. */
+    unsigned long p99;                      /* 99 of 100 cycles took no longer. */
+    unsigned long p999;                     /* 999 of 1000 cycles took no longer. */
+    unsigned long maximum;                  /* Longest time of the stage. */
+    unsigned long cycles;                   /* All cycles of the finger. This and the members below do not depend on
+                                               stage. */
+    unsigned long overruns;                 /* Cycles that were not over when the next one was due. */
+    unsigned long skipped_periods;          /* Whole periods in which no cycle began because the previous cycle was
+                                               not over or the servo thread did not run, up to the last cycle. */
+    unsigned long lost_replies;             /* Cycles without a valid reply in time. */
+    unsigned long late_replies;             /* Replies that arrived after the end of their cycle. */
+    unsigned long damaged_replies;          /* Pieces of bad data on the finger's port: damaged frames, truncated
+                                               frames and noise. */
+    unsigned long duplicate_replies;        /* Replies that arrived a second time. */
+    unsigned long foreign_frames;           /* Whole frames on the finger's port that no finger expected. */
+};
+
+/*
+ sun2xp_timing - where the time of a finger's cycles goes
+
+   finger   1 to 3
+   stage    SUN2XP_STAGE_WAKE_UP to SUN2XP_STAGE_AGE
+   timing   result; set timing->size before the call
+
+ Works while the servo runs, and on a faulted finger too.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   timing is null
+   ENODEV   no such hand
+   EINVAL   size is too small; no such finger; no such Stage
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example:
+
+     struct sun2xp_timing timing;
+     timing.size = sizeof timing;
+     if (sun2xp_timing(hand, 1, SUN2XP_STAGE_WIRE, &timing) == 0)
+         printf("%lu ns\n", timing.p99);
+ */
+int sun2xp_timing(sun2xp_hand *hand, int finger, int stage, struct sun2xp_timing *timing);
+
+/*
+ sun2xp_reset_timing - restart the counts of sun2xp_timing
+
+   finger   1 to 3, or SUN2XP_ALL_FINGERS
+
+ The counts of sun2xp_status continue. The wake-up times of sun2xp_status restart, because they are those
+ of sun2xp_timing.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   ENODEV   no such hand
+   EINVAL   no such finger
+
+ Threads: any. Never waits for a servo.
+ */
+int sun2xp_reset_timing(sun2xp_hand *hand, int finger);
+
+
+/* ---- FAULTS ------------------------------------------------------------------------------------------------------ */
+
+/* Faults (docs/faults.md). Numbers never change. */
+#define SUN2XP_FAULT_SLACK_TENDON            1 /* slack tendon */
+#define SUN2XP_FAULT_BROKEN_TENDON           2 /* broken tendon */
+#define SUN2XP_FAULT_OVER_TENSION            3 /* over-tension */
+#define SUN2XP_FAULT_GAUGE_STUCK             4 /* gauge stuck */
+#define SUN2XP_FAULT_GAUGE_OUT_OF_RANGE      5 /* gauge out of range */
+#define SUN2XP_FAULT_GAUGE_DISAGREES         6 /* gauge against encoders */
+#define SUN2XP_FAULT_ENCODER_JUMP            7 /* encoder jump */
+#define SUN2XP_FAULT_STALLED_MOTOR           8 /* stalled motor */
+#define SUN2XP_FAULT_OVERHEATED_MOTOR        9 /* over-heated motor */
+#define SUN2XP_FAULT_JOINT_AT_STOP          10 /* joint at its stop */
+#define SUN2XP_FAULT_IMPOSSIBLE_POSE        11 /* impossible pose */
+#define SUN2XP_FAULT_SLACK_IN_MOTION        12 /* slack in motion */
+#define SUN2XP_FAULT_LOST_REPLIES           13 /* lost replies */
+#define SUN2XP_FAULT_DAMAGED_REPLIES        14 /* damaged replies */
+#define SUN2XP_FAULT_LINE_NOISE             15 /* noise on the line */
+#define SUN2XP_FAULT_WATCHDOG               16 /* watchdog */
+#define SUN2XP_FAULT_BOARD_STOPPED          17 /* board stopped */
+#define SUN2XP_FAULT_EMERGENCY_STOP_INPUT   18 /* emergency stop, input */
+#define SUN2XP_FAULT_EMERGENCY_STOP_CALL    19 /* emergency stop, call */
+#define SUN2XP_FAULT_SUPPLY_FAULT           20 /* motor supply */
+#define SUN2XP_FAULT_DRIVER_FAULT           21 /* motor driver */
+#define SUN2XP_FAULT_SENSOR_FAULT           22 /* sensor, by the board */
+#define SUN2XP_FAULT_BOARD_RESET            23 /* board reset */
+#define SUN2XP_FAULT_COMMAND_REFUSED        24 /* command refused */
+#define SUN2XP_FAULT_PORT_VANISHED          25 /* port vanished */
+#define SUN2XP_FAULT_PORT_FAILED            26 /* port failed */
+#define SUN2XP_FAULT_PORT_MISSING           27 /* port missing */
+#define SUN2XP_FAULT_PORT_BUSY              28 /* port busy */
+#define SUN2XP_FAULT_PORT_PERMISSION        29 /* port forbidden */
+#define SUN2XP_FAULT_PORT_UNUSABLE          30 /* port unusable */
+#define SUN2XP_FAULT_BOARD_SILENT           31 /* board silent */
+#define SUN2XP_FAULT_UNINTELLIGIBLE         32 /* no protocol */
+#define SUN2XP_FAULT_UNANSWERED             33 /* finger silent */
+#define SUN2XP_FAULT_WRONG_VERSION          34 /* wrong protocol version */
+#define SUN2XP_FAULT_WRONG_FINGER           35 /* wrong finger */
+#define SUN2XP_FAULT_UNSUITABLE_BOARD       36 /* wrong board */
+#define SUN2XP_FAULT_IDENTITY_CHANGED       37 /* identity changed */
+#define SUN2XP_FAULT_ZERO_LOST              38 /* zero lost */
+#define SUN2XP_FAULT_OVERRUN                39 /* overrun */
+#define SUN2XP_FAULT_REALTIME_REFUSED       40 /* no real time */
+#define SUN2XP_FAULT_SERVO_PANIC            41 /* servo failed */
+#define SUN2XP_FAULT_CURRENT_LIMIT          42 /* current limit */
+#define SUN2XP_FAULT_TORQUE_NOT_ADMITTED    43 /* torque not admitted */
+#define SUN2XP_FAULT_CALIBRATION_FAILED     44 /* calibration failed */
+#define SUN2XP_FAULT_WARM_MOTOR             45 /* warm motor */
+#define SUN2XP_FAULT_COMPANION              46 /* fault of another finger */
+#define SUN2XP_FAULT_PORT_CLOSED            47 /* port closed */
+#define SUN2XP_FAULT_OPENING_TIMED_OUT      48 /* opening timed out */
+#define SUN2XP_FAULT_SAME_NUMBER            49 /* same number */
+#define SUN2XP_FAULT_STOP_CALL              50 /* stop of the finger, call */
+#define SUN2XP_FAULT_SET_POINT_EXPIRED      51 /* set point expired */
+#define SUN2XP_FAULT_REFLEX_STOP            52 /* stopped by a reflex */
+/* Result of sun2xp_fault. */
+struct sun2xp_fault {
+    size_t size;                            /* sizeof (struct sun2xp_fault), set before the call. */
+    int number;                             /* Fault that has stopped the finger: SUN2XP_FAULT_..., or 0 if none has. */
+    int part;                               /* Part that has the fault: joint (0 to 2), or tendon, motor, gauge or
+                                               encoder (1 to 4). sun2xp_fault_text says which kind of part it is. 0
+                                               if the fault concerns the whole finger. */
+    int warning;                            /* Warning of the last second: SUN2XP_FAULT_..., or 0 if there was none. */
+    int warning_part;                       /* Part that the warning concerns, numbered as in part. */
+    double value;                           /* Value of the fault: N, ms, degrees, counts, per cent, errno or status
+                                               bits (docs/faults.md). */
+    double warning_value;                   /* Value of the warning. */
+    unsigned long warnings;                 /* Warnings since sun2xp_open. A warning that persists counts once. */
+};
+
+/*
+ sun2xp_fault - fault and warning of a finger
+
+   finger   1 to 3
+   fault    result; set fault->size before the call
+
+ Returns 0, with or without a fault, or a negative number with
+   EPERM    forked child
+   EFAULT   fault is null
+   ENODEV   no such hand
+   EINVAL   size is too small; no such finger
+
+ Threads: any. Never waits for a servo.
+
+ Example:
+
+     struct sun2xp_fault fault;
+     fault.size = sizeof fault;
+     if (sun2xp_fault(hand, 1, &fault) == 0 && fault.number != 0)
+         fprintf(stderr, "finger 1: %s\n", sun2xp_fault_text(fault.number));
+ */
+int sun2xp_fault(sun2xp_hand *hand, int finger, struct sun2xp_fault *fault);
+
+/*
+ sun2xp_fault_text - description of a fault
+
+   number   SUN2XP_FAULT_...
+
+ Returns one line with the fault's name, its meaning, the likely cause and the remedy, or an empty string
+ if no fault has this number. The pointer is never null, and the text stays valid until the process ends.
+ If a call was refused because of a fault, sun2xp_error_text gives the same text with the part and the
+ values.
+
+ Threads: any. Works in a forked child too.
+ */
+const char *sun2xp_fault_text(int number);
+
+
+/* ---- STOP AND RECOVERY ------------------------------------------------------------------------------------------- */
+
+/*
+ sun2xp_stop_all - emergency stop
+
+ Every finger of every open hand faults (SUN2XP_FAULT_EMERGENCY_STOP_CALL) at the start of its next cycle. The servo
+ commands its board to enter the configured end state, and calls for the finger are refused with EIO
+ until sun2xp_recover, or sun2xp_close and sun2xp_open. A hand that is opened later is not
+ affected.
+
+ With hand.end_state = "release", the default, the torque goes to zero at once. With "hold" the motors
+ keep their last torque, up to hand.hold_torque_limit, for hand.hold_time_ms, by default 2 s and at most
+ a minute. Configure "hold" only for objects that must not be dropped: no call releases the torque
+ earlier. Only the emergency stop input of the board, or cutting the board's power, does.
+
+ sun2xp_stop_all is not a safety function: it needs this process, this machine and the cable.
+
+ Returns 0.
+
+ Threads: any, and signal handlers: it is async-signal-safe, does not set errno and waits for nothing. In
+ a forked child it does nothing.
+
+ Example, for Control-C:
+
+     static void on_interrupt(int signal)
+     {
+         (void)signal;
+         sun2xp_stop_all();
+     }
+
+     signal(SIGINT, on_interrupt);
+ */
+int sun2xp_stop_all(void);
+
+/*
+ sun2xp_stop - stop a finger, or all
+
+   finger   1 to 3, or SUN2XP_ALL_FINGERS
+
+ The finger faults (SUN2XP_FAULT_STOP_CALL) at the start of its next cycle, and its board enters the
+ configured end state, as with sun2xp_stop_all. The other fingers continue, unless hand.on_fault is
+ "hand". The finger stays stopped until sun2xp_recover, or sun2xp_close and sun2xp_open. A finger that
+ has faulted already stays as it is. Like sun2xp_stop_all, this is not a safety function. Unlike
+ sun2xp_stop_all, it must not be called in a signal handler.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   ENODEV   no such hand
+   EINVAL   no such finger
+
+ Threads: any. Never waits for a servo.
+ */
+int sun2xp_stop(sun2xp_hand *hand, int finger);
+
+/*
+ sun2xp_recover - make a faulted finger a spring again
+
+   finger   1 to 3, or SUN2XP_ALL_FINGERS: one after the other
+
+ Queries the identity of the finger's board and configures the board again. If the port has failed and
+ finger.reconnect is true, reopens the port first. Then brings the tendons under tension. The finger
+ holds its present pose at the configured initial stiffness. If another finger on the same port runs, it
+ continues unchanged, and only this finger recovers. Otherwise all fingers on the port recover together. A
+ finger that is not faulted continues unchanged. Remove the cause of the fault first: sun2xp_fault and
+ sun2xp_fault_text name it.
+
+ Waits until the finger holds its pose or faults again, up to some seconds. Other calls work meanwhile.
+ sun2xp_close works too, and this call is then refused.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   ENODEV   no such hand, or it was closed meanwhile; or the port has failed and finger.reconnect
+            is false
+   EINVAL   no such finger
+   EIO      the finger faults again; or its board is not the one found by sun2xp_open, or has lost its
+            zero; or its servo thread has failed (SUN2XP_FAULT_SERVO_PANIC), which only sun2xp_close and
+            sun2xp_open remedy. sun2xp_error_text says which
+   ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: the port is not there yet, the board
+            does not answer, or the servo does not run. Call again
+
+ Threads: any.
+
+ Example:
+
+     while (sun2xp_recover(hand, 1) != 0) {
+         fprintf(stderr, "%s\n", sun2xp_error_text(hand));
+         sleep(1);
+     }
+ */
+int sun2xp_recover(sun2xp_hand *hand, int finger);
+
+
+/* ---- CALIBRATION ------------------------------------------------------------------------------------------------- */
+
+/*
+ sun2xp_zero - find the zeros of a finger's gauges and encoders
+
+   finger   1 to 3
+
+ Slackens the tendons and reads the gauges. Then finds the zero of the encoders by finger.zeroing.method:
+
+   "pose"   The finger stands in finger.zeroing.pose_degrees. It must stand still from the start of
+            the call until it has been read: 0.3 s for a finger that is a spring, some seconds for a
+            limp one, which a jig or a hand must hold. A finger that moves, or that nothing holds,
+            is refused.
+   "stops"  Each joint moves slowly against both of its stops. The finger needs room for that.
+   "kept"   The configured zero stays, if the board reports that its counts are still valid.
+
+ The default is "stops" if the finger is simulated or the configuration gives the positions of its stops,
+ otherwise "pose". At the end the finger holds its present pose at its initial stiffness. A free finger
+ may have moved by up to some tenths of a radian while it was limp.
+
+ The zeros take effect at once. If sun2xp_open has read a configuration file, they are written into that
+ file. All its other keys and comments stay, including those that have changed since sun2xp_open. Several
+ processes may store their results in one file: each waits for the others, at most 30 s.
+
+ Waits until all this is done: some seconds, or up to a minute with "stops". Meanwhile
+ sun2xp_status.calibration gives the progress, other calls work, and set points for this finger have no
+ effect.
+
+ Returns 0, or a negative number with
+   EPERM      forked child
+   ENODEV     no such hand, or it was closed meanwhile
+   EINVAL     no such finger; or the configuration file has changed, and the zeros do not fit it:
+              they are in force until sun2xp_close and not stored
+   EIO        the finger is faulted
+   EBUSY      the finger is being calibrated or recovered already
+   ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
+              joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
+              gives the remedy. The finger is then limp. Exception: if it moved while it was read, or if
+              its counts were not valid, the calibration had not changed anything yet, and the finger is
+              in its former state. If another thread has recovered the finger from a fault during the
+              calibration, the finger holds its pose, with its former zeros
+   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
+   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
+              sun2xp_close
+
+ Threads: any.
+
+ Example:
+
+     if (sun2xp_zero(hand, 1) != 0)
+         fprintf(stderr, "%s\n", sun2xp_error_text(hand));
+ */
+int sun2xp_zero(sun2xp_hand *hand, int finger);
+
+/*
+ sun2xp_identify - measure gauge gains, friction and tendon stiffness of a finger
+
+   finger   1 to 3; it must have been zeroed
+
+ Moves the joints back and forth around their present angles, moves each joint between its two stops,
+ presses against the lower stops with up to 0.6 of the largest tension, and returns to the start.
+ Measures the gains of the gauges, the stiffness of each tendon, its moment arms, and the friction of
+ motors, conduits, pulleys and joints. The results take effect and are stored like those of sun2xp_zero.
+ Takes about 80 s, and needs free space over the whole range of the joints.
+
+ Returns and waits as sun2xp_zero does.
+
+ Threads: any.
+ */
+int sun2xp_identify(sun2xp_hand *hand, int finger);
+
+
+/* ---- EVENTS ------------------------------------------------------------------------------------------------------ */
+
+/* Kinds of events (docs/events.md). Numbers never change. */
+#define SUN2XP_EVENT_TOUCH_MADE              1 /* touch made */
+#define SUN2XP_EVENT_TOUCH_LOST              2 /* touch lost */
+#define SUN2XP_EVENT_TOUCH_SLIP              3 /* touch slips */
+#define SUN2XP_EVENT_TOUCH_PRESSURE          4 /* touch pressure */
+#define SUN2XP_EVENT_CONTACT                 5 /* contact */
+#define SUN2XP_EVENT_CONTACT_LOST            6 /* contact lost */
+#define SUN2XP_EVENT_SLIP                    7 /* slip */
+#define SUN2XP_EVENT_TENSION_BOUND           8 /* tension bound */
+#define SUN2XP_EVENT_FORCE_BOUND             9 /* force bound */
+#define SUN2XP_EVENT_JOINT_AT_LIMIT         10 /* joint at limit */
+#define SUN2XP_EVENT_ARRIVED                11 /* arrived */
+#define SUN2XP_EVENT_SETTLED                12 /* settled */
+#define SUN2XP_EVENT_FAULT                  13 /* fault */
+#define SUN2XP_EVENT_WARNING                14 /* warning */
+#define SUN2XP_EVENT_REFLEX_FIRED           15 /* reflex fired */
+#define SUN2XP_EVENT_PATH_ENDED             16 /* path ended */
+#define SUN2XP_EVENT_EXPIRED                17 /* set point expired */
+#define SUN2XP_EVENT_TOUCH_INVALID          18 /* touch invalid */
+/* An event: something that happened to a finger in one cycle of its servo. */
+struct sun2xp_event {
+    size_t size;                            /* sizeof (struct sun2xp_event), set before the call. */
+    int finger;                             /* Finger, 1 to 3. */
+    int kind;                               /* Kind of the event: SUN2XP_EVENT_... */
+    int part;                               /* Part of the finger that the event concerns: joint (0 to 2), or tendon,
+                                               motor, gauge or encoder (1 to 4). 0 if the event concerns the whole
+                                               finger. */
+    unsigned long cycle;                    /* Number of the cycle to which the event belongs, as in
+                                               sun2xp_status.cycles and sun2xp_record.cycle. */
+    unsigned long lost;                     /* Events that were lost since sun2xp_open, the oldest first, because
+                                               they were not taken in time. */
+    double time;                            /* Time at which this cycle began, s of CLOCK_MONOTONIC. All events of a
+                                               cycle have the same time. */
+    double values[4];                       /* Values, with the meanings and units of the kind (docs/events.md).
+                                               Unused values are 0. */
+};
+
+/*
+ sun2xp_next_event - take the next event
+
+   event    result; set event->size before the call
+
+ Takes the earliest event of all fingers since sun2xp_open that no call has taken yet. Events come in the
+ order of their times, except if a servo is late by more than two periods. Each finger keeps its newest
+ 4096 events. If they are not taken in time, the oldest are lost, and event->lost counts them. A callback
+ of sun2xp_on_event takes nothing away from this call.
+
+ Returns 1 if there was an event, 0 if there was none, or a negative number with
+   EPERM    forked child
+   EFAULT   event is null
+   ENODEV   no such hand
+   EINVAL   size is too small
+
+ Threads: any; each event goes to one thread. Never waits for a servo.
+
+ Example:
+
+     struct sun2xp_event event;
+     event.size = sizeof event;
+     while (sun2xp_next_event(hand, &event) == 1)
+         if (event.kind == SUN2XP_EVENT_SETTLED)
+             printf("finger %d rests at %.2f s\n", event.finger, event.time);
+ */
+int sun2xp_next_event(sun2xp_hand *hand, struct sun2xp_event *event);
+
+/*
+ sun2xp_wait_event - wait for the next event
+
+   event         result; set event->size before the call
+   seconds       longest wait, s; 0 or NaN: no wait; negative: no limit
+
+ Takes an event as sun2xp_next_event does, and waits for one if there is none. sun2xp_close ends the
+ wait.
+
+ Returns 1 if there was an event, 0 if there was none within the time, or a negative number with
+   EPERM    forked child
+   EFAULT   event is null
+   ENODEV   no such hand, or it was closed meanwhile
+   EINVAL   size is too small
+
+ Threads: any; each event goes to one thread. Several threads may wait.
+
+ Example, until finger 1 has settled:
+
+     double position[3] = {0.0, 0.5, 0.8};
+     struct sun2xp_event event;
+     event.size = sizeof event;
+     sun2xp_send_position(hand, 1, position);
+     while (sun2xp_wait_event(hand, &event, 5.0) == 1)
+         if (event.finger == 1 && event.kind == SUN2XP_EVENT_SETTLED)
+             break;
+ */
+int sun2xp_wait_event(sun2xp_hand *hand, struct sun2xp_event *event, double seconds);
+
+/*
+ sun2xp_on_event - call a function with each event
+
+   callback   function to call, or null for none
+   context    second argument of each call of the function
+
+ From now on a thread of the library, which is not real-time, calls Callback with each event. There is
+ one callback for the hand; a later sun2xp_on_event replaces it. While Callback runs, later events wait.
+ Callback may make every call, and must return: no longjmp, pthread_exit or exception.
+
+ When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
+ called again. If they are called by the callback itself, they do not wait for it, and it is not called
+ again after it has returned.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   ENODEV   no such hand
+   EAGAIN   the system refuses to start a thread
+
+ Threads: any, and Callback. Waits until the previous callback has returned.
+
+ Example:
+
+     static void on_contact(const struct sun2xp_event *event, void *context)
+     {
+         (void)context;
+         if (event->kind == SUN2XP_EVENT_CONTACT)
+             printf("finger %d touches something\n", event->finger);
+     }
+
+     sun2xp_on_event(hand, on_contact, NULL);
+ */
+int sun2xp_on_event(sun2xp_hand *hand, void (*callback)(const struct sun2xp_event*, void*), void *context);
+
+/*
+ sun2xp_event_descriptor - a descriptor for poll and select
+
+ The descriptor is readable while sun2xp_next_event would return an event, and when the hand is closed.
+ sun2xp_next_event makes it unreadable when it returns 0, so call sun2xp_next_event until it returns 0
+ after each poll. Do not read, write or close the descriptor. sun2xp_close closes it.
+
+ Returns the descriptor, the same one until sun2xp_close, or a negative number with
+   EPERM    forked child
+   ENODEV   no such hand
+   EMFILE, ENFILE, EAGAIN ...  the system refuses the descriptor or the thread
+
+ Threads: any.
+
+ Example:
+
+     struct pollfd ready;
+     struct sun2xp_event event;
+     ready.fd = sun2xp_event_descriptor(hand);
+     ready.events = POLLIN;
+     event.size = sizeof event;
+     while (poll(&ready, 1, 1000) == 1)
+         while (sun2xp_next_event(hand, &event) == 1)
+             printf("event %d\n", event.kind);
+ */
+int sun2xp_event_descriptor(sun2xp_hand *hand);
+
+
+/* ---- REFLEXES ---------------------------------------------------------------------------------------------------- */
+
+#define SUN2XP_WHEN_EVENT 1                 /* An event of the finger: Event. */
+#define SUN2XP_WHEN_OTHER_FINGER 2          /* An event of another finger: Event and Finger. */
+#define SUN2XP_WHEN_FORCE_ABOVE 3           /* The force of the surroundings on the tip is above Bound, N. */
+#define SUN2XP_WHEN_TENSION_ABOVE 4         /* The tension of any tendon is above Bound, N. */
+#define SUN2XP_WHEN_TENSION_BELOW 5         /* The tension of any tendon is below Bound, N. */
+#define SUN2XP_WHEN_JOINT_ABOVE 6           /* The angle of Joint is above Bound, rad. */
+#define SUN2XP_WHEN_JOINT_BELOW 7           /* The angle of Joint is below Bound, rad. */
+#define SUN2XP_WHEN_LINK_LOST 8             /* The board has not replied for Bound s. */
+#define SUN2XP_WHEN_PLANNER_SILENT 9        /* The planner has sent no set point for Bound s. */
+#define SUN2XP_THEN_STOP 1                  /* The finger stops with a fault. */
+#define SUN2XP_THEN_HOLD 2                  /* The finger stays where it is. */
+#define SUN2XP_THEN_SOFTEN 3                /* The tip gets the stiffness Kx. */
+#define SUN2XP_THEN_RETRACT 4               /* The finger goes to Pos. */
+#define SUN2XP_THEN_GRIP 5                  /* The tip presses harder by Value, N, but not harder than Most, N. It
+                                               needs a Kx without an eigenvalue of 0. */
+#define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio Value. */
+
+/* A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored. */
+struct sun2xp_reflex {
+    size_t size;                            /* sizeof (struct sun2xp_reflex). */
+    int condition;                          /* SUN2XP_WHEN_EVENT to SUN2XP_WHEN_PLANNER_SILENT. */
+    int event;                              /* SUN2XP_EVENT_ constant for SUN2XP_WHEN_EVENT and
+                                               SUN2XP_WHEN_OTHER_FINGER. */
+    int finger;                             /* The other finger for SUN2XP_WHEN_OTHER_FINGER. */
+    int joint;                              /* Joint, 0 to 2, for SUN2XP_WHEN_JOINT_ABOVE and
+                                               SUN2XP_WHEN_JOINT_BELOW. */
+    int reaction;                           /* SUN2XP_THEN_STOP to SUN2XP_THEN_DAMP. */
+    int priority;                           /* If several rules fire in one cycle, the one with the highest priority
+                                               is first; 0 to 255. */
+    double bound;                           /* N, rad or s, as the condition says. */
+    double value;                           /* SUN2XP_THEN_GRIP: increase of the force, N. SUN2XP_THEN_DAMP: ratio. */
+    double largest;                         /* SUN2XP_THEN_GRIP: largest force, N. */
+    double refractory;                      /* Time after a reaction in which the rule does not fire again, s, 0 to
+                                               3600. 0: the rule fires again only after its condition was false. */
+    double inhibition;                      /* Time after a reaction in which the finger ignores set points of the
+                                               planner, s, 0 to 3600. */
+    double position[3];                     /* SUN2XP_THEN_RETRACT: joint angles, rad. SUN2XP_THEN_GRIP: direction in
+                                               the finger's frame in which the tip presses harder; 0, 0, 0 for the
+                                               direction in which its spring presses. */
+    double stiffness[3][3];                 /* SUN2XP_THEN_SOFTEN: stiffness, N/cm, row by row. */
+};
+
+/*
+ sun2xp_install_reflex - let a finger react by itself
+
+   finger   1 to 3
+   reflex   the rule; set reflex->size before the call
+
+ The servo evaluates the rules of a finger in every cycle while the finger is a spring. If the condition
+ becomes true, the command changes within two cycles, or within three cycles for
+ SUN2XP_WHEN_OTHER_FINGER. At most one rule reacts in a cycle; the others wait. Each reaction is an event
+ SUN2XP_EVENT_REFLEX_FIRED with the number of the rule.
+
+ A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
+ later calls that change a part of a set point start from the new one. The next sun2xp_send_position
+ moves the finger again; Inhibition delays that. A rule stays until sun2xp_remove_reflex or sun2xp_close.
+
+ Returns the number of the rule, above 0, or a negative number with
+   EPERM    forked child
+   EFAULT   reflex is null
+   ENODEV   no such hand
+   EINVAL   size is too small; no such finger, joint, condition, reaction or event; Pos or Kx is NaN
+   ERANGE   another value is NaN or outside its range; Pos as in sun2xp_send_position; Kx as in
+            sun2xp_send_stiffness
+   EDOM     Kx as in sun2xp_send_stiffness
+   ENOSPC   the finger has 16 rules
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example, a guarded move:
+
+     static struct sun2xp_reflex guard;
+
+     guard.size = sizeof guard;
+     guard.condition = SUN2XP_WHEN_EVENT;
+     guard.event = SUN2XP_EVENT_CONTACT;
+     guard.reaction = SUN2XP_THEN_HOLD;
+     if (sun2xp_install_reflex(hand, 1, &guard) < 0)
+         puts(sun2xp_error_text(hand));
+ */
+int sun2xp_install_reflex(sun2xp_hand *hand, int finger, const struct sun2xp_reflex *reflex);
+
+/*
+ sun2xp_remove_reflex - remove a rule
+
+   finger   1 to 3
+   number   number of the rule, from sun2xp_install_reflex; 0 for all rules of the finger
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   ENODEV   no such hand
+   EINVAL   no such finger
+   ENOENT   the finger has no rule with this number
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example:
+
+     sun2xp_remove_reflex(hand, 1, 0);
+ */
+int sun2xp_remove_reflex(sun2xp_hand *hand, int finger, int number);
+
+
+/* ---- BLACK BOX --------------------------------------------------------------------------------------------------- */
+
+/* Result of sun2xp_record: one cycle of a finger, from the black box. */
+struct sun2xp_record {
+    size_t size;                            /* sizeof (struct sun2xp_record), set before the call. */
+    int state;                              /* SUN2XP_STATE_RUNNING to SUN2XP_STATE_CLOSED, at the end of the cycle. */
+    unsigned long cycle;                    /* The cycle, counted from sun2xp_open; the first is 1. */
+    unsigned long oldest;                   /* First cycle that is stored now. All cycles from oldest to newest are
+                                               stored. */
+    unsigned long newest;                   /* Last cycle that is stored now. */
+    double time;                            /* Start of the cycle on CLOCK_MONOTONIC, s. */
+    int answered;                           /* 1: the board's reply arrived. 0: it was lost. */
+    int status_bits;                        /* Status bits of the newest reply (docs/board-protocol.md). */
+    int computed;                           /* 1: the controller ran and computed the members below. 0: they are 0,
+                                               because the finger was already faulted or a simulated finger had not
+                                               answered. */
+    int follows;                            /* 1: position_sent is the set point in force. 0: none is in force, and
+                                               position_sent is 0. */
+    double position[3];                     /* Measured joint angles, rad. */
+    double position_sent[3];                /* Joint angles at which the spring is anchored, rad. */
+    double tension[4];                      /* Measured tendon tensions, N. */
+    double tension_sent[4];                 /* Commanded tendon tensions, N. */
+    double torque[4];                       /* Commanded motor torques, N cm. They are sent to the board in the next
+                                               cycle. */
+};
+
+/*
+ sun2xp_record - one cycle of the last two seconds of a finger
+
+   finger   1 to 3
+   cycle    a cycle from record->oldest to record->newest of an earlier call; 0: the newest cycle
+   record   result; set record->size before the call
+
+ A record is a part of what sun2xp_write_black_box writes into a file. Every cycle adds a record and
+ removes the oldest one. A faulted finger adds none, so its records are the last ones before the fault.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   record is null
+   ENODEV   no such hand
+   EINVAL   size is too small; no such finger
+   ENOENT   the cycle is no longer stored, or has not taken place yet
+
+ Threads: any. Never waits for a servo.
+
+ Example, which prints the newer half of the records:
+
+     struct sun2xp_record record;
+     unsigned long cycle, last;
+     record.size = sizeof record;
+     if (sun2xp_record(hand, 1, 0, &record) == 0) {
+         last = record.newest;
+         for (cycle = (record.oldest + last) / 2; cycle <= last; cycle++)
+             if (sun2xp_record(hand, 1, cycle, &record) == 0)
+                 printf("%f %f\n", record.time, record.tension[0]);
+     }
+ */
+int sun2xp_record(sun2xp_hand *hand, int finger, unsigned long cycle, struct sun2xp_record *record);
+
+/*
+ sun2xp_write_black_box - write the last seconds of a finger into a file
+
+   finger  1 to 3
+   path    the file; an existing file is replaced
+
+ The library stores the last two seconds of every finger: feedback, set points, motor commands, timing
+ and state. For a faulted finger these are the last two seconds before the fault. docs/black-box.md
+ describes the file, and `sun2xp replay path` recomputes its cycles. If hand.black_box is set, the
+ library also writes such a file whenever a finger faults.
+
+ The library writes a temporary file in the same folder, whose name begins with ".sun2xp-", and renames
+ it when it is complete and on the disk. So the folder must be writable, and a refused call leaves an old
+ file unchanged. The call takes about 50 ms plus the time that the disk needs for some MB. The servos
+ continue.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   path is null
+   ENODEV   no such hand
+   EINVAL   no such finger; path names something other than a regular file, such as a symbolic link,
+            a device or a folder
+   ENOENT, EACCES, ENOSPC ...  the file cannot be written
+
+ Threads: any. If two calls write to the same path, the file of the last one remains.
+
+ Example:
+
+     sun2xp_write_black_box(hand, 1, "finger-1.jsonl");
+ */
+int sun2xp_write_black_box(sun2xp_hand *hand, int finger, const char *path);
+
+/* These do not compile if the compiler lays out structs differently than the library. */
+#ifdef __LP64__
+typedef char sun2xp_error_size[sizeof(struct sun2xp_error) == 40 ? 1 : -1];
+typedef char sun2xp_tip_size[sizeof(struct sun2xp_tip) == 208 ? 1 : -1];
+typedef char sun2xp_set_point_size[sizeof(struct sun2xp_set_point) == 48 ? 1 : -1];
+typedef char sun2xp_path_pose_size[sizeof(struct sun2xp_path_pose) == 56 ? 1 : -1];
+typedef char sun2xp_joint_torques_size[sizeof(struct sun2xp_joint_torques) == 56 ? 1 : -1];
+typedef char sun2xp_palm_pose_size[sizeof(struct sun2xp_palm_pose) == 200 ? 1 : -1];
+typedef char sun2xp_limits_size[sizeof(struct sun2xp_limits) == 112 ? 1 : -1];
+typedef char sun2xp_touch_size[sizeof(struct sun2xp_touch) == 40 ? 1 : -1];
+typedef char sun2xp_object_size[sizeof(struct sun2xp_object) == 240 ? 1 : -1];
+typedef char sun2xp_status_size[sizeof(struct sun2xp_status) == 120 ? 1 : -1];
+typedef char sun2xp_timing_size[sizeof(struct sun2xp_timing) == 128 ? 1 : -1];
+typedef char sun2xp_fault_size[sizeof(struct sun2xp_fault) == 48 ? 1 : -1];
+typedef char sun2xp_event_size[sizeof(struct sun2xp_event) == 80 ? 1 : -1];
+typedef char sun2xp_reflex_size[sizeof(struct sun2xp_reflex) == 168 ? 1 : -1];
+typedef char sun2xp_record_size[sizeof(struct sun2xp_record) == 208 ? 1 : -1];
+#endif
+
+#ifdef __cplusplus
+}
+#endif
+
+#if defined(__cplusplus) && defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+#if defined(__clang__) || defined(__GNUC__)
+#pragma pack(pop)
+#endif
+
+#endif

@@ -1,0 +1,60 @@
+//! The exported function that changes the configuration of a running finger. Its doc comment is the C manual, as in
+//! `calls.rs`.
+
+use crate::capi::boundary::{MEMORY_OF_CALL, delegated};
+use crate::capi::hand_table;
+use crate::capi::handle::{Handle, sun2xp_hand};
+use crate::capi::memory::non_null;
+use crate::capi::refusal::Wanted;
+use crate::hand::{ConfigurationError, HandError};
+use std::ffi::{CStr, c_char, c_int};
+
+/// sun2xp_adjust - change the configuration of a finger while it runs
+///
+///   finger   1 to 3
+///   keys   lines of TOML, in UTF-8, as under [finger.i] of the configuration file (chapter 8)
+///
+/// All keys take effect together, within a cycle and without a jump in torque; other keys stay as they are.
+/// The change lasts until sun2xp_close: the file is not written. A new controller.law applies from the next
+/// sun2xp_send_position on. These keys cannot change while the hand is open: port, baud, reconnect,
+/// address, thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
+/// motor.torque_constant, stiffness.initial and simulation.
+///
+/// A configured stiffness.bound was chosen for the configured controller.scheme. If Keys changes
+/// controller.scheme but does not set stiffness.bound, the smaller of the configured bound and the default
+/// bound applies.
+///
+/// Returns 0, or a negative number with
+///   EPERM    forked child
+///   EFAULT   keys is null
+///   ENODEV   no such hand
+///   EINVAL   no such finger; keys is not TOML
+///   EBUSY    a key cannot change while the hand is open
+///   EINVAL   an unknown key; an unusable configuration
+///   ERANGE   the position or stiffness sent last is outside the new limits (hand.out_of_range =
+///            "clamp" clamps it instead)
+///   EIO      the finger is faulted
+///
+/// Threads: any. Never waits for a servo. Takes about 200 us, and allocates memory.
+///
+/// Example:
+///
+///     sun2xp_adjust(hand, 1, "tendon.minimum = 6\ncontroller.tension_gain = 3");
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sun2xp_adjust(hand: *mut sun2xp_hand, finger: c_int, keys: *const c_char) -> c_int {
+    let hand = Handle::of(hand);
+    delegated("sun2xp_adjust", hand, MEMORY_OF_CALL, || {
+        non_null(keys, "keys", Wanted::Text)?;
+        // SAFETY: `keys` is not null, as checked above, and by the contract in the manual it is a C string.
+        let keys = unsafe { CStr::from_ptr(keys) }.to_owned();
+        Ok(move || {
+            hand_table::command(hand, |hand| -> Result<(), HandError> {
+                hand.report(finger)?;
+                let reason = "is not UTF-8".to_string();
+                let number = finger.try_into()?;
+                let refused = |_| ConfigurationError::Adjustment { finger: number, line: 1, reason };
+                hand.adjust(finger, keys.to_str().map_err(refused)?)
+            })
+        })
+    })
+}

@@ -1,0 +1,123 @@
+//! The numbers of refusals (SUN2XP_ERROR_...). They never change.
+
+use crate::capi::refusal::Refusal;
+use crate::hand::HandError;
+use std::ffi::c_int;
+
+/// The library has a defect. Please report it.
+pub const SUN2XP_ERROR_DEFECT: c_int = 1;
+
+/// The process is a forked child, which has no servo threads.
+pub const SUN2XP_ERROR_FORKED: c_int = 2;
+
+/// The process is exiting, and its hands are closed.
+pub const SUN2XP_ERROR_EXITING: c_int = 3;
+
+/// The handle is not that of an open hand.
+pub const SUN2XP_ERROR_NO_HAND: c_int = 4;
+
+/// Hand or finger is busy: being opened, closed, calibrated or recovered. Call again later.
+pub const SUN2XP_ERROR_BUSY: c_int = 5;
+
+/// Too many hands, groups or reflexes.
+pub const SUN2XP_ERROR_TOO_MANY: c_int = 6;
+
+/// An argument makes no sense: null, NaN, no such finger, a struct that is too small.
+pub const SUN2XP_ERROR_ARGUMENT: c_int = 7;
+
+/// An argument is outside the limits of the finger: out of reach, too fast, too stiff.
+pub const SUN2XP_ERROR_LIMIT: c_int = 8;
+
+/// The finger has stopped because of a fault.
+pub const SUN2XP_ERROR_FAULTED: c_int = 9;
+
+/// The configuration cannot be read, used, changed or stored.
+pub const SUN2XP_ERROR_CONFIGURATION: c_int = 10;
+
+/// A port or board does not work.
+pub const SUN2XP_ERROR_PORT: c_int = 11;
+
+/// The system refuses a thread, a file or another resource.
+pub const SUN2XP_ERROR_SYSTEM: c_int = 12;
+
+/// There is not enough memory.
+pub const SUN2XP_ERROR_NO_MEMORY: c_int = 13;
+
+/// The time limit is over.
+pub const SUN2XP_ERROR_TIMED_OUT: c_int = 14;
+
+/// A calibration failed.
+pub const SUN2XP_ERROR_CALIBRATION: c_int = 15;
+
+/// The hand has not what the call needs, such as a simulated finger or object.
+pub const SUN2XP_ERROR_NOT_SUPPORTED: c_int = 16;
+
+/// There is no such record or reflex.
+pub const SUN2XP_ERROR_NOT_FOUND: c_int = 17;
+
+/// hand.real_time is "enforce", and real time is not available.
+pub const SUN2XP_ERROR_REAL_TIME: c_int = 18;
+
+/// The number of a refusal.
+pub(super) fn number(refusal: &Refusal) -> c_int {
+    match refusal {
+        Refusal::Panicked(_) => SUN2XP_ERROR_DEFECT,
+        Refusal::Forked => SUN2XP_ERROR_FORKED,
+        Refusal::Exiting => SUN2XP_ERROR_EXITING,
+        Refusal::NoHand => SUN2XP_ERROR_NO_HAND,
+        Refusal::AlreadyOpen | Refusal::Busy | Refusal::InLogCallback => SUN2XP_ERROR_BUSY,
+        Refusal::TooManyHands => SUN2XP_ERROR_TOO_MANY,
+        Refusal::Null { .. } | Refusal::WrongSize { .. } | Refusal::NoSuchName => SUN2XP_ERROR_ARGUMENT,
+        Refusal::NoMemory => SUN2XP_ERROR_NO_MEMORY,
+        Refusal::Hand(error) => of_hand(error),
+    }
+}
+
+fn of_hand(error: &HandError) -> c_int {
+    match error {
+        HandError::NoSuchFinger(_) | HandError::NoSuchStage(_) | HandError::NoSuchElement { .. } => {
+            SUN2XP_ERROR_ARGUMENT
+        }
+        HandError::NotOpened(_) => SUN2XP_ERROR_NOT_SUPPORTED,
+        HandError::SetPoint(_) | HandError::Path(_) | HandError::Reflex(_) => by_errno(error.errno()),
+        HandError::Configuration(_) if error.errno() == libc::ERANGE => SUN2XP_ERROR_LIMIT,
+        HandError::Configuration(_) | HandError::NotStored { .. } => SUN2XP_ERROR_CONFIGURATION,
+        HandError::Recovery(_) if error.errno() == libc::EIO => SUN2XP_ERROR_FAULTED,
+        HandError::Recovery(_) | HandError::Link { .. } | HandError::SameNumber { .. } => SUN2XP_ERROR_PORT,
+        HandError::Faulted { .. } | HandError::FaultedAtOpening { .. } => SUN2XP_ERROR_FAULTED,
+        HandError::SimulatedPort(_) | HandError::System { .. } | HandError::BlackBox { .. } => SUN2XP_ERROR_SYSTEM,
+        HandError::NotRealTime { .. } => SUN2XP_ERROR_REAL_TIME,
+        HandError::Calibration { .. } | HandError::Interrupted(_) => SUN2XP_ERROR_CALIBRATION,
+        HandError::Busy(_) => SUN2XP_ERROR_BUSY,
+        HandError::NotThereInTime(_) | HandError::NoAnswer(_) => SUN2XP_ERROR_TIMED_OUT,
+        HandError::NoRecord { .. } => SUN2XP_ERROR_NOT_FOUND,
+        HandError::TooMuchForce { .. } => SUN2XP_ERROR_LIMIT,
+        HandError::NotSimulated(_) | HandError::NoObject => SUN2XP_ERROR_NOT_SUPPORTED,
+    }
+}
+
+/// The number for the reasons whose kinds only their errnos distinguish.
+fn by_errno(errno: c_int) -> c_int {
+    match errno {
+        libc::ERANGE | libc::EDOM => SUN2XP_ERROR_LIMIT,
+        libc::EBUSY | libc::EAGAIN => SUN2XP_ERROR_BUSY,
+        libc::ENOSPC => SUN2XP_ERROR_TOO_MANY,
+        libc::ENOENT => SUN2XP_ERROR_NOT_FOUND,
+        _ => SUN2XP_ERROR_ARGUMENT,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::SetPointError;
+
+    #[test]
+    fn set_points_are_told_apart_by_their_errnos() {
+        let of = |error: SetPointError| number(&Refusal::Hand(error.into()));
+        assert_eq!(of(SetPointError::NoSuchContact(2)), SUN2XP_ERROR_ARGUMENT);
+        let negative = SetPointError::Negative { finger: crate::model::FingerNumber::ONE, smallest: -1.0 };
+        assert_eq!(of(negative), SUN2XP_ERROR_LIMIT);
+        assert_eq!(number(&Refusal::NoHand), SUN2XP_ERROR_NO_HAND);
+    }
+}

@@ -1,0 +1,115 @@
+//! The events of a hand of the C calls: its queue, and the planner's callback.
+
+use crate::capi::handle::Handle;
+use crate::capi::refusal::Refusal;
+use crate::events::Event;
+use crate::hand::{EventListener, EventQueue, Hand, HandError};
+use parking_lot::{Mutex, RwLock};
+use std::cell::Cell;
+use std::os::fd::RawFd;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// The events of the hand at a place of the table.
+pub(super) struct HandEvents {
+    /// The queue of the open hand. It is shared, so that a thread that waits for an event does not delay closing.
+    queue: RwLock<Option<(Handle, Arc<EventQueue>)>>,
+    /// The callback of the open hand.
+    listener: Mutex<Option<EventListener>>,
+    /// Locked while the planner's callback runs. The exit handler waits for it.
+    calling: Mutex<()>,
+}
+
+/// Set when the process exits. From then on no callback of the planner is called.
+static ENDED: AtomicBool = AtomicBool::new(false);
+
+thread_local! {
+    /// Whether the calling thread is in a callback of the planner.
+    static IN_CALLBACK: Cell<bool> = const { Cell::new(false) };
+}
+
+impl HandEvents {
+    pub const fn new() -> Self {
+        Self { queue: RwLock::new(None), listener: Mutex::new(None), calling: Mutex::new(()) }
+    }
+
+    /// Creates the queue of a hand that is being opened.
+    pub fn open(&self, handle: Handle, hand: &Hand) {
+        *self.queue.write() = Some((handle, Arc::new(hand.events())));
+    }
+
+    /// Ends the callback and the queue of a hand that is closed. Waits until the callback has returned, unless
+    /// `in_callback` is true.
+    pub fn close(&self, in_callback: bool) {
+        self.replace(None, in_callback);
+        drop(self.queue.write().take());
+    }
+
+    /// The queue of an open hand.
+    pub fn queue(&self, handle: Handle) -> Result<Arc<EventQueue>, Refusal> {
+        let queue = self.queue.read();
+        // A hand that is being closed no longer counts as open.
+        let queue = queue.as_ref().filter(|(owner, queue)| *owner == handle && !queue.is_closed());
+        queue.map(|(_, queue)| queue.clone()).ok_or(Refusal::NoHand)
+    }
+
+    /// Waits until there is an event. Returns false after the limit.
+    pub fn wait(&self, handle: Handle, limit: Option<Duration>) -> Result<bool, Refusal> {
+        let queue = self.queue(handle)?;
+        let ready = queue.wait_until_ready(limit);
+        if !ready && queue.is_closed() { Err(Refusal::NoHand) } else { Ok(ready) }
+    }
+
+    /// A descriptor that is readable while there is an event.
+    pub fn descriptor(&self, handle: Handle) -> Result<RawFd, Refusal> {
+        let failed = |source| HandError::System { doing: "create a descriptor for events", source };
+        Ok(self.queue(handle)?.descriptor().map_err(failed)?)
+    }
+
+    /// Starts the thread that calls `callback` with each event of a hand, and with the number of lost events.
+    pub fn listener(
+        &'static self,
+        hand: &Hand,
+        callback: impl FnMut(&Event, u64) + Send + 'static,
+    ) -> Result<EventListener, HandError> {
+        hand.on_event(self.guarded(callback))
+    }
+
+    /// Replaces the callback. Waits until the previous one has returned, unless `in_callback` is true. The caller must
+    /// hold no lock, because the previous callback may make calls that need it.
+    pub fn replace(&self, listener: Option<EventListener>, in_callback: bool) {
+        let previous = std::mem::replace(&mut *self.listener.lock(), listener);
+        match previous {
+            Some(previous) if in_callback => previous.detach(),
+            previous => drop(previous),
+        }
+    }
+
+    /// Returns a function that makes a call of the planner's callback known to [`in_callback`] and [`end`].
+    fn guarded(&'static self, mut callback: impl FnMut(&Event, u64)) -> impl FnMut(&Event, u64) {
+        move |event, lost| {
+            let _calling = self.calling.lock();
+            if !ENDED.load(Ordering::Acquire) {
+                IN_CALLBACK.set(true);
+                callback(event, lost);
+                IN_CALLBACK.set(false);
+            }
+        }
+    }
+}
+
+/// Returns whether the calling thread is in a planner's callback of any hand. Such a thread waits for no callback: two
+/// callbacks that close each other's hand would wait for each other.
+pub(super) fn in_callback() -> bool {
+    IN_CALLBACK.try_with(Cell::get).unwrap_or(false)
+}
+
+/// Prevents further calls of the callbacks when the process exits, because the planner's data are about to be
+/// destroyed. Waits for each callback that is running, for at most `limit`.
+pub(super) fn end<'a>(limit: Duration, hands: impl Iterator<Item = &'a HandEvents>) {
+    ENDED.store(true, Ordering::Release);
+    if !in_callback() {
+        hands.for_each(|events| drop(events.calling.try_lock_for(limit)));
+    }
+}

@@ -1,0 +1,216 @@
+//! The hands of the C calls: a table with a place for the hand of OpenHand, and places for the hands of sun2xp_open.
+
+use crate::capi::hand_events::{self, HandEvents};
+use crate::capi::handle::{Handle, MOST_HANDS};
+use crate::capi::process;
+use crate::capi::refusal::Refusal;
+use crate::capi::reporting;
+use crate::hand::{self, Configured, Hand, HandError};
+use parking_lot::{Mutex, MutexGuard, RwLock};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
+
+/// The place of the hand of OpenHand.
+const DEFAULT: usize = 0;
+
+/// A place for a hand.
+struct Place {
+    /// Locked while a hand is being opened or closed at this place, which takes a long time. Calls for a finger never
+    /// wait for this lock.
+    lifecycle: Mutex<()>,
+    /// Locked for writing only to insert or remove a hand.
+    hand: RwLock<Option<Opened>>,
+    /// The value of the handle of the open hand; 0 if there is none.
+    handle: AtomicUsize,
+    events: HandEvents,
+}
+
+struct Opened {
+    handle: Handle,
+    hand: Hand,
+}
+
+static TABLE: [Place; MOST_HANDS + 1] = [const {
+    Place { lifecycle: Mutex::new(()), hand: RwLock::new(None), handle: AtomicUsize::new(0), events: HandEvents::new() }
+}; MOST_HANDS + 1];
+
+/// Number of hands opened so far. It makes the handles of two hands different.
+static OPENED: AtomicUsize = AtomicUsize::new(0);
+
+/// Set when the process exits, before the exit handler of the library closes the hands. From then on no call may open
+/// a hand, because nothing would close it. No call may move an open hand either, because the exit handler closes it.
+static EXITING: AtomicBool = AtomicBool::new(false);
+
+/// Longest time that exit waits for a call in progress. The wait is limited because that call may be in the exiting
+/// thread itself, interrupted by a signal handler that calls exit.
+const LONGEST_WAIT_AT_EXIT: Duration = Duration::from_millis(100);
+
+/// Interval at which a close checks whether another thread has closed the hand.
+const CLOSING_PERIOD: Duration = Duration::from_millis(5);
+
+/// Where the configuration of a hand comes from.
+pub(super) enum Source {
+    /// The file that OpenHand finds, or none.
+    Found,
+    File(PathBuf),
+    Text(String),
+}
+
+impl Source {
+    fn read(self) -> Result<Configured, HandError> {
+        let configured = match self {
+            Self::Found => hand::find_configuration(),
+            Self::File(path) => Configured::read(&path),
+            Self::Text(text) => Configured::from_text(&text),
+        };
+        configured.map_err(HandError::from)
+    }
+}
+
+/// The handle of the hand of OpenHand; null if it is not open.
+pub(super) fn default_handle() -> Handle {
+    Handle::from_value(TABLE[DEFAULT].handle.load(Ordering::Acquire))
+}
+
+/// Opens the hand of OpenHand.
+pub(super) fn open_default() -> Result<(), Refusal> {
+    refuse_while_exiting()?;
+    let Some(_opening) = TABLE[DEFAULT].lifecycle.try_lock() else { return Err(Refusal::Busy) };
+    if TABLE[DEFAULT].hand.read().is_some() {
+        return Err(Refusal::AlreadyOpen);
+    }
+    open_at(DEFAULT, Source::Found).map(drop)
+}
+
+/// Opens another hand.
+pub(super) fn open(source: Source) -> Result<Handle, Refusal> {
+    refuse_while_exiting()?;
+    let (place, _opening) = free_place().ok_or(Refusal::TooManyHands)?;
+    open_at(place, source)
+}
+
+fn free_place() -> Option<(usize, MutexGuard<'static, ()>)> {
+    (DEFAULT + 1..TABLE.len()).find_map(|place| {
+        let opening = TABLE[place].lifecycle.try_lock()?;
+        TABLE[place].hand.read().is_none().then_some((place, opening))
+    })
+}
+
+/// Opens a hand at a free place. The caller has locked its lifecycle.
+fn open_at(place: usize, source: Source) -> Result<Handle, Refusal> {
+    process::watch(close_at_exit);
+    let configured = source.read()?;
+    reporting::set_printing(configured.configuration.hand.print_refusals);
+    let hand = Hand::open_as(configured)?;
+    // If the process exits, this line returns an error, and the return drops the hand, which closes it. The exit
+    // handler waits only briefly for this call, so it cannot be relied on to close this hand.
+    refuse_while_exiting()?;
+    let handle = Handle::new(OPENED.fetch_add(1, Ordering::Relaxed), place);
+    let Place { events, hand: slot, handle: value, .. } = &TABLE[place];
+    events.open(handle, &hand);
+    *slot.write() = Some(Opened { handle, hand });
+    value.store(handle.value(), Ordering::Release);
+    Ok(handle)
+}
+
+/// Closes the hand of OpenHand, if it is open.
+pub(super) fn close_default() -> Result<(), Refusal> {
+    let _closing = TABLE[DEFAULT].lifecycle.lock();
+    TABLE[DEFAULT].close(false);
+    Ok(())
+}
+
+/// Closes the hand of OpenHand on behalf of a planner's callback for events.
+pub(super) fn close_default_in_callback() -> Result<(), Refusal> {
+    // A CloseHand of another thread waits for the callback, so waiting for that call would be a deadlock.
+    let Some(_closing) = TABLE[DEFAULT].lifecycle.try_lock() else { return Err(Refusal::Busy) };
+    TABLE[DEFAULT].close(true);
+    Ok(())
+}
+
+/// Closes a hand. `in_callback` says whether a planner's callback for events makes the call.
+pub(super) fn close(handle: Handle, in_callback: bool) -> Result<(), Refusal> {
+    loop {
+        // The place of a closed hand may have another hand, for which this call must not wait.
+        let place = Place::of(handle)?;
+        if let Some(_closing) = place.lifecycle.try_lock_for(if in_callback { Duration::ZERO } else { CLOSING_PERIOD })
+        {
+            Place::of(handle)?.close(in_callback);
+            return Ok(());
+        }
+        if in_callback {
+            return Err(Refusal::Busy);
+        }
+    }
+}
+
+impl Place {
+    /// The place of an open hand.
+    fn of(handle: Handle) -> Result<&'static Self, Refusal> {
+        let place = handle.place().and_then(|place| TABLE.get(place)).ok_or(Refusal::NoHand)?;
+        if place.handle.load(Ordering::Acquire) == handle.value() { Ok(place) } else { Err(Refusal::NoHand) }
+    }
+
+    fn close(&self, in_callback: bool) {
+        self.handle.store(0, Ordering::Release);
+        let opened = self.hand.write().take();
+        // Dropping the hand takes a long time. `hand` is already unlocked, so other calls are refused instead of
+        // waiting.
+        drop(opened);
+        // The callback may take longer than the hand.
+        self.events.close(in_callback);
+    }
+}
+
+fn close_at_exit() {
+    EXITING.store(true, Ordering::Release);
+    // All hands move to their end states at the same time.
+    each_at_exit(Hand::request_end);
+    each_at_exit(Hand::end);
+    hand_events::end(LONGEST_WAIT_AT_EXIT, TABLE.iter().map(|place| &place.events));
+}
+
+/// The hands end without being dropped: a signal handler may have called exit in the middle of malloc, and then free
+/// would never return.
+fn each_at_exit(call: impl Fn(&Hand)) {
+    for place in &TABLE {
+        if let Some(_closing) = place.lifecycle.try_lock_for(LONGEST_WAIT_AT_EXIT)
+            && let Some(opened) = place.hand.try_read_for(LONGEST_WAIT_AT_EXIT)
+            && let Some(opened) = &*opened
+        {
+            call(&opened.hand);
+        }
+    }
+}
+
+/// Runs `call` on an open hand.
+#[inline]
+pub(super) fn with<T, E: Into<Refusal>>(
+    handle: Handle,
+    call: impl FnOnce(&Hand) -> Result<T, E>,
+) -> Result<T, Refusal> {
+    let place = handle.place().and_then(|place| TABLE.get(place)).ok_or(Refusal::NoHand)?;
+    let opened = place.hand.read();
+    let opened = opened.as_ref().filter(|opened| opened.handle == handle).ok_or(Refusal::NoHand)?;
+    call(&opened.hand).map_err(E::into)
+}
+
+/// Runs `call`, which moves an open hand or changes how it moves. It is refused while the process exits, because the
+/// hand is then closed, and the call would have no effect.
+pub(super) fn command<T, E: Into<Refusal>>(
+    handle: Handle,
+    call: impl FnOnce(&Hand) -> Result<T, E>,
+) -> Result<T, Refusal> {
+    refuse_while_exiting()?;
+    with(handle, call)
+}
+
+/// The events of an open hand. They can be used without locking the hand.
+pub(super) fn events(handle: Handle) -> Result<&'static HandEvents, Refusal> {
+    handle.place().and_then(|place| TABLE.get(place)).map(|place| &place.events).ok_or(Refusal::NoHand)
+}
+
+fn refuse_while_exiting() -> Result<(), Refusal> {
+    if EXITING.load(Ordering::Acquire) { Err(Refusal::Exiting) } else { Ok(()) }
+}

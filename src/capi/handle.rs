@@ -1,0 +1,78 @@
+//! Handles: how C programs name an open hand.
+//!
+//! A handle is a pointer by its type only. Its value contains a tag, a number that no earlier hand of the process had,
+//! and the place of the hand in the table. Nothing dereferences it, so a null, foreign or closed handle is refused.
+
+use std::ptr::without_provenance_mut;
+
+/// An open hand. A program has only pointers to it.
+// The name of the header.
+#[allow(non_camel_case_types)]
+#[repr(C)]
+pub struct sun2xp_hand {
+    _private: [u8; 0],
+}
+
+/// The value of a handle; 0 is that of a null pointer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Handle(usize);
+
+/// Most hands that sun2xp_open has open at a time.
+pub(super) const MOST_HANDS: usize = 16;
+
+/// Bits of the place in the table.
+const PLACE_BITS: u32 = 8;
+
+/// Bits of the tag. With 64 bits, no pointer to memory of a program has these bits set.
+const TAG_BITS: u32 = usize::BITS / 4;
+
+/// "Sx". On 32-bit machines only the last letter is left.
+const TAG: usize = 0x5378 & ((1 << TAG_BITS) - 1);
+
+impl Handle {
+    pub const NULL: Self = Self(0);
+
+    /// The handle of the hand with this number at this place of the table.
+    pub fn new(number: usize, place: usize) -> Self {
+        let number_bits = usize::BITS - TAG_BITS - PLACE_BITS;
+        let number = number & ((1 << number_bits) - 1);
+        Self(TAG << (usize::BITS - TAG_BITS) | number << PLACE_BITS | place)
+    }
+
+    pub fn of(pointer: *const sun2xp_hand) -> Self {
+        Self(pointer.addr())
+    }
+
+    pub fn from_value(value: usize) -> Self {
+        Self(value)
+    }
+
+    pub fn value(self) -> usize {
+        self.0
+    }
+
+    pub fn to_c(self) -> *mut sun2xp_hand {
+        without_provenance_mut(self.0)
+    }
+
+    /// The place in the table; none if the library never gives out such a handle.
+    pub fn place(self) -> Option<usize> {
+        (self.0 >> (usize::BITS - TAG_BITS) == TAG).then_some(self.0 & ((1 << PLACE_BITS) - 1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_handles_have_a_place() {
+        let number = 7;
+        assert_eq!(Handle::NULL.place(), None);
+        assert_eq!(Handle::of((&raw const number).cast()).place(), None);
+        let handle = Handle::new(number, 15);
+        assert_eq!(Handle::of(handle.to_c()), handle);
+        assert_eq!(handle.place(), Some(15));
+        assert_ne!(handle, Handle::new(number + 1, 15));
+    }
+}

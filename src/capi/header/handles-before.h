@@ -1,0 +1,22 @@
+#ifndef SUN2XP_HANDLES_H
+#define SUN2XP_HANDLES_H
+
+#include <stddef.h>
+
+/* The structs have the library's layout even after #pragma pack of the program. */
+#if defined(__clang__) || defined(__GNUC__)
+#pragma pack(push, 16)
+#endif
+
+/* Some calls have the name of their struct, which -Wshadow of g++ takes for a hidden constructor. */
+#if defined(__cplusplus) && defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* An open hand. A handle is never dereferenced: a null, foreign or closed handle is refused. */
+typedef struct sun2xp_hand sun2xp_hand;

@@ -1,0 +1,81 @@
+//! The exported function for messages. Its doc comment is the C manual, as in `calls.rs`.
+
+// The names of the header.
+#![allow(non_camel_case_types)]
+
+use crate::capi::boundary::guarded;
+use crate::capi::handle::Handle;
+use crate::capi::planners_pointer::PlannersPointer;
+use crate::capi::refusal::Refusal;
+use crate::capi::text::Text;
+use crate::realtime::{Severity, offer_messages_to};
+use parking_lot::RwLock;
+use std::cell::Cell;
+use std::ffi::{c_char, c_int, c_void};
+
+/// A call was refused.
+pub const SUN2XP_LOG_REFUSAL: c_int = 1;
+
+/// The library continues, but not as the user may expect.
+pub const SUN2XP_LOG_WARNING: c_int = 2;
+
+/// A function that takes messages: severity (SUN2XP_LOG_...), one line of text, and the argument of sun2xp_set_log.
+pub type sun2xp_log = Option<extern "C" fn(severity: c_int, text: *const c_char, user: *mut c_void)>;
+
+type Callback = extern "C" fn(c_int, *const c_char, *mut c_void);
+
+/// The callback in force. It is locked for reading while the callback runs.
+static CALLBACK: RwLock<Option<(Callback, PlannersPointer)>> = RwLock::new(None);
+
+thread_local! {
+    /// Whether the calling thread is in the callback.
+    static IN_CALLBACK: Cell<bool> = const { Cell::new(false) };
+}
+
+/// sun2xp_set_log - take the messages of the library
+///
+///   callback   function to call with each message; null: messages go to standard error again
+///   user       third argument of each call of the function
+///
+/// With a callback the library prints nothing. It calls the function where it would print a line: in a
+/// thread that opens a hand, in a thread whose call is refused (the first refusal of each kind, unless
+/// hand.print_refusals is false), and in a thread of the library that is not real-time. Several threads
+/// may call it at the same time. It must make no calls of the library, and must return. The text is
+/// valid only during the call. There is one callback for all hands of the process.
+///
+/// When sun2xp_set_log has returned, the previous callback is not running and is not called again.
+///
+/// Returns 0, or a negative number with
+///   EPERM    forked child
+///   EBUSY    the callback itself makes this call
+///
+/// Threads: any. Waits until the previous callback has returned.
+#[unsafe(no_mangle)]
+pub extern "C" fn sun2xp_set_log(callback: sun2xp_log, user: *mut c_void) -> c_int {
+    guarded("sun2xp_set_log", Handle::NULL, || {
+        if IN_CALLBACK.get() {
+            return Err(Refusal::InLogCallback);
+        }
+        offer_messages_to(pass_on);
+        *CALLBACK.write() = callback.map(|callback| (callback, PlannersPointer(user)));
+        Ok(())
+    })
+}
+
+/// Passes a message to the callback. Returns false if there is none.
+fn pass_on(severity: Severity, message: &str) -> bool {
+    // This must not wait: in a forked child, nothing releases a lock that another thread of the parent held.
+    let Some(callback) = CALLBACK.try_read() else { return true };
+    let Some((callback, user)) = &*callback else { return false };
+    let mut text = Text::<2048>::EMPTY;
+    text.compose(format_args!("{message}"));
+    let severity = match severity {
+        Severity::Refusal => SUN2XP_LOG_REFUSAL,
+        Severity::Warning => SUN2XP_LOG_WARNING,
+    };
+    if !IN_CALLBACK.replace(true) {
+        callback(severity, text.as_c_string(), user.0);
+        IN_CALLBACK.set(false);
+    }
+    true
+}

@@ -1,0 +1,179 @@
+//! The exported functions that open and close hands. Their doc comments are the C manual, as in `calls.rs`.
+
+use crate::capi::boundary::{MEMORY_OF_HAND, delegated, delegated_or_done_here, uncancelled};
+use crate::capi::hand_events::in_callback;
+use crate::capi::hand_table::{self, Source, default_handle};
+use crate::capi::handle::{Handle, sun2xp_hand};
+use crate::capi::memory::non_null;
+use crate::capi::refusal::{Refusal, Wanted};
+use crate::model::configuration::NamedHand;
+use std::ffi::{CStr, OsStr, c_char, c_int};
+use std::os::unix::ffi::OsStrExt;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// sun2xp_open - open the hand of a configuration file
+///
+///   path   the file; null: the file that OpenHand finds, or the simulated hand if there is none
+///   hand   result: the handle of the hand
+///
+/// Opens the ports, starts the servos and brings the tendons under tension. Returns when every finger has
+/// answered and holds its present pose at the configured initial stiffness. Takes at most about a second
+/// for a simulated hand. A program may open 16 hands.
+///
+/// Returns 0, or a negative number with
+///   EPERM    forked child
+///   EFAULT   hand is null
+///   ENOMEM   there is not enough memory
+///   EMFILE   16 hands are open
+///   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
+///   EINVAL   the configuration is unusable; sun2xp_error_text names file, line and reason
+///   ENOENT, EACCES, EBUSY ...  a port cannot be opened; errno of the system
+///   ETIMEDOUT and other errnos of a link: a board does not answer, or the device is not a board
+///   EIO      a finger does not come under tension in time, or faults before it does
+///   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
+///            configured core is not available
+///
+/// Threads: any. Several threads may open hands at the same time.
+///
+/// Example:
+///
+///     sun2xp_hand *other;
+///     if (sun2xp_open(NULL, &other) != 0) {
+///         fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
+///         exit(1);
+///     }
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sun2xp_open(path: *const c_char, hand: *mut *mut sun2xp_hand) -> c_int {
+    // SAFETY: here and below, by the contract in the manual, each pointer is null or points to what it is for.
+    unsafe {
+        open("sun2xp_open", hand, || {
+            if path.is_null() {
+                return Ok(Source::Found);
+            }
+            Ok(Source::File(PathBuf::from(OsStr::from_bytes(CStr::from_ptr(path).to_bytes()))))
+        })
+    }
+}
+
+/// sun2xp_open_text - open the hand of a configuration in memory
+///
+///   configuration   the text, as in a configuration file (TOML, UTF-8)
+///   hand            result: the handle of the hand
+///
+/// A finger without a port in the text is simulated. Calibration results are in force until the hand is
+/// closed, and are not stored.
+///
+/// Returns 0, or a negative number with
+///   EPERM    forked child
+///   EFAULT   configuration or hand is null
+///   others   as sun2xp_open
+///
+/// Threads: any.
+///
+/// Example, a hand of 500 cycles a second:
+///
+///     sun2xp_hand *other;
+///     sun2xp_open_text("[hand]\nrate = 500\n", &other);
+///     sun2xp_close(other);
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sun2xp_open_text(configuration: *const c_char, hand: *mut *mut sun2xp_hand) -> c_int {
+    // SAFETY: as above.
+    unsafe {
+        open("sun2xp_open_text", hand, || {
+            non_null(configuration, "configuration", Wanted::Text)?;
+            let text = CStr::from_ptr(configuration).to_bytes();
+            Ok(Source::Text(String::from_utf8_lossy(text).into_owned()))
+        })
+    }
+}
+
+/// sun2xp_open_named - open a simulated hand by its name
+///
+///   name   "nominal", "worn", "sheathed" or "cheap": what the simulated tendons, gauges and motors are
+///          like (docs/real-tendons.md)
+///   hand   result: the handle of the hand
+///
+/// Returns 0, or a negative number with
+///   EPERM    forked child
+///   EFAULT   name or hand is null
+///   EINVAL   no hand has this name
+///   others   as sun2xp_open
+///
+/// Threads: any.
+///
+/// Example:
+///
+///     sun2xp_hand *other;
+///     sun2xp_open_named("nominal", &other);
+///     sun2xp_close(other);
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sun2xp_open_named(name: *const c_char, hand: *mut *mut sun2xp_hand) -> c_int {
+    // SAFETY: as above.
+    unsafe {
+        open("sun2xp_open_named", hand, || {
+            non_null(name, "name", Wanted::Text)?;
+            let name = CStr::from_ptr(name).to_bytes();
+            let named = NamedHand::ALL.into_iter().find(|hand| hand.name().as_bytes() == name);
+            let name = named.ok_or(Refusal::NoSuchName)?.name();
+            Ok(Source::Text(format!("[finger]\nport = \"simulated\"\nsimulation.hand = \"{name}\"\n")))
+        })
+    }
+}
+
+/// sun2xp_close - stop a hand
+///
+/// Brings every finger to the configured end state and stops the servos, as CloseHand does. The handle
+/// is not that of an open hand afterwards, and no later hand has the same handle. At exit the library
+/// closes all hands that are still open.
+///
+/// Returns 0, or a negative number with
+///   EPERM    forked child
+///   ENODEV   no such hand
+///   EBUSY    in a callback of sun2xp_on_event: another thread is closing the hand
+///
+/// Threads: any. Waits until the callback of sun2xp_on_event has returned, except in a callback.
+#[unsafe(no_mangle)]
+pub extern "C" fn sun2xp_close(hand: *mut sun2xp_hand) -> c_int {
+    let (hand, in_callback) = (Handle::of(hand), in_callback());
+    delegated_or_done_here("sun2xp_close", hand, move || hand_table::close(hand, in_callback))
+}
+
+/// sun2xp_default_hand - the hand that OpenHand has opened
+///
+/// Returns the handle, or null if that hand is not open. CloseHand and sun2xp_close close it.
+///
+/// Threads: any. Works in a forked child too.
+#[unsafe(no_mangle)]
+pub extern "C" fn sun2xp_default_hand() -> *mut sun2xp_hand {
+    uncancelled(|| default_handle().to_c())
+}
+
+/// Opens a hand and writes its handle.
+///
+/// # Safety
+/// `out` is null or points to a handle. The pointers that `source` uses are valid.
+unsafe fn open(
+    name: &'static str,
+    out: *mut *mut sun2xp_hand,
+    source: impl FnOnce() -> Result<Source, Refusal>,
+) -> c_int {
+    let opened = Arc::new(AtomicUsize::new(0));
+    let result = {
+        let opened = opened.clone();
+        delegated(name, Handle::NULL, MEMORY_OF_HAND, || {
+            let source = source()?;
+            non_null(out, "hand", Wanted::Handle)?;
+            Ok(move || {
+                opened.store(hand_table::open(source)?.value(), Ordering::Relaxed);
+                Ok(())
+            })
+        })
+    };
+    if result == 0 {
+        // SAFETY: `out` is not null, as checked above, and by the contract of this function it points to a handle.
+        unsafe { out.write_unaligned(Handle::from_value(opened.load(Ordering::Relaxed)).to_c()) };
+    }
+    result
+}

@@ -1,0 +1,106 @@
+//! The exported functions for joint angles and stiffness. Their doc comments are the C manual, as in `calls.rs`.
+
+use crate::capi::boundary::guarded;
+use crate::capi::hand_table;
+use crate::capi::handle::{Handle, sun2xp_hand};
+use crate::capi::memory::{load, load_rows, store};
+use std::ffi::c_int;
+
+/// sun2xp_send_position - send desired joint angles to a finger
+///
+///   finger     1 to 3
+///   position   position[3]: desired angles of joints 0, 1, 2, rad
+///
+/// As SendPos (Sun2Xp.h): all three angles take effect together. From the next cycle on the anchor of the
+/// fingertip's spring moves to position, along a straight line in joint angles and at a bounded speed.
+/// The call does not wait until the finger arrives.
+///
+/// Returns 0, or a negative number with
+///   EPERM    forked child
+///   EFAULT   position is null
+///   ENODEV   no such hand
+///   EINVAL   no such finger; an angle is NaN or infinite
+///   ERANGE   an angle is outside the joint limits (hand.out_of_range = "clamp" clamps it instead)
+///   EIO      the finger is faulted
+///
+/// Threads: any. Never waits for a servo. Takes about 100 ns.
+///
+/// Example:
+///
+///     double position[3] = {0.0, 0.5, 0.8};
+///     sun2xp_send_position(hand, 1, position);
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sun2xp_send_position(hand: *mut sun2xp_hand, finger: c_int, position: *const f64) -> c_int {
+    let hand = Handle::of(hand);
+    guarded("sun2xp_send_position", hand, || {
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        let joints = unsafe { load::<f64, 3>(position, "position") }?;
+        hand_table::command(hand, |hand| hand.send_position(finger, joints))
+    })
+}
+
+/// sun2xp_send_stiffness - set the stiffness of a fingertip
+///
+///   finger      1 to 3
+///   stiffness   stiffness[9] or &stiffness[0][0] of stiffness[3][3], row by row: entry [row][column] is
+///               the force along axis row (x, y, z of the finger's frame) for a displacement of 1 cm
+///               along axis column, N/cm
+///
+/// As SendKx (Sun2Xp.h), which describes the permitted matrices.
+///
+/// Returns 0, or a negative number with
+///   EPERM    forked child
+///   EFAULT   stiffness is null
+///   ENODEV   no such hand
+///   EINVAL   no such finger; an entry is NaN or infinite
+///   EDOM     the matrix is not symmetric, or has a negative eigenvalue
+///   ERANGE   the matrix is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
+///   EIO      the finger is faulted
+///   ERANGE   the matrix is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio)
+///
+/// Threads: any. Never waits for a servo. Takes about 1 us.
+///
+/// Example, softer along z:
+///
+///     double stiffness[9] = {3, 0, 0, 0, 3, 0, 0, 0, 1};
+///     sun2xp_send_stiffness(hand, 1, stiffness);
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sun2xp_send_stiffness(hand: *mut sun2xp_hand, finger: c_int, stiffness: *const f64) -> c_int {
+    let hand = Handle::of(hand);
+    guarded("sun2xp_send_stiffness", hand, || {
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        let rows = unsafe { load_rows(stiffness, "stiffness") }?;
+        hand_table::command(hand, |hand| hand.send_stiffness(finger, rows))
+    })
+}
+
+/// sun2xp_position - read the joint angles of a finger
+///
+///   finger     1 to 3
+///   position   result: position[3]: measured angles of joints 0, 1, 2, rad, from the last cycle
+///
+/// While the servo thread does not run, the angles stay those of its last cycle, and skipped_periods of
+/// sun2xp_status grows.
+///
+/// Returns 0, or a negative number with
+///   EPERM    forked child
+///   EFAULT   position is null
+///   ENODEV   no such hand
+///   EINVAL   no such finger
+///   EIO      the finger is faulted
+///
+/// Threads: any. Never waits for a servo. Takes about 100 ns.
+///
+/// Example:
+///
+///     double position[3];
+///     if (sun2xp_position(hand, 2, position) == 0)
+///         printf("%g %g %g\n", position[0], position[1], position[2]);
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sun2xp_position(hand: *mut sun2xp_hand, finger: c_int, position: *mut f64) -> c_int {
+    let hand = Handle::of(hand);
+    // SAFETY: by the contract in the manual, the pointer is null or points to an array of three angles.
+    guarded("sun2xp_position", hand, || unsafe {
+        store(position, "position", || hand_table::with(hand, |hand| hand.position(finger)))
+    })
+}

@@ -1,0 +1,72 @@
+//! The report of a refused call: errno, a number and a text for the calling thread, and a message for the first refusal
+//! of its kind.
+
+use crate::capi::error_numbers::number;
+use crate::capi::handle::Handle;
+use crate::capi::process;
+use crate::capi::refusal::{Kind, Refusal};
+use crate::capi::remedy_calls::{Appendix, Interface, RemedyCalls};
+use crate::capi::thread_errors;
+use crate::realtime::{Severity, report};
+use parking_lot::Mutex;
+use std::ffi::c_int;
+use std::fmt::{self, Display, Formatter};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Upper bound of the number of kinds of refusals.
+const KINDS: usize = 64;
+
+static PRINT: AtomicBool = AtomicBool::new(true);
+static PRINTED: Mutex<Vec<Kind>> = Mutex::new(Vec::new());
+
+/// Displays a refusal with its remedy.
+struct Shown<'a>(&'a Refusal, Interface);
+
+impl Display for Shown<'_> {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        match (self.0, self.1) {
+            (Refusal::NoHand, Interface::Of1990) => {
+                formatter.write_str("no hand is open: call OpenHand first, and check its result")
+            }
+            (Refusal::NoHand, Interface::Handles) => formatter.write_str(
+                "the handle is not that of an open hand: pass one of sun2xp_open or sun2xp_default_hand whose hand has \
+                 not been closed, and check the results of these calls",
+            ),
+            (refusal, interface) => {
+                write!(formatter, "{refusal}{}", Appendix(RemedyCalls(refusal.actions(), interface)))
+            }
+        }
+    }
+}
+
+/// Reports a refusal to the calling thread: sets errno, and stores number and text for the hand of the call. Passes the
+/// text on as a message if it is the first of its kind. Returns the result of the call.
+pub(super) fn refuse(name: &'static str, handle: Handle, refusal: &Refusal) -> c_int {
+    let interface = Interface::of(name);
+    let (number, errno) = (number(refusal), refusal.errno());
+    let remedy = RemedyCalls(refusal.actions(), interface);
+    let stored = thread_errors::store(handle, number, errno, name, &Shown(refusal, interface), &remedy);
+    if stored && PRINT.load(Ordering::Relaxed) && is_first_of_its_kind(refusal.kind()) {
+        thread_errors::with_newest_text(|text| report(Severity::Refusal, text));
+    }
+    process::set_errno(errno);
+    if interface == Interface::Handles { -number } else { -1 }
+}
+
+fn is_first_of_its_kind(kind: Kind) -> bool {
+    // This must not wait: in a forked child, nothing releases a lock that another thread of the parent held.
+    let Some(mut printed) = PRINTED.try_lock() else { return false };
+    let first = !printed.contains(&kind);
+    // If there is no memory to store the kind, the next refusal of this kind is printed too.
+    if first && printed.try_reserve(1).is_ok() {
+        printed.push(kind);
+    }
+    first
+}
+
+/// Sets whether refusals are printed, as configured for the hand that is being opened.
+pub(super) fn set_printing(on: bool) {
+    PRINT.store(on, Ordering::Relaxed);
+    // The memory is reserved here, so that no refusal allocates.
+    PRINTED.lock().reserve(KINDS);
+}

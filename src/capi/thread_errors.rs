@@ -1,0 +1,123 @@
+//! The last refusals of each thread. They are in thread-local memory, so that a refusal allocates nothing.
+
+use crate::capi::handle::Handle;
+use crate::capi::text::Text;
+use std::cell::RefCell;
+use std::ffi::{c_char, c_int};
+use std::fmt::Display;
+
+/// Number of hands whose last refusal a thread remembers. More would enlarge the thread-local data of every thread of
+/// the planner.
+pub(super) const REMEMBERED: usize = 4;
+
+/// Texts of the library are shorter, because they abbreviate what they quote.
+const TEXT: usize = 2048;
+
+/// The last refusal of a hand.
+struct Entry {
+    handle: Handle,
+    /// SUN2XP_ERROR_..., or 0 if the entry is unused.
+    number: c_int,
+    errno: c_int,
+    call: Text<48>,
+    text: Text<TEXT>,
+    remedy: Text<96>,
+}
+
+/// A refusal, with pointers that are valid until the thread's next refusal.
+pub(super) struct Found {
+    pub number: c_int,
+    pub errno: c_int,
+    pub call: *const c_char,
+    pub text: *const c_char,
+    pub remedy: *const c_char,
+}
+
+struct Errors {
+    entries: [Entry; REMEMBERED],
+    /// The entries in the order of their refusals, the newest first.
+    order: [u8; REMEMBERED],
+}
+
+thread_local! {
+    static ERRORS: RefCell<Errors> = const {
+        RefCell::new(Errors {
+            entries: [const {
+                Entry {
+                    handle: Handle::NULL,
+                    number: 0,
+                    errno: 0,
+                    call: Text::EMPTY,
+                    text: Text::EMPTY,
+                    remedy: Text::EMPTY,
+                }
+            }; REMEMBERED],
+            order: [0, 1, 2, 3],
+        })
+    };
+}
+
+impl Errors {
+    /// The entry for a new refusal of a hand: that of the same hand, or else the oldest.
+    fn entry(&mut self, handle: Handle) -> &mut Entry {
+        let same = |&entry: &u8| {
+            let entry = &self.entries[usize::from(entry)];
+            entry.number != 0 && entry.handle == handle
+        };
+        let position = self.order.iter().position(same).unwrap_or(REMEMBERED - 1);
+        self.order[..=position].rotate_right(1);
+        &mut self.entries[usize::from(self.order[0])]
+    }
+
+    fn newest(&self) -> &Entry {
+        &self.entries[usize::from(self.order[0])]
+    }
+}
+
+/// Stores a refusal of the calling thread. Returns false if it could not, because a signal handler has interrupted this
+/// function and makes a call that it may not make, or because a log callback makes the call. errno still reports such a
+/// refusal.
+pub(super) fn store(
+    handle: Handle,
+    number: c_int,
+    errno: c_int,
+    call: &str,
+    text: &dyn Display,
+    remedy: &dyn Display,
+) -> bool {
+    ERRORS.with(|errors| {
+        let Ok(mut errors) = errors.try_borrow_mut() else { return false };
+        let entry = errors.entry(handle);
+        (entry.handle, entry.number, entry.errno) = (handle, number, errno);
+        entry.call.compose(format_args!("{call}"));
+        entry.text.compose(format_args!("{call}: {text}"));
+        entry.remedy.compose(format_args!("{remedy}"));
+        true
+    })
+}
+
+/// Passes the text of the newest refusal to a function, which must not make calls of the library.
+pub(super) fn with_newest_text(call: impl FnOnce(&str)) {
+    ERRORS.with(|errors| {
+        if let Ok(errors) = errors.try_borrow() {
+            call(errors.newest().text.as_str());
+        }
+    });
+}
+
+/// The last refusal of the calling thread for a hand, or of any hand if the handle is null.
+pub(super) fn find(handle: Handle) -> Found {
+    ERRORS.with(|errors| {
+        let none = || Found { number: 0, errno: 0, call: c"".as_ptr(), text: c"".as_ptr(), remedy: c"".as_ptr() };
+        let Ok(errors) = errors.try_borrow() else { return none() };
+        let mut entries = errors.order.iter().map(|&entry| &errors.entries[usize::from(entry)]);
+        let found = entries.find(|entry| entry.number != 0 && (handle == Handle::NULL || entry.handle == handle));
+        found.map_or_else(none, |entry| Found {
+            number: entry.number,
+            errno: entry.errno,
+            call: entry.call.as_c_string(),
+            text: entry.text.as_c_string(),
+            remedy: entry.remedy.as_c_string(),
+        })
+    })
+}

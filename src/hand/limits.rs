@@ -1,0 +1,69 @@
+//! The limits of a finger, for planners that keep their set points within them.
+
+use crate::hand::{Hand, HandError};
+use crate::model::FingerNumber;
+
+/// The limits that are in force for a finger. [`Hand::adjust`] can change them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct FingerLimits {
+    /// Smallest angles of the joints, rad.
+    pub joint_minimum: [f64; 3],
+    /// Largest angles of the joints, rad.
+    pub joint_maximum: [f64; 3],
+    /// Smallest tension of a tendon, N.
+    pub tension_minimum: f64,
+    /// Largest tension of a tendon, N.
+    pub tension_maximum: f64,
+    /// Largest torques of the motors, N cm.
+    pub motor_torque: [f64; 4],
+    /// Largest eigenvalue of Kx, N/cm.
+    pub stiffness: f64,
+}
+
+impl Hand {
+    /// The limits that are in force for finger 1, 2 or 3.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger.
+    pub fn limits(&self, finger: i32) -> Result<FingerLimits, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
+        let admission = self.dispatcher.member(finger)?.admission.read();
+        let ((low, high), stiffness) = (admission.joint_limits, admission.stiffness_bound);
+        drop(admission);
+        let configuration = self.configuration.read();
+        let configured = &configuration.fingers[finger.index()];
+        Ok(FingerLimits {
+            joint_minimum: low.into(),
+            joint_maximum: high.into(),
+            tension_minimum: configured.tendon.minimum,
+            tension_maximum: configured.tendon.maximum,
+            motor_torque: configured.motor.torque_limit,
+            stiffness,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::configuration::{Configuration, RealTime};
+
+    #[test]
+    fn limits_are_those_in_force() {
+        let mut configuration = Configuration::default();
+        configuration.hand.real_time = RealTime::Ignore;
+        let hand = Hand::open(configuration).expect("the simulated hand");
+        let limits = hand.limits(2).expect("finger 2");
+        let close = |found: f64, expected: f64| (found - expected).abs() < 1e-4;
+        assert!(close(limits.joint_minimum[0], -1.0472) && close(limits.joint_maximum[2], 2.0944), "{limits:?}");
+        assert!(close(limits.stiffness, 6.0), "{limits:?}");
+        hand.adjust(2, "stiffness.bound = 4\ntendon.minimum = 6\njoints.maximum_degrees = [50, 100, 120]")
+            .expect("finger 2 is adjusted");
+        let adjusted = hand.limits(2).expect("finger 2");
+        assert!(close(adjusted.stiffness, 4.0) && close(adjusted.tension_minimum, 6.0), "{adjusted:?}");
+        assert!(close(adjusted.joint_maximum[0], 50.0_f64.to_radians()), "{adjusted:?}");
+        assert_eq!(hand.limits(1).expect("finger 1"), limits);
+        assert!(hand.limits(4).is_err());
+    }
+}
