@@ -1,6 +1,6 @@
-//! Lists what this run of `cargo test` has skipped because tools are missing. Test programs run in alphabetical order,
-//! so this one is the last. It does not use libtest: a filter of test names would skip it, and its output would be
-//! captured.
+//! Lists what this run of `cargo test` has skipped because tools are missing. Test programs of a package run in
+//! alphabetical order, so this one is the last. The library and the tool have it, and each lists what was skipped since
+//! the other one. It does not use libtest: a filter of test names would skip it, and its output would be captured.
 
 #[allow(dead_code)]
 #[path = "common/tools.rs"]
@@ -12,11 +12,12 @@ fn main() {
         return;
     }
     let skipped = tools::take_skipped(std::os::unix::process::parent_id());
+    let package = env!("CARGO_PKG_NAME");
     if skipped.is_empty() {
-        println!("\nNo test was skipped because of a missing tool.\n");
+        println!("\nNo test of {package} was skipped because of a missing tool.\n");
         return;
     }
-    println!("\nSkipped, because tools are missing (tests/run installs them and skips nothing):\n");
+    println!("\nSkipped in {package}, because tools are missing (tests/run installs them and skips nothing):\n");
     for line in skipped {
         println!("    {line}");
     }

@@ -5,14 +5,15 @@ mod columns;
 use crate::failure::{Failure, wrong_usage};
 use crate::trace::{self, Finger, Item, Mark, Row};
 use clap::ValueEnum;
-use columns::{Value, columns};
+use columns::{Column, Value, columns, object_columns};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use sun2xp::model::ShownPath;
+use sun2xp::simulated::ObjectState;
 
-/// Writes a recording as CSV: one file for each finger, and one for the events.
+/// Writes a recording as CSV: one file for each finger, one for the events, and one for the object of a simulated hand.
 ///
 /// The first line of a file names the columns and their units. Numbers have as many digits as are needed to read the
 /// recorded bits again. A value that a cycle does not have is an empty field.
@@ -60,13 +61,16 @@ struct Files<'a> {
     standard_output: bool,
     /// Beginning of the first cycle, ns.
     start: Option<u64>,
-    /// The file of every finger, and of the events under the number 0.
+    /// The file of every finger, and the files of [`EVENTS`] and [`OBJECT`].
     open: BTreeMap<i32, Box<dyn Write>>,
     paths: Vec<PathBuf>,
 }
 
 /// The key of the file of events.
 const EVENTS: i32 = 0;
+
+/// The key of the file of the object.
+const OBJECT: i32 = -1;
 
 const EVENT_COLUMNS: &str = "time_s,time_ns,finger,cycle,kind,text";
 const LONG_COLUMNS: &str = "time_s,finger,cycle,name,unit,value";
@@ -80,6 +84,7 @@ impl Files<'_> {
             Item::Mark(Mark { finger: Some(finger), .. }) if !wanted(finger) => Ok(()),
             Item::Cycle(row) => self.cycle(&row),
             Item::Mark(mark) => self.mark(&mark),
+            Item::Object(time, object) => self.object(time, &object),
         }
     }
 
@@ -92,18 +97,27 @@ impl Files<'_> {
     fn cycle(&mut self, row: &Row) -> Result<(), Failure> {
         let (finger, cycle) = (row.sample.finger.get(), row.sample.cycle);
         let seconds = self.seconds(row.sample.began);
-        let columns = columns(row);
+        self.row(finger, seconds, &format!("{finger},{cycle}"), &columns(row))
+    }
+
+    fn object(&mut self, time: u64, object: &ObjectState) -> Result<(), Failure> {
+        let seconds = self.seconds(time);
+        self.row(OBJECT, seconds, ",", &object_columns(object))
+    }
+
+    /// Writes the values of one time. `place` has the finger and the cycle for the long format.
+    fn row(&mut self, key: i32, seconds: f64, place: &str, columns: &[Column]) -> Result<(), Failure> {
         if self.arguments.format == Format::Wide && !self.standard_output {
-            let names = columns.iter().map(|column| column.full_name()).collect::<Vec<_>>().join(",");
-            let file = self.file(finger, &format!("time_s,{names}"))?;
+            let names = columns.iter().map(Column::full_name).collect::<Vec<_>>().join(",");
+            let file = self.file(key, &format!("time_s,{names}"))?;
             write!(file, "{seconds}")?;
             columns.iter().try_for_each(|column| write!(file, ",{}", column.value))?;
             writeln!(file)?;
             return Ok(());
         }
-        let file = self.file(finger, LONG_COLUMNS)?;
+        let file = self.file(key, LONG_COLUMNS)?;
         for column in columns.iter().filter(|column| column.value != Value::None && column.name != "cycle") {
-            writeln!(file, "{seconds},{finger},{cycle},{},{},{}", column.name, column.unit, column.value)?;
+            writeln!(file, "{seconds},{place},{},{},{}", column.name, column.unit, column.value)?;
         }
         Ok(())
     }
@@ -138,7 +152,11 @@ impl Files<'_> {
 
     fn create(&mut self, key: i32) -> Result<File, Failure> {
         let (recording, name) = (&self.arguments.file, |part: &str| self.name(part));
-        let name = if key == EVENTS { name("events")? } else { name(&format!("finger{key}"))? };
+        let name = match key {
+            EVENTS => name("events"),
+            OBJECT => name("object"),
+            finger => name(&format!("finger{finger}")),
+        }?;
         let folder = self.arguments.output.clone().or_else(|| recording.parent().map(Path::to_path_buf));
         let path = folder.unwrap_or_default().join(name);
         let mut options = File::options();

@@ -145,6 +145,7 @@ fn collect(file: &Path, selection: &mut Selection, one_finger: bool, plot: &mut 
             }
             Item::Cycle(row) => (Some(row.sample.began), Some(row.sample.finger.get())),
             Item::Mark(mark) => (Some(mark.time), mark.finger),
+            Item::Object(..) => return Ok(()),
         };
         let seconds = time.map_or(0.0, |time| {
             let start = *start.get_or_insert(time);

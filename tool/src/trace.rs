@@ -12,6 +12,7 @@ use sun2xp::finger::events::{Event, EventKind};
 use sun2xp::finger::{Fault, FaultKind, Stage};
 use sun2xp::model::configuration::FINGERS;
 use sun2xp::model::{Part, ShownPath};
+use sun2xp::simulated::ObjectState;
 use sun2xp::telemetry::{Description, Message, Sample, View};
 
 /// Steps of the progress.
@@ -24,6 +25,8 @@ pub enum Item {
     Finger(Finger),
     Cycle(Box<Row>),
     Mark(Mark),
+    /// The object of a simulated hand, at a time of the monotonic clock, ns.
+    Object(u64, ObjectState),
 }
 
 /// A finger of a recording.
@@ -116,10 +119,14 @@ pub fn read_with(file: &Path, reach: &dyn Fn(f64), visit: Visit) -> Result<(Desc
     while let Some(entry) = recording.next() {
         let Entry { time, item } = entry?;
         reach(recording.progress());
+        let time = time.wrapping_sub(description.clock_offset.cast_unsigned());
         let message = match item {
+            recording::Item::Message(Message::Object(object)) => {
+                visit(Item::Object(time, object))?;
+                continue;
+            }
             recording::Item::Message(message) => message,
             recording::Item::Lost { finger, cycles } => {
-                let time = time.wrapping_sub(description.clock_offset.cast_unsigned());
                 let text = format!("{cycles} cycles are not recorded");
                 let finger = Some(finger.get());
                 visit(Item::Mark(Mark { time, finger, cycle: None, kind: MarkKind::Gap, text }))?;

@@ -3,6 +3,7 @@
 use super::quoted;
 use crate::trace::Row;
 use std::fmt::{self, Display, Formatter};
+use sun2xp::simulated::ObjectState;
 
 /// A value of a cycle.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,13 +64,32 @@ impl Columns {
     }
 }
 
+const AXES: [&str; 3] = ["x", "y", "z"];
+const ENTRIES: [&str; 9] = ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"];
+
+/// Returns the entries of a matrix row by row.
+fn entries(matrix: [[f64; 3]; 3]) -> [f64; 9] {
+    std::array::from_fn(|entry| matrix[entry / 3][entry % 3])
+}
+
+/// Returns the columns of the object of a simulated hand, in the palm's frame.
+pub fn object_columns(object: &ObjectState) -> Vec<Column> {
+    let mut columns = Columns::default();
+    columns.number("simulated_time", "s", Some(object.time));
+    columns.vector("position", AXES, "cm", Some(object.position));
+    columns.vector("rotation", ENTRIES, "", Some(entries(object.rotation)));
+    columns.vector("velocity", AXES, "cm_per_s", Some(object.velocity));
+    columns.vector("angular_velocity", AXES, "rad_per_s", Some(object.angular_velocity));
+    for (finger, force) in (1..).zip(object.forces) {
+        columns.vector(&format!("force_{finger}"), AXES, "N", Some(force));
+    }
+    columns.0
+}
+
 /// Returns the columns of a cycle, always the same ones in the same order.
 pub fn columns(row: &Row) -> Vec<Column> {
     const JOINTS: [&str; 3] = ["0", "1", "2"];
-    const AXES: [&str; 3] = ["x", "y", "z"];
     const PARTS: [&str; 4] = ["1", "2", "3", "4"];
-    const ENTRIES: [&str; 9] = ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"];
-    let entries = |matrix: [[f64; 3]; 3]| -> [f64; 9] { std::array::from_fn(|entry| matrix[entry / 3][entry % 3]) };
     let sample = &row.sample;
     // In a cycle without the controller, the sample has the values of an earlier cycle.
     let computed = sample.computed.then_some(sample);

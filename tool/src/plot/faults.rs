@@ -61,6 +61,7 @@ impl Plot for Faults {
                 self.lanes[index].take(row, seconds, period);
             }
             Item::Mark(mark) => self.happened.push((seconds, mark.clone())),
+            Item::Object(..) => {}
         }
     }
 

@@ -55,7 +55,7 @@ impl Plot for Step {
                 let values = [joint(0), joint(1), joint(2), axis(0), axis(1), axis(2)];
                 self.points.push(Point { time: seconds, values });
             }
-            Item::Cycle(_) | Item::Mark(_) => {}
+            Item::Cycle(_) | Item::Mark(_) | Item::Object(..) => {}
         }
     }
 

@@ -56,7 +56,7 @@ impl Plot for Stiffness {
                     scale: sample.stiffness_scale,
                 });
             }
-            Item::Mark(_) => {}
+            Item::Mark(_) | Item::Object(..) => {}
         }
     }
 

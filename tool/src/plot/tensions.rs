@@ -46,7 +46,7 @@ impl Plot for Tensions {
                 }
                 self.points.push(Point { time: seconds, measured, wanted });
             }
-            Item::Cycle(_) | Item::Mark(_) => {}
+            Item::Cycle(_) | Item::Mark(_) | Item::Object(..) => {}
         }
     }
 

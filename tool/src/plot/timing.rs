@@ -42,7 +42,7 @@ impl Plot for Timing {
                 let time = |time: Option<f64>| time.map_or(f32::NAN, |time| time as f32);
                 self.fingers[index].0.push((seconds, time(row.sample.wake_up), time(row.sample.whole)));
             }
-            Item::Mark(_) => {}
+            Item::Mark(_) | Item::Object(..) => {}
         }
     }
 

@@ -90,6 +90,32 @@ fn an_interrupted_recorder_leaves_a_complete_file() {
 }
 
 #[test]
+fn the_poses_of_the_object_become_a_table() {
+    let (name, folder) = (name("object"), tempfile::tempdir().expect("a folder"));
+    let hand = open(&name);
+    let recorder = start(record(&name, folder.path(), &["-o", "hand.mcap"]));
+    wait_for(&folder.path().join("hand.mcap"), 200_000);
+    let object = hand.object().expect("an object");
+    interrupt(recorder);
+    drop(hand);
+    let mut export = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+    let run = export.args(["export", "hand.mcap"]).current_dir(folder.path()).output().expect("the tool runs");
+    assert!(run.status.success() && String::from_utf8_lossy(&run.stdout).contains("hand-object.csv"), "{run:?}");
+    let table = fs::read_to_string(folder.path().join("hand-object.csv")).expect("a table");
+    let (header, rows) = table.split_once('\n').expect("a header");
+    let names: Vec<&str> = header.split(',').collect();
+    assert_eq!(names[..3], ["time_s", "simulated_time_s", "position_x_cm"]);
+    assert_eq!(names.len(), 2 + 3 + 9 + 3 + 3 + 3 * 3, "{header}");
+    let rows: Vec<Vec<f64>> =
+        rows.lines().map(|row| row.split(',').map(|field| field.parse().expect("a number")).collect()).collect();
+    assert!(rows.len() > 5 && rows.iter().all(|row| row.len() == names.len()), "{table}");
+    // The times of both clocks increase alike, and the object rests where the hand reports it.
+    assert!(rows.is_sorted_by(|one, next| one[0] <= next[0] && one[1] <= next[1]), "{table}");
+    let last = rows.last().expect("a row");
+    assert!((0..3).all(|axis| (last[2 + axis] - object.position[axis]).abs() < 0.01), "{last:?} {object:?}");
+}
+
+#[test]
 fn a_closed_hand_ends_the_recording() {
     let (name, folder) = (name("closed"), tempfile::tempdir().expect("a folder"));
     let hand = open(&name);
