@@ -2,7 +2,7 @@
 //! with running servos.
 
 use divan::{Bencher, black_box};
-use std::ffi::{CStr, c_char, c_int};
+use std::ffi::{CStr, c_char, c_int, c_void};
 
 // Links the library, which defines the C symbols below.
 use sun2xp as _;
@@ -15,7 +15,9 @@ unsafe extern "C" {
     fn SendKx(i: c_int, kx: *const f32) -> c_int;
     fn SendKxD(i: c_int, kx: *const f64) -> c_int;
     fn GetPos(i: c_int, pos: *mut f32) -> c_int;
-    fn SetGravity(gravity: *const f64) -> c_int;
+    safe fn sun2xp_default_hand() -> *mut c_void;
+    fn sun2xp_position(hand: *mut c_void, finger: c_int, position: *mut f64) -> c_int;
+    fn sun2xp_set_gravity(hand: *mut c_void, gravity: *const f64) -> c_int;
 }
 
 /// Number of attempts to open the hand. Other work on the machine can prevent it from opening in time.
@@ -52,6 +54,15 @@ fn get_pos(bencher: Bencher) {
     bencher.bench_local(|| unsafe { GetPos(1, black_box(pos.as_mut_ptr())) });
 }
 
+/// GetPos with a handle, which is found in the table of hands.
+#[divan::bench]
+fn position(bencher: Bencher) {
+    let mut position = [0.0f64; 3];
+    let hand = sun2xp_default_hand();
+    // SAFETY: `position` has room for three values, which the call writes before it returns.
+    bencher.bench_local(|| unsafe { sun2xp_position(hand, 1, black_box(position.as_mut_ptr())) });
+}
+
 /// SendKx checks that Kx is symmetric, has no negative eigenvalue and is within the bound.
 #[divan::bench]
 fn send_kx(bencher: Bencher) {
@@ -67,11 +78,12 @@ fn send_kx_double(bencher: Bencher) {
     bencher.bench_local(|| unsafe { SendKxD(1, black_box(kx.as_ptr())) });
 }
 
-/// SetGravity sends gravity to three servos and three simulated fingers. A simulated finger may keep the call waiting
-/// while it computes.
+/// sun2xp_set_gravity sends gravity to three servos and three simulated fingers. A simulated finger may keep the call
+/// waiting while it computes.
 #[divan::bench]
 fn set_gravity(bencher: Bencher) {
     let gravity = [0.0, 6.0, 7.8];
+    let hand = sun2xp_default_hand();
     // SAFETY: `gravity` has three values, which the call reads before it returns.
-    bencher.bench_local(|| unsafe { SetGravity(black_box(gravity.as_ptr())) });
+    bencher.bench_local(|| unsafe { sun2xp_set_gravity(hand, black_box(gravity.as_ptr())) });
 }

@@ -1,0 +1,366 @@
+/// sun2xp.hpp - the calls of sun2xp.h for C++17: handles that close themselves, exceptions, arrays and durations.
+///
+/// This header has no library of its own: everything is inline, over the C interface. Each function is the call of
+/// sun2xp.h with the same name, which has the manual. A refused call throws sun2xp::error with the number and the text
+/// of the refusal. Structs are those of sun2xp.h, and their size is set here.
+///
+///     sun2xp::hand hand = sun2xp::hand::named("nominal");
+///     hand.finger(1).send_position({0.0, 0.5, 0.8});
+///     hand.finger(1).wait(sun2xp::until::settled, std::chrono::seconds(5));
+#ifndef SUN2XP_HPP
+#define SUN2XP_HPP
+
+#include "sun2xp.h"
+
+#include <array>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sun2xp {
+
+/// Three numbers: joint angles, rad, or x, y, z.
+using vector3 = std::array<double, 3>;
+
+/// A matrix, row by row.
+using matrix3 = std::array<std::array<double, 3>, 3>;
+
+/// A duration in seconds. Every duration of std::chrono converts to it.
+using seconds = std::chrono::duration<double>;
+
+/// All fingers, where a function says so.
+inline constexpr int all_fingers = SUN2XP_ALL_FINGERS;
+
+/// The condition of a wait.
+enum class until { arrived = SUN2XP_WAIT_ARRIVED, settled = SUN2XP_WAIT_SETTLED };
+
+/// A refused call.
+class error : public std::runtime_error {
+public:
+    error(int number, int system_errno, const char *call, const char *text, const char *remedy)
+        : std::runtime_error(text), number_(number), system_errno_(system_errno), call_(call), remedy_(remedy)
+    {
+    }
+
+    /// SUN2XP_ERROR_...
+    int number() const noexcept { return number_; }
+    /// errno of the refusal.
+    int system_errno() const noexcept { return system_errno_; }
+    /// Name of the C call.
+    const std::string &call() const noexcept { return call_; }
+    /// C calls that help, separated by commas; empty if what() has another remedy.
+    const std::string &remedy() const noexcept { return remedy_; }
+
+private:
+    int number_, system_errno_;
+    std::string call_, remedy_;
+};
+
+namespace detail {
+
+/// Throws the refusal of a call, or returns its result.
+inline int checked(int result)
+{
+    if (result >= 0)
+        return result;
+    struct sun2xp_error refusal = {};
+    refusal.size = sizeof refusal;
+    ::sun2xp_error(nullptr, &refusal);
+    throw error(-result, refusal.system_errno, refusal.call, refusal.text, refusal.remedy);
+}
+
+/// Fills a struct by a call.
+template <class Struct, class Call> Struct filled(Call call)
+{
+    Struct result = {};
+    result.size = sizeof result;
+    checked(call(&result));
+    return result;
+}
+
+} // namespace detail
+
+/// One finger of an open hand. It must not outlive the hand.
+class finger {
+public:
+    finger(sun2xp_hand *hand, int number) noexcept : hand_(hand), number_(number) {}
+
+    /// 1 to 3, or all_fingers.
+    int number() const noexcept { return number_; }
+
+    vector3 position() const
+    {
+        vector3 result;
+        detail::checked(sun2xp_position(hand_, number_, result.data()));
+        return result;
+    }
+
+    void send_position(const vector3 &position)
+    {
+        detail::checked(sun2xp_send_position(hand_, number_, position.data()));
+    }
+
+    void send_position(const vector3 &position, seconds valid)
+    {
+        detail::checked(sun2xp_send_position_for(hand_, number_, position.data(), valid.count()));
+    }
+
+    void send_stiffness(const matrix3 &stiffness)
+    {
+        detail::checked(sun2xp_send_stiffness(hand_, number_, stiffness[0].data()));
+    }
+
+    void send_joint_stiffness(const matrix3 &stiffness)
+    {
+        detail::checked(sun2xp_send_joint_stiffness(hand_, number_, stiffness[0].data()));
+    }
+
+    void send_joint_torque(const vector3 &torque)
+    {
+        detail::checked(sun2xp_send_joint_torque(hand_, number_, torque.data()));
+    }
+
+    void send_tip(const vector3 &tip) { detail::checked(sun2xp_send_tip(hand_, number_, tip.data())); }
+
+    void send_damping(double ratio) { detail::checked(sun2xp_send_damping(hand_, number_, ratio)); }
+
+    void push(const vector3 &force) { detail::checked(sun2xp_push(hand_, number_, force.data())); }
+
+    void adjust(const std::string &keys) { detail::checked(sun2xp_adjust(hand_, number_, keys.c_str())); }
+
+    /// Sends a path. The sizes of the poses are set here.
+    void send_path(std::vector<sun2xp_path_pose> poses, seconds valid = seconds(0))
+    {
+        for (sun2xp_path_pose &pose : poses)
+            pose.size = sizeof pose;
+        const int count = static_cast<int>(poses.size());
+        detail::checked(sun2xp_send_path(hand_, number_, count, poses.data(), valid.count()));
+    }
+
+    struct sun2xp_status status() const
+    {
+        return detail::filled<struct sun2xp_status>([this](auto *to) { return ::sun2xp_status(hand_, number_, to); });
+    }
+
+    struct sun2xp_timing timing(int stage) const
+    {
+        const auto call = [this, stage](auto *to) { return ::sun2xp_timing(hand_, number_, stage, to); };
+        return detail::filled<struct sun2xp_timing>(call);
+    }
+
+    struct sun2xp_tip tip() const
+    {
+        return detail::filled<struct sun2xp_tip>([this](auto *to) { return ::sun2xp_tip(hand_, number_, to); });
+    }
+
+    struct sun2xp_limits limits() const
+    {
+        return detail::filled<struct sun2xp_limits>([this](auto *to) { return ::sun2xp_limits(hand_, number_, to); });
+    }
+
+    struct sun2xp_fault fault() const
+    {
+        return detail::filled<struct sun2xp_fault>([this](auto *to) { return ::sun2xp_fault(hand_, number_, to); });
+    }
+
+    struct sun2xp_joint_torques joint_torques() const
+    {
+        const auto call = [this](auto *to) { return ::sun2xp_joint_torques(hand_, number_, to); };
+        return detail::filled<struct sun2xp_joint_torques>(call);
+    }
+
+    struct sun2xp_palm_pose palm_pose() const
+    {
+        const auto call = [this](auto *to) { return ::sun2xp_palm_pose(hand_, number_, to); };
+        return detail::filled<struct sun2xp_palm_pose>(call);
+    }
+
+    matrix3 jacobian() const
+    {
+        matrix3 result;
+        detail::checked(sun2xp_jacobian(hand_, number_, nullptr, result[0].data()));
+        return result;
+    }
+
+    vector3 forward_kinematics(const vector3 &position) const
+    {
+        vector3 tip;
+        detail::checked(sun2xp_forward_kinematics(hand_, number_, position.data(), tip.data()));
+        return tip;
+    }
+
+    vector3 inverse_kinematics(const vector3 &tip) const
+    {
+        vector3 position;
+        detail::checked(sun2xp_inverse_kinematics(hand_, number_, tip.data(), position.data()));
+        return position;
+    }
+
+    /// Waits. Returns false if the time is over. Also for all_fingers.
+    bool wait(until condition, seconds longest)
+    {
+        const int result = sun2xp_wait(hand_, number_, static_cast<int>(condition), longest.count());
+        return result != -SUN2XP_ERROR_TIMED_OUT && detail::checked(result) == 0;
+    }
+
+    void zero() { detail::checked(sun2xp_zero(hand_, number_)); }
+    void identify() { detail::checked(sun2xp_identify(hand_, number_)); }
+    /// Also for all_fingers.
+    void recover() { detail::checked(sun2xp_recover(hand_, number_)); }
+    /// Also for all_fingers.
+    void stop() { detail::checked(sun2xp_stop(hand_, number_)); }
+    void write_black_box(const std::string &path)
+    {
+        detail::checked(sun2xp_write_black_box(hand_, number_, path.c_str()));
+    }
+
+    /// Returns the number of the rule.
+    int install_reflex(sun2xp_reflex rule)
+    {
+        rule.size = sizeof rule;
+        return detail::checked(sun2xp_install_reflex(hand_, number_, &rule));
+    }
+
+    /// Removes a rule; 0 for all rules of the finger.
+    void remove_reflex(int rule) { detail::checked(sun2xp_remove_reflex(hand_, number_, rule)); }
+
+private:
+    sun2xp_hand *hand_;
+    int number_;
+};
+
+/// An open hand. Its destructor closes it.
+class hand {
+public:
+    /// Called with each event of a hand, in a thread of the library. It must not throw.
+    using event_callback = std::function<void(const struct sun2xp_event &)>;
+
+    /// Opens the hand of a configuration file.
+    explicit hand(const std::string &path) { detail::checked(sun2xp_open(path.c_str(), &hand_)); }
+
+    /// Opens the hand of the configuration file that OpenHand finds, or the simulated hand.
+    static hand configured() { return hand([](sun2xp_hand **to) { return sun2xp_open(nullptr, to); }); }
+
+    /// Opens the hand of a configuration in memory.
+    static hand text(const std::string &configuration)
+    {
+        return hand([&](sun2xp_hand **to) { return sun2xp_open_text(configuration.c_str(), to); });
+    }
+
+    /// Opens a simulated hand: "nominal", "worn", "sheathed" or "cheap".
+    static hand named(const std::string &name)
+    {
+        return hand([&](sun2xp_hand **to) { return sun2xp_open_named(name.c_str(), to); });
+    }
+
+    hand(hand &&other) noexcept
+        : hand_(std::exchange(other.hand_, nullptr)), callback_(std::move(other.callback_))
+    {
+    }
+
+    hand &operator=(hand &&other) noexcept
+    {
+        std::swap(hand_, other.hand_);
+        std::swap(callback_, other.callback_);
+        return *this;
+    }
+
+    hand(const hand &) = delete;
+    hand &operator=(const hand &) = delete;
+
+    /// A refusal of sun2xp_close cannot be reported here. close() reports it.
+    ~hand()
+    {
+        if (hand_ != nullptr)
+            sun2xp_close(hand_);
+    }
+
+    void close() { detail::checked(sun2xp_close(std::exchange(hand_, nullptr))); }
+
+    /// The handle, for calls of sun2xp.h.
+    sun2xp_hand *handle() const noexcept { return hand_; }
+
+    /// A finger, 1 to 3, or all_fingers.
+    class finger finger(int number) const noexcept { return {hand_, number}; }
+
+    /// Commands several fingers in the same cycle. The sizes are set here.
+    void send_group(std::vector<sun2xp_set_point> set_points)
+    {
+        for (sun2xp_set_point &set_point : set_points)
+            set_point.size = sizeof set_point;
+        detail::checked(sun2xp_send_group(hand_, static_cast<int>(set_points.size()), set_points.data()));
+    }
+
+    void set_gravity(const vector3 &gravity) { detail::checked(sun2xp_set_gravity(hand_, gravity.data())); }
+
+    struct sun2xp_object object() const
+    {
+        return detail::filled<struct sun2xp_object>([this](auto *to) { return ::sun2xp_object(hand_, to); });
+    }
+
+    /// Takes the next event, if there is one.
+    std::optional<struct sun2xp_event> next_event()
+    {
+        return event([this](struct sun2xp_event *to) { return sun2xp_next_event(hand_, to); });
+    }
+
+    /// Waits for an event. Returns none if there was none within the time.
+    std::optional<struct sun2xp_event> wait_event(seconds longest)
+    {
+        const auto take = [&](struct sun2xp_event *to) { return sun2xp_wait_event(hand_, to, longest.count()); };
+        return event(take);
+    }
+
+    /// Calls a function with each event. An empty function ends that.
+    void on_event(event_callback callback)
+    {
+        auto next = callback ? std::make_unique<event_callback>(std::move(callback)) : nullptr;
+        detail::checked(sun2xp_on_event(hand_, next ? &pass_on : nullptr, next.get()));
+        // The previous function is not running any more.
+        callback_ = std::move(next);
+    }
+
+    /// A descriptor for poll and select.
+    int event_descriptor() const { return detail::checked(sun2xp_event_descriptor(hand_)); }
+
+private:
+    template <class Open, class = decltype(std::declval<Open>()(nullptr))> explicit hand(Open open)
+    {
+        detail::checked(open(&hand_));
+    }
+
+    template <class Take> static std::optional<struct sun2xp_event> event(Take take)
+    {
+        struct sun2xp_event result = {};
+        result.size = sizeof result;
+        if (detail::checked(take(&result)) == 0)
+            return std::nullopt;
+        return result;
+    }
+
+    static void pass_on(const struct sun2xp_event *event, void *callback) noexcept
+    {
+        (*static_cast<event_callback *>(callback))(*event);
+    }
+
+    sun2xp_hand *hand_ = nullptr;
+    std::unique_ptr<event_callback> callback_;
+};
+
+/// Stops every finger of every hand of the process. It may be called in a signal handler.
+inline void stop_all() noexcept { sun2xp_stop_all(); }
+
+/// The text of a fault.
+inline std::string fault_text(int number) { return sun2xp_fault_text(number); }
+
+/// The version of the library that runs.
+inline std::string version() { return sun2xp_version(); }
+
+} // namespace sun2xp
+
+#endif
