@@ -255,7 +255,7 @@ typedef struct sun2xp_hand sun2xp_hand;
 
 /* A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread. */
 struct sun2xp_error {
-    size_t size;                            /* In: sizeof (struct sun2xp_error). */
+    size_t size;                            /* sizeof (struct sun2xp_error), set before the call. */
     int number;                             /* SUN2XP_ERROR_..., or 0 if no call was refused. */
     int system_errno;                       /* errno of the refusal. */
     const char *call;                       /* Name of the call; never null. */
@@ -291,7 +291,7 @@ int sun2xp_error(const sun2xp_hand *hand, struct sun2xp_error *error);
 /*
  sun2xp_error_text - the text of the last refused call of the calling thread
 
-   hand    a hand, open or closed; null: any hand
+   hand   a hand, open or closed; null: any hand
 
  Returns the text of sun2xp_error, or an empty string if no call was refused. The pointer is never
  null, and is valid until the next refused call of the same thread.
@@ -334,8 +334,7 @@ int sun2xp_set_log(sun2xp_log callback, void *user);
 
 /* ---- VERSIONS ---------------------------------------------------------------------------------------------------- */
 
-#define SUN2XP_ABI_VERSION 0                /* Rises only when programs must be compiled again. build.rs has the same
-                                               number. */
+#define SUN2XP_ABI_VERSION 0                /* Rises only when programs must be compiled again. */
 
 /*
  sun2xp_version - the version of the library that runs
@@ -484,9 +483,12 @@ sun2xp_hand *sun2xp_default_hand(void);
    finger     1 to 3
    position   position[3]: desired angles of joints 0, 1, 2, rad
 
- As SendPos (Sun2Xp.h): all three angles take effect together. From the next cycle on the anchor of the
- fingertip's spring moves to position, along a straight line in joint angles and at a bounded speed.
- The call does not wait until the finger arrives.
+ All three angles take effect together. From the next cycle on the anchor of the fingertip's spring moves
+ to position, along a straight line in joint angles and at a bounded speed. The stiffness is the one sent
+ last. When the anchor is at position, tip is the place that the fingertip has there, and p its present
+ place, the force is Kx (tip - p) at any distance. With controller.law = "report" the finger follows the
+ law of the report, which holds for small distances. The call does not wait until the finger arrives.
+ sun2xp_limits reads the joint limits.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -513,7 +515,12 @@ int sun2xp_send_position(sun2xp_hand *hand, int finger, const double *position);
                the force along axis row (x, y, z of the finger's frame) for a displacement of 1 cm
                along axis column, N/cm
 
- As SendKx (Sun2Xp.h), which describes the permitted matrices.
+ Sets Kx, the stiffness of the fingertip. All entries begin to change in the next cycle, without a jump in
+ torque: 95 % of the change has taken effect after 50 ms. The matrix must be symmetric; two mirrored entries
+ that differ by up to 1e-3 of the largest entry are averaged. No eigenvalue may be below -1e-3 times the
+ largest one. The matrix may be singular or zero: along directions without stiffness the finger is limp but
+ still damped. The largest eigenvalue may be at most the configured bound, by default 6 N/cm at 1000 Hz and
+ above, and 5 N/cm below.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -592,11 +599,11 @@ struct sun2xp_tip {
  sun2xp_send_tip - send a desired fingertip position to a finger
 
    finger   1 to 3
-   tip   tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm
+   tip      tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm
 
- From the next cycle on the anchor of the fingertip's spring moves to Tip, along a straight line in joint
- angles and at a bounded speed. The stiffness is the one sent last. When the anchor is at Tip and p is
- the position of the fingertip, the force is Kx (Tip - p) at any distance, whatever the configured
+ From the next cycle on the anchor of the fingertip's spring moves to tip, along a straight line in joint
+ angles and at a bounded speed. The stiffness is the one sent last. When the anchor is at tip and p is
+ the position of the fingertip, the force is Kx (tip - p) at any distance, whatever the configured
  controller.law. If several joint solutions are within the joint limits, the call takes the one nearest
  to the present pose.
 
@@ -621,7 +628,7 @@ int sun2xp_send_tip(sun2xp_hand *hand, int finger, const double *tip);
  sun2xp_tip - read position, force and stiffness of a fingertip, and the tendon tensions
 
    finger   1 to 3
-   tip   result, from the last cycle of the servo; set tip->size before the call
+   tip      result, from the last cycle of the servo; set tip->size before the call
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -637,44 +644,42 @@ int sun2xp_send_tip(sun2xp_hand *hand, int finger, const double *tip);
      struct sun2xp_tip tip;
      tip.size = sizeof tip;
      if (sun2xp_tip(hand, 1, &tip) == 0)
-         printf("%g n along z\n", tip.force[2]);
+         printf("%g N along z\n", tip.force[2]);
  */
 int sun2xp_tip(sun2xp_hand *hand, int finger, struct sun2xp_tip *tip);
 
 /*
  sun2xp_send_contact - make a fingertip the spring of a contact type
 
-   finger   1 to 3
-   dimensions   dimensions of the contact (section 4.2 of the report):
-            1   frictionless point: a force along the normal
-            3   hard finger with friction: three forces; sun2xp_send_contact (i, 3, Kx, 0) is the same as
-                sun2xp_send_stiffness (i, Kx)
-            4   soft finger: three forces and a moment about the normal
-   stiffness   stiffness[D][D] or K[D * D], row by row. For D = 1: N/cm along the normal.
-               For D = 3 and 4, rows and columns 0 to 2 are x, y, z of the finger's frame, N/cm. For D =
-               4, row and column 3 are the rotation about the normal: N cm/rad on the diagonal, else
-               N/rad
-   normal   normal[3]: the contact normal in the finger's frame, of any length but zero. Always
-            double. Not used for D = 3, and may be null there
+   finger       1 to 3
+   dimensions   of the contact (section 4.2 of the report):
+                1   frictionless point: a force along the normal
+                3   hard finger with friction: three forces; the same as sun2xp_send_stiffness
+                4   soft finger: three forces and a moment about the normal
+   stiffness    a matrix of dimensions x dimensions, row by row. 1: N/cm along the normal. 3 and 4: rows
+                and columns 0 to 2 are x, y, z of the finger's frame, N/cm. 4: row and column 3 are the
+                rotation about the normal: N cm/rad on the diagonal, else N/rad
+   normal       normal[3]: the contact normal in the finger's frame, of any length but zero. Not used
+                for 3 dimensions, and may be null there
 
  The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last, and
  a later sun2xp_send_stiffness replaces it. In directions outside the contact, the finger is limp but
- still damped. K must be symmetric and must have no negative eigenvalue, as for sun2xp_send_stiffness. To
- compare it with the bound, a rotational stiffness of k N cm/rad is converted to k / (l2 l2) N/cm, where
- l2 is the length of the last link.
+ still damped. The matrix must be symmetric and must have no negative eigenvalue, as for
+ sun2xp_send_stiffness. To compare it with the bound, a rotational stiffness of k N cm/rad is converted
+ to k / (l2 l2) N/cm, where l2 is the length of the last link.
 
- D = 4 is not a spring in four independent directions, because three joints turn the tip only by moving
- it. A tip that moves by v cm turns about Normal by c . v rad, and the vector c depends on the pose. A
- rotational stiffness of k N cm/rad therefore stiffens the tip along c, by k |c| |c| N/cm, and the tip
- exerts no moment that is independent of its force. In the pose 0, 0.5, 0.8 rad the example below gives
- 3.24, 3 and 3 N/cm along x, y and z. With Normal along x it gives 3, 3.56 and 4.87 N/cm, and -1.02 N/cm
- between y and z. Stiffness of sun2xp_tip is the stiffness that results.
+ A soft finger is not a spring in four independent directions, because three joints turn the tip only by
+ moving it. A tip that moves by v cm turns about normal by c . v rad, and the vector c depends on the
+ pose. A rotational stiffness of k N cm/rad therefore stiffens the tip along c, by k |c| |c| N/cm, and
+ the tip exerts no moment that is independent of its force. In the pose 0, 0.5, 0.8 rad the example below
+ gives 3.24, 3 and 3 N/cm along x, y and z. With normal along x it gives 3, 3.56 and 4.87 N/cm, and -1.02
+ N/cm between y and z. sun2xp_tip reads the stiffness that results.
 
  Returns 0, or a negative number with
    EPERM    forked child
-   EFAULT   stiffness is null; normal is null for D = 1 or 4
+   EFAULT   stiffness is null; normal is null for 1 or 4 dimensions
    ENODEV   no such hand
-   EINVAL   no such finger; no such D; an entry is NaN or infinite
+   EINVAL   no such finger; no such dimensions; an entry is NaN or infinite
    EDOM     stiffness is not symmetric, or has a negative eigenvalue; normal is zero
    ERANGE   stiffness is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
    EIO      the finger is faulted
@@ -694,8 +699,8 @@ int sun2xp_send_contact(sun2xp_hand *hand, int finger, int dimensions, const dou
 /*
  sun2xp_send_damping - set the damping of a fingertip
 
-   finger  1 to 3
-   ratio   damping relative to what the controller chooses from the stiffness; 1 after sun2xp_open
+   finger   1 to 3
+   ratio    damping relative to what the controller chooses from the stiffness; 1 after sun2xp_open
 
  The ratio changes without a jump in torque and stays until another ratio is sent. A finger with much
  less or much more damping does not come to rest. The range therefore depends on controller, rate and the
@@ -731,18 +736,18 @@ int sun2xp_send_damping(sun2xp_hand *hand, int finger, double ratio);
 /*
  sun2xp_send_joint_stiffness - make the joints of a finger springs
 
-   finger   1 to 3
-   stiffness   stiffness[3][3] or K[9], row by row: entry [row][column] is the torque of joint row for a
-               deflection of joint column from its set point, N cm/rad
+   finger      1 to 3
+   stiffness   stiffness[9] or &stiffness[0][0] of stiffness[3][3], row by row: entry [row][column] is
+               the torque of joint row for a deflection of joint column from its set point, N cm/rad
 
- The torque of the joints is K (Pos - p), with the desired angles Pos and the measured angles p of joints
- 0, 1 and 2. K takes effect like Kx, without a jump in torque: 95 % of the change has taken effect after
- 50 ms. It replaces the Kx or contact that was sent last, and a later sun2xp_send_stiffness,
- sun2xp_send_contact, or Kx of sun2xp_send_group or sun2xp_send_path replaces it. The torque of
- sun2xp_send_joint_torque stays. K must be symmetric and must have no negative eigenvalue, as for
- sun2xp_send_stiffness. It may be zero.
+ The torque of the joints is stiffness (d - p), with the desired angles d and the measured angles p of
+ joints 0, 1 and 2. The stiffness takes effect like Kx, without a jump in torque: 95 % of the change has
+ taken effect after 50 ms. It replaces the Kx or contact that was sent last, and a later
+ sun2xp_send_stiffness, sun2xp_send_contact, or Kx of sun2xp_send_group or sun2xp_send_path replaces it.
+ The torque of sun2xp_send_joint_torque stays. The stiffness must be symmetric and must have no negative eigenvalue,
+ as for sun2xp_send_stiffness. It may be zero.
 
- The largest eigenvalue of K may be at most the bound of Kx times l2 l2, where l2 is the length of the
+ The largest eigenvalue may be at most the bound of Kx times l2 l2, where l2 is the length of the
  last link: by default 96 N cm/rad at 1000 Hz and above, and 80 N cm/rad below. This is the stiffness
  that a Kx at its bound gives joint 2 in every pose.
 
@@ -770,8 +775,7 @@ int sun2xp_send_joint_stiffness(sun2xp_hand *hand, int finger, const double *sti
  sun2xp_send_joint_torque - add a constant torque to the joints of a finger
 
    finger   1 to 3
-   torque   torque[3]: torque of joints 0, 1, 2, N cm; positive torques increase the angles. Always
-            double
+   torque   torque[3]: torque of joints 0, 1, 2, N cm; positive torques increase the angles
 
  The torque acts in addition to the spring of Kx, of a contact or of sun2xp_send_joint_stiffness, until
  the next call replaces it; zero ends it. It takes effect like Kx, without a jump. If the stiffness is
@@ -787,7 +791,7 @@ int sun2xp_send_joint_stiffness(sun2xp_hand *hand, int finger, const double *sti
    EFAULT   torque is null
    ENODEV   no such hand
    EINVAL   no such finger; a torque is NaN or infinite
-   ERANGE   the tendons cannot make Torque (hand.out_of_range = "clamp" scales it instead)
+   ERANGE   the tendons cannot make torque (hand.out_of_range = "clamp" scales it instead)
    EIO      the finger is faulted
 
  Threads: any. Never waits for a servo. Takes about 1 us.
@@ -823,9 +827,9 @@ struct sun2xp_set_point {
 /*
  sun2xp_send_group - command several fingers in the same cycle
 
-   count      number of commands, 0 to 3
-   set_points   set_points[count]: one command for each finger of the group, in any order; set Size of
-              every command, and set members that are not used to 0
+   count        number of commands, 0 to 3
+   set_points   set_points[count]: one command for each finger of the group, in any order; set size of
+                every command, and set members that are not used to 0
 
  Each command has the effect of sun2xp_send_position or sun2xp_send_tip, sun2xp_send_stiffness and
  sun2xp_send_damping. All fingers of the group follow their commands from the same cycle on, also if
@@ -962,10 +966,9 @@ int sun2xp_send_path(sun2xp_hand *hand, int finger, int count, const struct sun2
 /*
  sun2xp_send_position_for - send desired joint angles that expire
 
-   finger    1 to 3
-   position  position[3]: desired angles of joints 0, 1, 2, rad, as for sun2xp_send_position. Always
-             double
-   seconds   how long the angles are valid, s; 0 for finger.motion.valid_ms
+   finger     1 to 3
+   position   position[3]: desired angles of joints 0, 1, 2, rad, as for sun2xp_send_position
+   seconds    how long the angles are valid, s; 0 for finger.motion.valid_ms
 
  Has the effect of sun2xp_send_position. If no other command of the planner arrives within seconds, the
  finger no longer follows the angles: by default it holds the pose in which it then is with the soft
@@ -1013,12 +1016,12 @@ struct sun2xp_palm_pose {
 /*
  sun2xp_jacobian - compute the Jacobian of a fingertip
 
-   finger   1 to 3
+   finger     1 to 3
    position   position[3]: angles of joints 0, 1, 2, rad. Null: the measured angles
-   jacobian   result: J[3][3] or J[9], row by row. J[row][column] is the motion of the tip
-         along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8)
+   jacobian   result: jacobian[9], row by row: entry [row][column] is the motion of the tip
+              along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8)
 
- A force f on the tip acts on joint k as the sum over the axes of J[axis][k] f[axis], N cm.
+ A force f on the tip acts on joint k as the sum over the axes of entry [axis][k] times f[axis], N cm.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1040,10 +1043,9 @@ int sun2xp_jacobian(sun2xp_hand *hand, int finger, const double *position, doubl
 /*
  sun2xp_forward_kinematics - compute where a tip is at given joint angles
 
-   finger   1 to 3
-   position   position[3]: angles of joints 0, 1, 2, rad; they may be outside the joint limits. Always
-              double
-   tip   result: Tip[3]: x, y, z of the tip in the finger's frame, cm
+   finger     1 to 3
+   position   position[3]: angles of joints 0, 1, 2, rad; they may be outside the joint limits
+   tip        result: tip[3]: x, y, z of the tip in the finger's frame, cm
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1063,9 +1065,9 @@ int sun2xp_forward_kinematics(sun2xp_hand *hand, int finger, const double *posit
 /*
  sun2xp_inverse_kinematics - compute the joint angles at which a tip is at a position
 
-   finger   1 to 3
-   tip   tip[3]: x, y, z of the tip in the finger's frame, cm
-   position   result: Pos[3]: angles of joints 0, 1, 2, rad
+   finger     1 to 3
+   tip        tip[3]: x, y, z of the tip in the finger's frame, cm
+   position   result: position[3]: angles of joints 0, 1, 2, rad
 
  If several joint solutions are within the joint limits, the result is the one nearest to the present
  pose, as with sun2xp_send_tip.
@@ -1108,7 +1110,7 @@ int sun2xp_joint_torques(sun2xp_hand *hand, int finger, struct sun2xp_joint_torq
  sun2xp_palm_pose - read where a finger and its tip are in the palm
 
    finger   1 to 3
-   pose   result, from the last cycle of the servo; set pose->size before the call
+   pose     result, from the last cycle of the servo; set pose->size before the call
 
  Base and Rotation follow from the configuration, finger.base and finger.turn_degrees. By default two
  fingers are side by side, and the thumb is opposite to them.
@@ -1209,9 +1211,9 @@ struct sun2xp_touch {
 /*
  sun2xp_touch - the newest reading of a tactile element
 
-   finger   1 to 3
-   element  element, from 0, in the order of [finger.touch] in the configuration
-   touch    result; set touch->size before the call
+   finger    1 to 3
+   element   element, from 0, in the order of [finger.touch] in the configuration
+   touch     result; set touch->size before the call
 
  A board reports an element when its reading changes. The servo fetches one such event of a finger in
  each period in which the line has time for it. A faulted finger keeps its last readings.
@@ -1220,7 +1222,7 @@ struct sun2xp_touch {
    EPERM    forked child
    EFAULT   touch is null
    ENODEV   no such hand
-   EINVAL   size is too small; no such finger; no such Element
+   EINVAL   size is too small; no such finger; no such element
 
  Threads: any. Never waits for a servo. Takes a few us.
 
@@ -1229,7 +1231,7 @@ struct sun2xp_touch {
      struct sun2xp_touch touch;
      touch.size = sizeof touch;
      if (sun2xp_touch(hand, 1, 0, &touch) == 0 && touch.valid)
-         printf("%.3f n\n", touch.force);
+         printf("%.3f N\n", touch.force);
  */
 int sun2xp_touch(sun2xp_hand *hand, int finger, int element, struct sun2xp_touch *touch);
 
@@ -1268,7 +1270,7 @@ struct sun2xp_object {
                                                the start it is the unit matrix. */
     double velocity[3];                     /* Velocity of the middle, cm/s. */
     double angular_velocity[3];             /* Angular velocity, rad/s. */
-    double force[3][3];                     /* Force of each finger on the object, N: Force[0] is that of finger 1.
+    double force[3][3];                     /* Force of each finger on the object, N: force[0] is that of finger 1.
                                                It is the true force, without the errors of sun2xp_tip. It is zero for
                                                a finger that does not touch the object. */
 };
@@ -1302,9 +1304,9 @@ int sun2xp_object(sun2xp_hand *hand, struct sun2xp_object *object);
 /*
  sun2xp_push - push the fingertip of a simulated finger
 
-   finger  1 to 3
-   force   force[3]: force on the fingertip along x, y, z of the finger's frame, N. It
-           acts until the next call; zero ends it
+   finger   1 to 3
+   force    force[3]: force on the fingertip along x, y, z of the finger's frame, N. It
+            acts until the next call; zero ends it
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1325,7 +1327,7 @@ int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
  sun2xp_adjust - change the configuration of a finger while it runs
 
    finger   1 to 3
-   keys   lines of TOML, in UTF-8, as under [finger.i] of the configuration file (chapter 8)
+   keys     lines of TOML, in UTF-8, as under [finger.i] of the configuration file (docs/sun2xp.toml)
 
  All keys take effect together, within a cycle and without a jump in torque; other keys stay as they are.
  The change lasts until sun2xp_close: the file is not written. A new controller.law applies from the next
@@ -1333,7 +1335,7 @@ int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
  address, thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
  motor.torque_constant, stiffness.initial and simulation.
 
- A configured stiffness.bound was chosen for the configured controller.scheme. If Keys changes
+ A configured stiffness.bound was chosen for the configured controller.scheme. If keys changes
  controller.scheme but does not set stiffness.bound, the smaller of the configured bound and the default
  bound applies.
 
@@ -1437,7 +1439,7 @@ struct sun2xp_status {
      struct sun2xp_status status;
      status.size = sizeof status;
      if (sun2xp_status(hand, 1, &status) == 0)
-         printf("%.1f hz\n", status.measured_rate);
+         printf("%.1f Hz\n", status.measured_rate);
  */
 int sun2xp_status(sun2xp_hand *hand, int finger, struct sun2xp_status *status);
 
@@ -1494,7 +1496,7 @@ struct sun2xp_timing {
    EPERM    forked child
    EFAULT   timing is null
    ENODEV   no such hand
-   EINVAL   size is too small; no such finger; no such Stage
+   EINVAL   size is too small; no such finger; no such stage
 
  Threads: any. Never waits for a servo. Takes a few us.
 
@@ -1839,7 +1841,7 @@ struct sun2xp_event {
 /*
  sun2xp_next_event - take the next event
 
-   event    result; set event->size before the call
+   event   result; set event->size before the call
 
  Takes the earliest event of all fingers since sun2xp_open that no call has taken yet. Events come in the
  order of their times, except if a servo is late by more than two periods. Each finger keeps its newest
@@ -1867,8 +1869,8 @@ int sun2xp_next_event(sun2xp_hand *hand, struct sun2xp_event *event);
 /*
  sun2xp_wait_event - wait for the next event
 
-   event         result; set event->size before the call
-   seconds       longest wait, s; 0 or NaN: no wait; negative: no limit
+   event     result; set event->size before the call
+   seconds   longest wait, s; 0 or NaN: no wait; negative: no limit
 
  Takes an event as sun2xp_next_event does, and waits for one if there is none. sun2xp_close ends the
  wait.
@@ -1899,9 +1901,9 @@ int sun2xp_wait_event(sun2xp_hand *hand, struct sun2xp_event *event, double seco
    callback   function to call, or null for none
    context    second argument of each call of the function
 
- From now on a thread of the library, which is not real-time, calls Callback with each event. There is
- one callback for the hand; a later sun2xp_on_event replaces it. While Callback runs, later events wait.
- Callback may make every call, and must return: no longjmp, pthread_exit or exception.
+ From now on a thread of the library, which is not real-time, calls callback with each event. There is
+ one callback for the hand; a later sun2xp_on_event replaces it. While callback runs, later events wait.
+ The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 
  When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
  called again. If they are called by the callback itself, they do not wait for it, and it is not called
@@ -1912,7 +1914,7 @@ int sun2xp_wait_event(sun2xp_hand *hand, struct sun2xp_event *event, double seco
    ENODEV   no such hand
    EAGAIN   the system refuses to start a thread
 
- Threads: any, and Callback. Waits until the previous callback has returned.
+ Threads: any, and callback. Waits until the previous callback has returned.
 
  Example:
 
@@ -2012,16 +2014,17 @@ struct sun2xp_reflex {
 
  A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
  later calls that change a part of a set point start from the new one. The next sun2xp_send_position
- moves the finger again; Inhibition delays that. A rule stays until sun2xp_remove_reflex or sun2xp_close.
+ moves the finger again; inhibition delays that. A rule stays until sun2xp_remove_reflex or sun2xp_close.
 
  Returns the number of the rule, above 0, or a negative number with
    EPERM    forked child
    EFAULT   reflex is null
    ENODEV   no such hand
-   EINVAL   size is too small; no such finger, joint, condition, reaction or event; Pos or Kx is NaN
-   ERANGE   another value is NaN or outside its range; Pos as in sun2xp_send_position; Kx as in
+   EINVAL   size is too small; no such finger, joint, condition, reaction or event; position or stiffness is
+            NaN
+   ERANGE   another value is NaN or outside its range; position as in sun2xp_send_position; stiffness as in
             sun2xp_send_stiffness
-   EDOM     Kx as in sun2xp_send_stiffness
+   EDOM     stiffness as in sun2xp_send_stiffness
    ENOSPC   the finger has 16 rules
 
  Threads: any. Never waits for a servo. Takes a few us.
@@ -2122,8 +2125,8 @@ int sun2xp_record(sun2xp_hand *hand, int finger, unsigned long cycle, struct sun
 /*
  sun2xp_write_black_box - write the last seconds of a finger into a file
 
-   finger  1 to 3
-   path    the file; an existing file is replaced
+   finger   1 to 3
+   path     the file; an existing file is replaced
 
  The library stores the last two seconds of every finger: feedback, set points, motor commands, timing
  and state. For a faulted finger these are the last two seconds before the fault. docs/black-box.md

@@ -65,7 +65,10 @@ fn the_layout_is_complete() {
     for (name, members) in structs {
         assert!(layout.contains(&format!("BYTES({name}, ")), "tests/c/layout.c should have {name}");
         let members = members.split_once("\n};").expect("a struct ends").0;
-        for member in members.lines().filter_map(|line| line.split_once(';')).map(|(before, _)| before) {
+        // Other lines continue a comment, and are indented further.
+        let declares = |line: &&str| line.strip_prefix("    ").is_some_and(|rest| !rest.starts_with(' '));
+        for member in members.lines().filter(declares).filter_map(|line| line.split_once(';')).map(|(member, _)| member)
+        {
             let member = member.rsplit([' ', '*']).next().and_then(|member| member.split('[').next()).expect("a name");
             let assertion = format!("AT({name}, {member}, ");
             assert!(layout.contains(&assertion), "tests/c/layout.c should have {name}.{member}");

@@ -12,7 +12,7 @@ use std::ffi::{CStr, c_char, c_int};
 /// sun2xp_adjust - change the configuration of a finger while it runs
 ///
 ///   finger   1 to 3
-///   keys   lines of TOML, in UTF-8, as under [finger.i] of the configuration file (chapter 8)
+///   keys     lines of TOML, in UTF-8, as under [finger.i] of the configuration file (docs/sun2xp.toml)
 ///
 /// All keys take effect together, within a cycle and without a jump in torque; other keys stay as they are.
 /// The change lasts until sun2xp_close: the file is not written. A new controller.law applies from the next
@@ -20,7 +20,7 @@ use std::ffi::{CStr, c_char, c_int};
 /// address, thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
 /// motor.torque_constant, stiffness.initial and simulation.
 ///
-/// A configured stiffness.bound was chosen for the configured controller.scheme. If Keys changes
+/// A configured stiffness.bound was chosen for the configured controller.scheme. If keys changes
 /// controller.scheme but does not set stiffness.bound, the smaller of the configured bound and the default
 /// bound applies.
 ///

@@ -101,8 +101,8 @@ pub unsafe extern "C" fn sun2xp_record(
 
 /// sun2xp_write_black_box - write the last seconds of a finger into a file
 ///
-///   finger  1 to 3
-///   path    the file; an existing file is replaced
+///   finger   1 to 3
+///   path     the file; an existing file is replaced
 ///
 /// The library stores the last two seconds of every finger: feedback, set points, motor commands, timing
 /// and state. For a faulted finger these are the last two seconds before the fault. docs/black-box.md

@@ -14,7 +14,7 @@ use std::ffi::{c_char, c_int};
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_error {
-    /// In: sizeof (struct sun2xp_error).
+    /// sizeof (struct sun2xp_error), set before the call.
     pub size: usize,
     /// SUN2XP_ERROR_..., or 0 if no call was refused.
     pub number: c_int,
@@ -70,7 +70,7 @@ pub unsafe extern "C" fn sun2xp_error(hand: *const sun2xp_hand, error: *mut sun2
 
 /// sun2xp_error_text - the text of the last refused call of the calling thread
 ///
-///   hand    a hand, open or closed; null: any hand
+///   hand   a hand, open or closed; null: any hand
 ///
 /// Returns the text of sun2xp_error, or an empty string if no call was refused. The pointer is never
 /// null, and is valid until the next refused call of the same thread.

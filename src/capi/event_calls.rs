@@ -42,7 +42,7 @@ pub struct sun2xp_event {
 
 /// sun2xp_next_event - take the next event
 ///
-///   event    result; set event->size before the call
+///   event   result; set event->size before the call
 ///
 /// Takes the earliest event of all fingers since sun2xp_open that no call has taken yet. Events come in the
 /// order of their times, except if a servo is late by more than two periods. Each finger keeps its newest
@@ -73,8 +73,8 @@ pub unsafe extern "C" fn sun2xp_next_event(hand: *mut sun2xp_hand, event: *mut s
 
 /// sun2xp_wait_event - wait for the next event
 ///
-///   event         result; set event->size before the call
-///   seconds       longest wait, s; 0 or NaN: no wait; negative: no limit
+///   event     result; set event->size before the call
+///   seconds   longest wait, s; 0 or NaN: no wait; negative: no limit
 ///
 /// Takes an event as sun2xp_next_event does, and waits for one if there is none. sun2xp_close ends the
 /// wait.
@@ -127,9 +127,9 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
 ///   callback   function to call, or null for none
 ///   context    second argument of each call of the function
 ///
-/// From now on a thread of the library, which is not real-time, calls Callback with each event. There is
-/// one callback for the hand; a later sun2xp_on_event replaces it. While Callback runs, later events wait.
-/// Callback may make every call, and must return: no longjmp, pthread_exit or exception.
+/// From now on a thread of the library, which is not real-time, calls callback with each event. There is
+/// one callback for the hand; a later sun2xp_on_event replaces it. While callback runs, later events wait.
+/// The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 ///
 /// When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
 /// called again. If they are called by the callback itself, they do not wait for it, and it is not called
@@ -140,7 +140,7 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
 ///   ENODEV   no such hand
 ///   EAGAIN   the system refuses to start a thread
 ///
-/// Threads: any, and Callback. Waits until the previous callback has returned.
+/// Threads: any, and callback. Waits until the previous callback has returned.
 ///
 /// Example:
 ///

@@ -47,11 +47,11 @@ pub struct sun2xp_tip {
 /// sun2xp_send_tip - send a desired fingertip position to a finger
 ///
 ///   finger   1 to 3
-///   tip   tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm
+///   tip      tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm
 ///
-/// From the next cycle on the anchor of the fingertip's spring moves to Tip, along a straight line in joint
-/// angles and at a bounded speed. The stiffness is the one sent last. When the anchor is at Tip and p is
-/// the position of the fingertip, the force is Kx (Tip - p) at any distance, whatever the configured
+/// From the next cycle on the anchor of the fingertip's spring moves to tip, along a straight line in joint
+/// angles and at a bounded speed. The stiffness is the one sent last. When the anchor is at tip and p is
+/// the position of the fingertip, the force is Kx (tip - p) at any distance, whatever the configured
 /// controller.law. If several joint solutions are within the joint limits, the call takes the one nearest
 /// to the present pose.
 ///
@@ -82,7 +82,7 @@ pub unsafe extern "C" fn sun2xp_send_tip(hand: *mut sun2xp_hand, finger: c_int, 
 /// sun2xp_tip - read position, force and stiffness of a fingertip, and the tendon tensions
 ///
 ///   finger   1 to 3
-///   tip   result, from the last cycle of the servo; set tip->size before the call
+///   tip      result, from the last cycle of the servo; set tip->size before the call
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -98,7 +98,7 @@ pub unsafe extern "C" fn sun2xp_send_tip(hand: *mut sun2xp_hand, finger: c_int, 
 ///     struct sun2xp_tip tip;
 ///     tip.size = sizeof tip;
 ///     if (sun2xp_tip(hand, 1, &tip) == 0)
-///         printf("%g n along z\n", tip.force[2]);
+///         printf("%g N along z\n", tip.force[2]);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sun2xp_tip(hand: *mut sun2xp_hand, finger: c_int, tip: *mut sun2xp_tip) -> c_int {
     let hand = Handle::of(hand);
@@ -110,37 +110,35 @@ pub unsafe extern "C" fn sun2xp_tip(hand: *mut sun2xp_hand, finger: c_int, tip: 
 
 /// sun2xp_send_contact - make a fingertip the spring of a contact type
 ///
-///   finger   1 to 3
-///   dimensions   dimensions of the contact (section 4.2 of the report):
-///            1   frictionless point: a force along the normal
-///            3   hard finger with friction: three forces; sun2xp_send_contact (i, 3, Kx, 0) is the same as
-///                sun2xp_send_stiffness (i, Kx)
-///            4   soft finger: three forces and a moment about the normal
-///   stiffness   stiffness[D][D] or K[D * D], row by row. For D = 1: N/cm along the normal.
-///               For D = 3 and 4, rows and columns 0 to 2 are x, y, z of the finger's frame, N/cm. For D =
-///               4, row and column 3 are the rotation about the normal: N cm/rad on the diagonal, else
-///               N/rad
-///   normal   normal[3]: the contact normal in the finger's frame, of any length but zero. Always
-///            double. Not used for D = 3, and may be null there
+///   finger       1 to 3
+///   dimensions   of the contact (section 4.2 of the report):
+///                1   frictionless point: a force along the normal
+///                3   hard finger with friction: three forces; the same as sun2xp_send_stiffness
+///                4   soft finger: three forces and a moment about the normal
+///   stiffness    a matrix of dimensions x dimensions, row by row. 1: N/cm along the normal. 3 and 4: rows
+///                and columns 0 to 2 are x, y, z of the finger's frame, N/cm. 4: row and column 3 are the
+///                rotation about the normal: N cm/rad on the diagonal, else N/rad
+///   normal       normal[3]: the contact normal in the finger's frame, of any length but zero. Not used
+///                for 3 dimensions, and may be null there
 ///
 /// The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last, and
 /// a later sun2xp_send_stiffness replaces it. In directions outside the contact, the finger is limp but
-/// still damped. K must be symmetric and must have no negative eigenvalue, as for sun2xp_send_stiffness. To
-/// compare it with the bound, a rotational stiffness of k N cm/rad is converted to k / (l2 l2) N/cm, where
-/// l2 is the length of the last link.
+/// still damped. The matrix must be symmetric and must have no negative eigenvalue, as for
+/// sun2xp_send_stiffness. To compare it with the bound, a rotational stiffness of k N cm/rad is converted
+/// to k / (l2 l2) N/cm, where l2 is the length of the last link.
 ///
-/// D = 4 is not a spring in four independent directions, because three joints turn the tip only by moving
-/// it. A tip that moves by v cm turns about Normal by c . v rad, and the vector c depends on the pose. A
-/// rotational stiffness of k N cm/rad therefore stiffens the tip along c, by k |c| |c| N/cm, and the tip
-/// exerts no moment that is independent of its force. In the pose 0, 0.5, 0.8 rad the example below gives
-/// 3.24, 3 and 3 N/cm along x, y and z. With Normal along x it gives 3, 3.56 and 4.87 N/cm, and -1.02 N/cm
-/// between y and z. Stiffness of sun2xp_tip is the stiffness that results.
+/// A soft finger is not a spring in four independent directions, because three joints turn the tip only by
+/// moving it. A tip that moves by v cm turns about normal by c . v rad, and the vector c depends on the
+/// pose. A rotational stiffness of k N cm/rad therefore stiffens the tip along c, by k |c| |c| N/cm, and
+/// the tip exerts no moment that is independent of its force. In the pose 0, 0.5, 0.8 rad the example below
+/// gives 3.24, 3 and 3 N/cm along x, y and z. With normal along x it gives 3, 3.56 and 4.87 N/cm, and -1.02
+/// N/cm between y and z. sun2xp_tip reads the stiffness that results.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
-///   EFAULT   stiffness is null; normal is null for D = 1 or 4
+///   EFAULT   stiffness is null; normal is null for 1 or 4 dimensions
 ///   ENODEV   no such hand
-///   EINVAL   no such finger; no such D; an entry is NaN or infinite
+///   EINVAL   no such finger; no such dimensions; an entry is NaN or infinite
 ///   EDOM     stiffness is not symmetric, or has a negative eigenvalue; normal is zero
 ///   ERANGE   stiffness is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
 ///   EIO      the finger is faulted
@@ -194,8 +192,8 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 
 /// sun2xp_send_damping - set the damping of a fingertip
 ///
-///   finger  1 to 3
-///   ratio   damping relative to what the controller chooses from the stiffness; 1 after sun2xp_open
+///   finger   1 to 3
+///   ratio    damping relative to what the controller chooses from the stiffness; 1 after sun2xp_open
 ///
 /// The ratio changes without a jump in torque and stays until another ratio is sent. A finger with much
 /// less or much more damping does not come to rest. The range therefore depends on controller, rate and the

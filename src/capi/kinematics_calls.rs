@@ -44,12 +44,12 @@ pub struct sun2xp_palm_pose {
 
 /// sun2xp_jacobian - compute the Jacobian of a fingertip
 ///
-///   finger   1 to 3
+///   finger     1 to 3
 ///   position   position[3]: angles of joints 0, 1, 2, rad. Null: the measured angles
-///   jacobian   result: J[3][3] or J[9], row by row. J[row][column] is the motion of the tip
-///         along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8)
+///   jacobian   result: jacobian[9], row by row: entry [row][column] is the motion of the tip
+///              along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8)
 ///
-/// A force f on the tip acts on joint k as the sum over the axes of J[axis][k] f[axis], N cm.
+/// A force f on the tip acts on joint k as the sum over the axes of entry [axis][k] times f[axis], N cm.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -87,10 +87,9 @@ pub unsafe extern "C" fn sun2xp_jacobian(
 
 /// sun2xp_forward_kinematics - compute where a tip is at given joint angles
 ///
-///   finger   1 to 3
-///   position   position[3]: angles of joints 0, 1, 2, rad; they may be outside the joint limits. Always
-///              double
-///   tip   result: Tip[3]: x, y, z of the tip in the finger's frame, cm
+///   finger     1 to 3
+///   position   position[3]: angles of joints 0, 1, 2, rad; they may be outside the joint limits
+///   tip        result: tip[3]: x, y, z of the tip in the finger's frame, cm
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -120,9 +119,9 @@ pub unsafe extern "C" fn sun2xp_forward_kinematics(
 
 /// sun2xp_inverse_kinematics - compute the joint angles at which a tip is at a position
 ///
-///   finger   1 to 3
-///   tip   tip[3]: x, y, z of the tip in the finger's frame, cm
-///   position   result: Pos[3]: angles of joints 0, 1, 2, rad
+///   finger     1 to 3
+///   tip        tip[3]: x, y, z of the tip in the finger's frame, cm
+///   position   result: position[3]: angles of joints 0, 1, 2, rad
 ///
 /// If several joint solutions are within the joint limits, the result is the one nearest to the present
 /// pose, as with sun2xp_send_tip.
@@ -189,7 +188,7 @@ pub unsafe extern "C" fn sun2xp_joint_torques(
 /// sun2xp_palm_pose - read where a finger and its tip are in the palm
 ///
 ///   finger   1 to 3
-///   pose   result, from the last cycle of the servo; set pose->size before the call
+///   pose     result, from the last cycle of the servo; set pose->size before the call
 ///
 /// Base and Rotation follow from the configuration, finger.base and finger.turn_degrees. By default two
 /// fingers are side by side, and the thumb is opposite to them.

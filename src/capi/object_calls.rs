@@ -30,7 +30,7 @@ pub struct sun2xp_object {
     pub velocity: [f64; 3],
     /// Angular velocity, rad/s.
     pub angular_velocity: [f64; 3],
-    /// Force of each finger on the object, N: Force[0] is that of finger 1. It is the true force, without the errors of
+    /// Force of each finger on the object, N: force[0] is that of finger 1. It is the true force, without the errors of
     /// sun2xp_tip. It is zero for a finger that does not touch the object.
     pub force: [[f64; 3]; 3],
 }
@@ -68,9 +68,9 @@ pub unsafe extern "C" fn sun2xp_object(hand: *mut sun2xp_hand, object: *mut sun2
 
 /// sun2xp_push - push the fingertip of a simulated finger
 ///
-///   finger  1 to 3
-///   force   force[3]: force on the fingertip along x, y, z of the finger's frame, N. It
-///           acts until the next call; zero ends it
+///   finger   1 to 3
+///   force    force[3]: force on the fingertip along x, y, z of the finger's frame, N. It
+///            acts until the next call; zero ends it
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

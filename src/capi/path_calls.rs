@@ -106,10 +106,9 @@ pub unsafe extern "C" fn sun2xp_send_path(
 
 /// sun2xp_send_position_for - send desired joint angles that expire
 ///
-///   finger    1 to 3
-///   position  position[3]: desired angles of joints 0, 1, 2, rad, as for sun2xp_send_position. Always
-///             double
-///   seconds   how long the angles are valid, s; 0 for finger.motion.valid_ms
+///   finger     1 to 3
+///   position   position[3]: desired angles of joints 0, 1, 2, rad, as for sun2xp_send_position
+///   seconds    how long the angles are valid, s; 0 for finger.motion.valid_ms
 ///
 /// Has the effect of sun2xp_send_position. If no other command of the planner arrives within seconds, the
 /// finger no longer follows the angles: by default it holds the pose in which it then is with the soft

@@ -109,16 +109,17 @@ pub struct sun2xp_reflex {
 ///
 /// A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
 /// later calls that change a part of a set point start from the new one. The next sun2xp_send_position
-/// moves the finger again; Inhibition delays that. A rule stays until sun2xp_remove_reflex or sun2xp_close.
+/// moves the finger again; inhibition delays that. A rule stays until sun2xp_remove_reflex or sun2xp_close.
 ///
 /// Returns the number of the rule, above 0, or a negative number with
 ///   EPERM    forked child
 ///   EFAULT   reflex is null
 ///   ENODEV   no such hand
-///   EINVAL   size is too small; no such finger, joint, condition, reaction or event; Pos or Kx is NaN
-///   ERANGE   another value is NaN or outside its range; Pos as in sun2xp_send_position; Kx as in
+///   EINVAL   size is too small; no such finger, joint, condition, reaction or event; position or stiffness is
+///            NaN
+///   ERANGE   another value is NaN or outside its range; position as in sun2xp_send_position; stiffness as in
 ///            sun2xp_send_stiffness
-///   EDOM     Kx as in sun2xp_send_stiffness
+///   EDOM     stiffness as in sun2xp_send_stiffness
 ///   ENOSPC   the finger has 16 rules
 ///
 /// Threads: any. Never waits for a servo. Takes a few us.

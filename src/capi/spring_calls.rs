@@ -12,18 +12,18 @@ use std::ffi::c_int;
 
 /// sun2xp_send_joint_stiffness - make the joints of a finger springs
 ///
-///   finger   1 to 3
-///   stiffness   stiffness[3][3] or K[9], row by row: entry [row][column] is the torque of joint row for a
-///               deflection of joint column from its set point, N cm/rad
+///   finger      1 to 3
+///   stiffness   stiffness[9] or &stiffness[0][0] of stiffness[3][3], row by row: entry [row][column] is
+///               the torque of joint row for a deflection of joint column from its set point, N cm/rad
 ///
-/// The torque of the joints is K (Pos - p), with the desired angles Pos and the measured angles p of joints
-/// 0, 1 and 2. K takes effect like Kx, without a jump in torque: 95 % of the change has taken effect after
-/// 50 ms. It replaces the Kx or contact that was sent last, and a later sun2xp_send_stiffness,
-/// sun2xp_send_contact, or Kx of sun2xp_send_group or sun2xp_send_path replaces it. The torque of
-/// sun2xp_send_joint_torque stays. K must be symmetric and must have no negative eigenvalue, as for
-/// sun2xp_send_stiffness. It may be zero.
+/// The torque of the joints is stiffness (d - p), with the desired angles d and the measured angles p of
+/// joints 0, 1 and 2. The stiffness takes effect like Kx, without a jump in torque: 95 % of the change has
+/// taken effect after 50 ms. It replaces the Kx or contact that was sent last, and a later
+/// sun2xp_send_stiffness, sun2xp_send_contact, or Kx of sun2xp_send_group or sun2xp_send_path replaces it.
+/// The torque of sun2xp_send_joint_torque stays. The stiffness must be symmetric and must have no negative eigenvalue,
+/// as for sun2xp_send_stiffness. It may be zero.
 ///
-/// The largest eigenvalue of K may be at most the bound of Kx times l2 l2, where l2 is the length of the
+/// The largest eigenvalue may be at most the bound of Kx times l2 l2, where l2 is the length of the
 /// last link: by default 96 N cm/rad at 1000 Hz and above, and 80 N cm/rad below. This is the stiffness
 /// that a Kx at its bound gives joint 2 in every pose.
 ///
@@ -61,8 +61,7 @@ pub unsafe extern "C" fn sun2xp_send_joint_stiffness(
 /// sun2xp_send_joint_torque - add a constant torque to the joints of a finger
 ///
 ///   finger   1 to 3
-///   torque   torque[3]: torque of joints 0, 1, 2, N cm; positive torques increase the angles. Always
-///            double
+///   torque   torque[3]: torque of joints 0, 1, 2, N cm; positive torques increase the angles
 ///
 /// The torque acts in addition to the spring of Kx, of a contact or of sun2xp_send_joint_stiffness, until
 /// the next call replaces it; zero ends it. It takes effect like Kx, without a jump. If the stiffness is
@@ -78,7 +77,7 @@ pub unsafe extern "C" fn sun2xp_send_joint_stiffness(
 ///   EFAULT   torque is null
 ///   ENODEV   no such hand
 ///   EINVAL   no such finger; a torque is NaN or infinite
-///   ERANGE   the tendons cannot make Torque (hand.out_of_range = "clamp" scales it instead)
+///   ERANGE   the tendons cannot make torque (hand.out_of_range = "clamp" scales it instead)
 ///   EIO      the finger is faulted
 ///
 /// Threads: any. Never waits for a servo. Takes about 1 us.

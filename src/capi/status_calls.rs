@@ -103,7 +103,7 @@ pub struct sun2xp_status {
 ///     struct sun2xp_status status;
 ///     status.size = sizeof status;
 ///     if (sun2xp_status(hand, 1, &status) == 0)
-///         printf("%.1f hz\n", status.measured_rate);
+///         printf("%.1f Hz\n", status.measured_rate);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sun2xp_status(hand: *mut sun2xp_hand, finger: c_int, status: *mut sun2xp_status) -> c_int {
     let hand = Handle::of(hand);

@@ -92,7 +92,7 @@ pub struct sun2xp_timing {
 ///   EPERM    forked child
 ///   EFAULT   timing is null
 ///   ENODEV   no such hand
-///   EINVAL   size is too small; no such finger; no such Stage
+///   EINVAL   size is too small; no such finger; no such stage
 ///
 /// Threads: any. Never waits for a servo. Takes a few us.
 ///

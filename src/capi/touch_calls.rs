@@ -34,9 +34,9 @@ pub struct sun2xp_touch {
 
 /// sun2xp_touch - the newest reading of a tactile element
 ///
-///   finger   1 to 3
-///   element  element, from 0, in the order of [finger.touch] in the configuration
-///   touch    result; set touch->size before the call
+///   finger    1 to 3
+///   element   element, from 0, in the order of [finger.touch] in the configuration
+///   touch     result; set touch->size before the call
 ///
 /// A board reports an element when its reading changes. The servo fetches one such event of a finger in
 /// each period in which the line has time for it. A faulted finger keeps its last readings.
@@ -45,7 +45,7 @@ pub struct sun2xp_touch {
 ///   EPERM    forked child
 ///   EFAULT   touch is null
 ///   ENODEV   no such hand
-///   EINVAL   size is too small; no such finger; no such Element
+///   EINVAL   size is too small; no such finger; no such element
 ///
 /// Threads: any. Never waits for a servo. Takes a few us.
 ///
@@ -54,7 +54,7 @@ pub struct sun2xp_touch {
 ///     struct sun2xp_touch touch;
 ///     touch.size = sizeof touch;
 ///     if (sun2xp_touch(hand, 1, 0, &touch) == 0 && touch.valid)
-///         printf("%.3f n\n", touch.force);
+///         printf("%.3f N\n", touch.force);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sun2xp_touch(
     hand: *mut sun2xp_hand,

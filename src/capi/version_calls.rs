@@ -3,7 +3,7 @@
 use crate::capi::boundary::uncancelled;
 use std::ffi::{CStr, c_char, c_uint};
 
-/// Rises only when programs must be compiled again. build.rs has the same number.
+/// Rises only when programs must be compiled again.
 pub const SUN2XP_ABI_VERSION: c_uint = 0;
 
 /// The version, ended by a zero byte.
