@@ -1,6 +1,9 @@
 //! Conversion from TOML to the types of a configuration. General deserializers accept an array that is too long, and an
 //! array in place of a table. This one accepts only valid values, and reports the position of every other value and
 //! what is expected there.
+//!
+//! Serde has the generic functions compiled for each of some 50 types. So they contain little, and call others that are
+//! not generic and not inlined. Otherwise they are a twentieth of the library.
 
 mod choice;
 mod content;
@@ -11,6 +14,7 @@ use content::Content;
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeOwned, DeserializeSeed, MapAccess, SeqAccess, Visitor};
 use serde::forward_to_deserialize_any;
+use std::fmt::Display;
 use std::ops::Range;
 use toml_edit::{Item, Table, TableLike, Value};
 
@@ -26,18 +30,26 @@ struct Node<'a> {
 }
 
 impl<'a> Node<'a> {
+    #[inline(never)]
     fn item(item: &'a Item) -> Self {
         Self { content: Content::of_item(item), span: item.span() }
     }
 
+    #[inline(never)]
     fn value(value: &'a Value) -> Self {
         Self { content: Content::of_value(value), span: value.span() }
     }
 
-    fn refuse<T>(self, expected: impl std::fmt::Display) -> Result<T, Wrong> {
-        Err(Wrong::at(self.span, format!("must be {expected}, not {}", self.content.kind())))
+    #[inline(never)]
+    fn refusal(self, expected: &dyn Display) -> Wrong {
+        Wrong::at(self.span, format!("must be {expected}, not {}", self.content.kind()))
     }
 
+    fn refuse<T>(self, expected: impl Display) -> Result<T, Wrong> {
+        Err(self.refusal(&expected))
+    }
+
+    #[inline(never)]
     fn float<'de, V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
         match self.content {
             Content::Float(number) => visitor.visit_f64(number),
@@ -46,6 +58,7 @@ impl<'a> Node<'a> {
         }
     }
 
+    #[inline(never)]
     fn integer<'de, V: Visitor<'de>>(
         self,
         low: impl Into<i128>,
@@ -113,6 +126,7 @@ impl<'de> serde::Deserializer<'de> for Node<'_> {
         visitor.visit_newtype_struct(self)
     }
 
+    #[inline(never)]
     fn deserialize_tuple<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Wrong> {
         let Content::Array(array) = self.content else {
             return self.refuse(format_args!("an array of {length} entries"));
@@ -124,6 +138,7 @@ impl<'de> serde::Deserializer<'de> for Node<'_> {
         visitor.visit_seq(Entries { entries: array.iter().enumerate() })
     }
 
+    #[inline(never)]
     fn deserialize_struct<V: Visitor<'de>>(
         self,
         _name: &'static str,
@@ -135,6 +150,7 @@ impl<'de> serde::Deserializer<'de> for Node<'_> {
         visitor.visit_map(Keys { table, rest: table.iter(), item: None }).map_err(|wrong: Wrong| wrong.or_at(span))
     }
 
+    #[inline(never)]
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         _name: &'static str,
@@ -180,9 +196,10 @@ struct Entries<I> {
 impl<'de, 'a, I: Iterator<Item = (usize, &'a Value)>> SeqAccess<'de> for Entries<I> {
     type Error = Wrong;
 
+    #[inline(never)]
     fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Wrong> {
         let Some((index, value)) = self.entries.next() else { return Ok(None) };
-        seed.deserialize(Node::value(value)).map(Some).map_err(|wrong| wrong.or_at(value.span()).in_entry(index))
+        seed.deserialize(Node::value(value)).map(Some).map_err(|wrong| wrong_entry(wrong, value, index))
     }
 }
 
@@ -194,20 +211,50 @@ struct Keys<'a> {
     item: Option<(&'a str, &'a Item)>,
 }
 
+impl<'a> Keys<'a> {
+    #[inline(never)]
+    fn advance(&mut self) -> Option<&'a str> {
+        self.item = self.rest.next();
+        self.item.map(|(key, _)| key)
+    }
+
+    #[inline(never)]
+    fn take(&mut self) -> Result<(&'a str, &'a Item), Wrong> {
+        // Serde asks for a value only after its key.
+        self.item.take().ok_or_else(|| Wrong::at(None, "has no value".into()))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn wrong_key(&self, wrong: Wrong, key: &str) -> Wrong {
+        wrong.or_at(self.table.key(key).and_then(|key| key.span()))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn wrong_value(&self, wrong: Wrong, key: &str, item: &Item) -> Wrong {
+        wrong.or_at(item.span().or_else(|| self.table.key(key)?.span())).in_key(key)
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn wrong_entry(wrong: Wrong, value: &Value, index: usize) -> Wrong {
+    wrong.or_at(value.span()).in_entry(index)
+}
+
 impl<'de> MapAccess<'de> for Keys<'_> {
     type Error = Wrong;
 
+    #[inline(never)]
     fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Wrong> {
-        self.item = self.rest.next();
-        let Some((key, _)) = self.item else { return Ok(None) };
-        let span = || self.table.key(key).and_then(|key| key.span());
-        seed.deserialize(StrDeserializer::new(key)).map(Some).map_err(|wrong: Wrong| wrong.or_at(span()))
+        let Some(key) = self.advance() else { return Ok(None) };
+        seed.deserialize(StrDeserializer::new(key)).map(Some).map_err(|wrong: Wrong| self.wrong_key(wrong, key))
     }
 
+    #[inline(never)]
     fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Wrong> {
-        // Serde asks for a value only after its key.
-        let (key, item) = self.item.take().ok_or_else(|| Wrong::at(None, "has no value".into()))?;
-        let span = || item.span().or_else(|| self.table.key(key)?.span());
-        seed.deserialize(Node::item(item)).map_err(|wrong| wrong.or_at(span()).in_key(key))
+        let (key, item) = self.take()?;
+        seed.deserialize(Node::item(item)).map_err(|wrong| self.wrong_value(wrong, key, item))
     }
 }

@@ -32,12 +32,14 @@ impl Wrong {
     }
 
     /// The same error at this position, unless its position is known already.
+    #[inline(never)]
     pub fn or_at(mut self, span: Option<Range<usize>>) -> Self {
         self.span = self.span.or(span);
         self
     }
 
     /// The same error inside this key.
+    #[inline(never)]
     pub fn in_key(mut self, key: &str) -> Self {
         let point = if self.path.is_empty() || self.path.starts_with('[') { "" } else { "." };
         self.path = format!("{key}{point}{}", self.path);
@@ -45,6 +47,7 @@ impl Wrong {
     }
 
     /// The same error inside this entry of an array, counted from 0.
+    #[inline(never)]
     pub fn in_entry(self, index: usize) -> Self {
         self.in_key(&format!("[{index}]"))
     }
