@@ -30,7 +30,10 @@ pub mod board;
 mod calibration;
 #[cfg(feature = "internals")]
 pub mod calibration;
+#[cfg(not(feature = "internals"))]
 mod capi;
+#[cfg(feature = "internals")]
+pub mod capi;
 #[cfg(not(feature = "internals"))]
 mod control;
 #[cfg(feature = "internals")]

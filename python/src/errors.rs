@@ -37,6 +37,7 @@ impl Refusal {
     fn exception(&self, py: Python<'_>) -> PyResult<PyErr> {
         let details = PyDict::new(py);
         details.set_item("number", self.number())?;
+        details.set_item("errno", self.errno())?;
         details.set_item("remedy", self.remedy())?;
         if let Some((finger, fault)) = self.fault() {
             details.set_item("finger", finger)?;
@@ -73,12 +74,25 @@ impl Refusal {
         }
     }
 
+    /// The number of the C interface: SUN2XP_ERROR_..., and `ErrorNumber` in sun2xp/_errors.py.
     fn number(&self) -> i32 {
         match self {
-            Self::Closed => 19,                           // ENODEV
-            Self::Forked => 1,                            // EPERM
-            Self::Argument(_) | Self::Recording(_) => 22, // EINVAL
+            Self::Defect => 1,
+            Self::Forked => 2,
+            Self::Closed => 4,
+            Self::Argument(_) => 7,
+            Self::Recording(_) => 12,
+            Self::Hand(error) => sun2xp::capi::error_number(error),
+        }
+    }
+
+    /// The errno of the C interface.
+    fn errno(&self) -> i32 {
+        match self {
             Self::Defect => 5,                            // EIO
+            Self::Forked => 1,                            // EPERM
+            Self::Closed => 19,                           // ENODEV
+            Self::Argument(_) | Self::Recording(_) => 22, // EINVAL
             Self::Hand(error) => error.errno(),
         }
     }

@@ -119,12 +119,12 @@ impl Hand {
 
     /// The limits of a finger, from its configuration in force.
     fn limits<'py>(&self, py: Python<'py>, finger: i32) -> PyResult<Bound<'py, PyAny>> {
-        let (configured, rate) = self.quick(py, |hand| Ok((hand.calibrated(finger)?, hand.status(finger)?.rate)))?;
-        let (lower, upper) = configured.joint_limits();
+        let (limits, configured) = self.quick(py, |hand| Ok((hand.limits(finger)?, hand.calibrated(finger)?)))?;
         let fields = PyDict::new(py);
-        fields.set_item("joints", matrix(py, &[lower.into(), upper.into()])?)?;
-        fields.set_item("tension", (configured.tendon.minimum, configured.tendon.maximum))?;
-        fields.set_item("stiffness", configured.stiffness_bound(rate))?;
+        fields.set_item("joints", matrix(py, &[limits.joint_minimum, limits.joint_maximum])?)?;
+        fields.set_item("tension", (limits.tension_minimum, limits.tension_maximum))?;
+        fields.set_item("motor_torque", vector(py, &limits.motor_torque))?;
+        fields.set_item("stiffness", limits.stiffness)?;
         fields.set_item("speed", configured.motion.speed)?;
         fields.set_item("acceleration", configured.motion.acceleration)?;
         fields.set_item("jerk", configured.motion.jerk)?;

@@ -27,12 +27,16 @@ def test_the_spring_is_measured_and_plotted(tmp_path):
     assert (tmp_path / "spring.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_the_five_calls_work_without_the_package(tmp_path):
+@pytest.mark.parametrize(
+    ("example", "header", "first"), [("five_calls.py", "Sun2Xp.h", "joints "), ("c_interface.py", "sun2xp.h", "tip ")]
+)
+def test_cffi_reads_the_headers(example, header, first, tmp_path):
+    # tests/installed.rs names the library. Without it, as in a checkout without a build, there is nothing to load.
     library = os.environ.get("SUN2XP_LIBRARY")
     if library is None:
         pytest.skip("SUN2XP_LIBRARY does not name the shared library")
-    said = run(PYTHON / "examples/five_calls.py", PYTHON.parent / "include/Sun2Xp.h", library, folder=tmp_path)
-    assert said.startswith("joints ") and "there is no finger 7" in said
+    said = run(PYTHON / "examples" / example, PYTHON.parent / "include" / header, library, folder=tmp_path)
+    assert said.startswith(first) and "there is no finger 7" in said
 
 
 def test_the_benchmarks_print_their_tables(tmp_path):

@@ -22,6 +22,7 @@ def test_a_finger_goes_where_it_is_sent():
     hand.close()
     with pytest.raises(sun2xp.Closed) as refusal:
         hand.position(1)
+    assert refusal.value.number == sun2xp.ErrorNumber.NO_HAND
     assert "closed" in refusal.value.text and refusal.value.remedy == "open it again"
 
 

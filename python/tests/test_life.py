@@ -1,5 +1,6 @@
 """Opening, closing, threads, processes and errors."""
 
+import errno
 import gc
 import os
 import signal
@@ -56,6 +57,7 @@ def test_a_faulted_finger_recovers(hand):
             hand.position(2)
     assert fault.value.finger == 2 and fault.value.fault == hand.fault(2).stopped.number
     assert fault.value.remedy and fault.value.remedy in str(fault.value)
+    assert fault.value.number == sun2xp.ErrorNumber.FAULTED and fault.value.errno == errno.EIO
     assert hand.status(2).stage == "faulted" and hand.status(1).stage == "running"
     hand.recover(2)
     assert hand.status(2).stage == "running"

@@ -2,6 +2,7 @@
 
 import inspect
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -18,6 +19,12 @@ def test_everything_public_is_described():
         if inspect.isclass(value) and value.__module__.startswith("sun2xp"):
             for member, method in inspect.getmembers(value, callable):
                 assert member.startswith("_") or inspect.getdoc(method), f"{name}.{member}"
+
+
+def test_the_numbers_of_errors_are_those_of_the_c_interface():
+    header = pathlib.Path(__file__).parents[2] / "include/sun2xp.h"
+    found = re.findall(r"#define SUN2XP_ERROR_(\w+) (\d+)", header.read_text())
+    assert [(name, int(number)) for name, number in found] == [(one.name, one.value) for one in sun2xp.ErrorNumber]
 
 
 def test_the_stubs_have_every_method():

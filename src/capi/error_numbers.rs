@@ -73,7 +73,8 @@ pub(super) fn number(refusal: &Refusal) -> c_int {
     }
 }
 
-fn of_hand(error: &HandError) -> c_int {
+/// The number of a refusal by the hand.
+pub fn of_hand(error: &HandError) -> c_int {
     match error {
         HandError::NoSuchFinger(_) | HandError::NoSuchStage(_) | HandError::NoSuchElement { .. } => {
             SUN2XP_ERROR_ARGUMENT

@@ -52,3 +52,6 @@ mod thread_errors;
 mod timing_calls;
 mod touch_calls;
 mod version_calls;
+
+#[cfg(feature = "internals")]
+pub use error_numbers::of_hand as error_number;

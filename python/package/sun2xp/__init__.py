@@ -11,7 +11,7 @@ Lengths are in cm, forces in N, torques in N cm, angles in rad, stiffnesses in N
 """
 
 from . import then, when
-from ._errors import Closed, ConfigurationError, Error, Fault, Refused, TimedOut
+from ._errors import Closed, ConfigurationError, Error, ErrorNumber, Fault, Refused, TimedOut
 from ._events import Events
 from ._hand import Hand, open, simulated
 from ._recording import Recording, read_recording
@@ -43,6 +43,7 @@ __all__ = [
     "ConfigurationError",
     "Distribution",
     "Error",
+    "ErrorNumber",
     "Event",
     "EventKind",
     "Events",

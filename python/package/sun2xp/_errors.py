@@ -2,24 +2,53 @@
 
 from __future__ import annotations
 
+import enum
+from typing import Any
+
+
+class ErrorNumber(enum.IntEnum):
+    """Why a call was refused or failed: the constants SUN2XP_ERROR_... of the C interface. Numbers never change."""
+
+    DEFECT = 1
+    FORKED = 2
+    EXITING = 3
+    NO_HAND = 4
+    BUSY = 5
+    TOO_MANY = 6
+    ARGUMENT = 7
+    LIMIT = 8
+    FAULTED = 9
+    CONFIGURATION = 10
+    PORT = 11
+    SYSTEM = 12
+    NO_MEMORY = 13
+    TIMED_OUT = 14
+    CALIBRATION = 15
+    NOT_SUPPORTED = 16
+    NOT_FOUND = 17
+    REAL_TIME = 18
+
 
 class Error(Exception):
     """A call that was refused or that failed. A refused call changes nothing.
 
     Attributes:
         text: cause and remedy, in one line.
-        number: the number of the errno that describes the error best (module `errno`).
+        number: the reason, as the C interface numbers it.
+        errno: the number of the errno that describes the error best (module `errno`).
         remedy: what to do.
     """
 
     text: str
-    number: int
+    number: ErrorNumber
+    errno: int
     remedy: str
 
-    def __init__(self, text: str, *, number: int = 0, remedy: str = "") -> None:
+    def __init__(self, text: str, *, number: int = 1, errno: int = 0, remedy: str = "") -> None:
         super().__init__(text)
         self.text = text
-        self.number = number
+        self.number = ErrorNumber(number)
+        self.errno = errno
         self.remedy = remedy
 
 
@@ -36,7 +65,8 @@ class ConfigurationError(Error):
     """A configuration that cannot be read, used or stored."""
 
 
-class TimedOut(Error, TimeoutError):
+# An OSError has an errno too, which may be None.
+class TimedOut(Error, TimeoutError):  # type: ignore[misc]
     """A finger has not arrived or settled within the time limit."""
 
 
@@ -51,7 +81,7 @@ class Fault(Error):
     finger: int
     fault: int
 
-    def __init__(self, text: str, *, number: int = 0, remedy: str = "", finger: int = 0, fault: int = 0) -> None:
-        super().__init__(text, number=number, remedy=remedy)
+    def __init__(self, text: str, *, finger: int = 0, fault: int = 0, **details: Any) -> None:
+        super().__init__(text, **details)
         self.finger = finger
         self.fault = fault

@@ -156,6 +156,8 @@ class Limits:
     joints: Array
     #: Smallest and largest tension of a tendon, N.
     tension: Tuple[float, float]
+    #: Largest torques of motors 1 to 4, N cm: shape (4,).
+    motor_torque: Array
     #: Largest eigenvalue of Kx, N/cm.
     stiffness: float
     #: Largest joint speed on a path, rad/s.
