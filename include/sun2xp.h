@@ -123,7 +123,7 @@
    waits, ports or pseudo-terminals need, opening is refused with the errno of the sandbox.
 
    Slow calls: the calls that open and close hands, sun2xp_recover, sun2xp_zero, sun2xp_identify,
-   sun2xp_adjust, sun2xp_set_gravity, sun2xp_write_black_box, sun2xp_wait, sun2xp_on_event,
+   sun2xp_adjust, sun2xp_write_black_box, sun2xp_wait, sun2xp_on_event,
    sun2xp_event_descriptor and sun2xp_wait_event (while there is no event) run in a thread of the library,
    and the program's thread waits for it. A signal handler may jump out of that wait (siglongjmp). The call
    then continues to its end. A sun2xp_wait_event that is left takes no event, and a call that opens a hand
@@ -135,7 +135,7 @@
 
    Memory: opening allocates the memory for the servos, for closing and for all calls that are not slow,
    except sun2xp_send_path. These calls work even if malloc later returns NULL. Opening (12 MiB),
-   sun2xp_recover, sun2xp_zero, sun2xp_identify, sun2xp_adjust, sun2xp_set_gravity and
+   sun2xp_recover, sun2xp_zero, sun2xp_identify, sun2xp_adjust and
    sun2xp_write_black_box (4 MiB), sun2xp_send_path (1 MiB), sun2xp_wait, sun2xp_on_event,
    sun2xp_event_descriptor and sun2xp_wait_event (64 KiB) are refused with ENOMEM if that much memory is
    not free. If memory runs out while one of them runs, the process is aborted, and the boards' watchdogs
@@ -1132,18 +1132,20 @@ int sun2xp_palm_pose(sun2xp_hand *hand, int finger, struct sun2xp_palm_pose *pos
    gravity   gravity[3]: gravity along x, y, z of the palm's frame, m/s^2
 
  Replaces hand.gravity until sun2xp_close. Every finger compensates the new gravity within a cycle and
- without a jump in torque. It also acts on simulated fingers and on a simulated object. The monitors
- begin again with every change, so a planner should not change gravity more often than it needs.
+ without a jump in torque: a change by more than 2 m/s^2 in a millisecond takes several cycles. It also
+ acts on simulated fingers and on a simulated object. Gravity is an input of the servos, as a set point
+ is, so a planner can send it in every cycle.
 
  Returns 0, or a negative number with
    EPERM    forked child
    EFAULT   gravity is null
    ENODEV   no such hand
    EINVAL   an entry is NaN, infinite or beyond 100 m/s^2
-   EIO      a finger is faulted; the other fingers have the new gravity, and this finger needs another
-            call after sun2xp_recover
+   EIO      a finger is faulted; the other fingers have the new gravity, and this finger takes it when
+            it recovers
 
- Threads: any. Never waits for a servo. Takes some hundred us, and allocates memory.
+ Threads: any. Never waits for a servo. Takes some us; a simulated finger may keep the call waiting while
+ it computes.
 
  Example, a palm whose x axis points down:
 

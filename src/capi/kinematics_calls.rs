@@ -4,7 +4,7 @@
 // The exported names are those of the header.
 #![allow(non_camel_case_types)]
 
-use crate::capi::boundary::{MEMORY_OF_CALL, delegated, guarded};
+use crate::capi::boundary::guarded;
 use crate::capi::hand_table;
 use crate::capi::handle::{Handle, sun2xp_hand};
 use crate::capi::memory::{load, non_null};
@@ -219,18 +219,20 @@ pub unsafe extern "C" fn sun2xp_palm_pose(hand: *mut sun2xp_hand, finger: c_int,
 ///   gravity   gravity[3]: gravity along x, y, z of the palm's frame, m/s^2
 ///
 /// Replaces hand.gravity until sun2xp_close. Every finger compensates the new gravity within a cycle and
-/// without a jump in torque. It also acts on simulated fingers and on a simulated object. The monitors
-/// begin again with every change, so a planner should not change gravity more often than it needs.
+/// without a jump in torque: a change by more than 2 m/s^2 in a millisecond takes several cycles. It also
+/// acts on simulated fingers and on a simulated object. Gravity is an input of the servos, as a set point
+/// is, so a planner can send it in every cycle.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
 ///   EFAULT   gravity is null
 ///   ENODEV   no such hand
 ///   EINVAL   an entry is NaN, infinite or beyond 100 m/s^2
-///   EIO      a finger is faulted; the other fingers have the new gravity, and this finger needs another
-///            call after sun2xp_recover
+///   EIO      a finger is faulted; the other fingers have the new gravity, and this finger takes it when
+///            it recovers
 ///
-/// Threads: any. Never waits for a servo. Takes some hundred us, and allocates memory.
+/// Threads: any. Never waits for a servo. Takes some us; a simulated finger may keep the call waiting while
+/// it computes.
 ///
 /// Example, a palm whose x axis points down:
 ///
@@ -239,10 +241,10 @@ pub unsafe extern "C" fn sun2xp_palm_pose(hand: *mut sun2xp_hand, finger: c_int,
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sun2xp_set_gravity(hand: *mut sun2xp_hand, gravity: *const f64) -> c_int {
     let hand = Handle::of(hand);
-    delegated("sun2xp_set_gravity", hand, MEMORY_OF_CALL, || {
+    guarded("sun2xp_set_gravity", hand, || {
         // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
         let gravity = unsafe { load::<f64, 3>(gravity, "gravity") }?;
-        Ok(move || hand_table::command(hand, |hand| hand.set_gravity(gravity)))
+        hand_table::command(hand, |hand| hand.set_gravity(gravity))
     })
 }
 
