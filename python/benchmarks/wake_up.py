@@ -10,6 +10,7 @@ The planner burns in as many threads as there are cores, and another thread read
 import argparse
 import os
 import statistics
+import sys
 import threading
 import time
 
@@ -61,6 +62,9 @@ def main() -> None:
     arguments.add_argument("--seconds", type=float, default=10.0)
     arguments = arguments.parse_args()
     names = {False: "sleeps", True: "burns Python"}
+    # With the default of 5 ms, each burning thread keeps the interpreter lock for 5 ms, and the planning thread cannot
+    # run 1000 times a second.
+    sys.setswitchinterval(0.0001)
     found = {False: [], True: []}
     planned = 0
     with sun2xp.simulated() as hand:
@@ -81,7 +85,8 @@ def main() -> None:
     burning, sleeping = (statistics.median(one.p999 for one in found[name]) for name in (True, False))
     ratio = burning / sleeping
     rate = planned / arguments.rounds / (arguments.seconds + 0.5)
-    print(f"\nThe 99.9 % with the burning planner are {ratio:.2f} times those without. It sent {rate:.0f} times a second.")
+    print(f"\nThe 99.9 % with the burning planner are {ratio:.2f} times those without.")
+    print(f"It sent {rate:.0f} times a second.")
 
 
 if __name__ == "__main__":
