@@ -6,6 +6,7 @@ use crate::capi::hand_table::{self, Source, default_handle};
 use crate::capi::handle::{Handle, sun2xp_hand};
 use crate::capi::memory::non_null;
 use crate::capi::refusal::{Refusal, Wanted};
+use crate::hand::{ConfigurationError, HandError};
 use crate::model::configuration::NamedHand;
 use std::ffi::{CStr, OsStr, c_char, c_int};
 use std::os::unix::ffi::OsStrExt;
@@ -83,8 +84,8 @@ pub unsafe extern "C" fn sun2xp_open_text(configuration: *const c_char, hand: *m
     unsafe {
         open("sun2xp_open_text", hand, || {
             non_null(configuration, "configuration", Wanted::Text)?;
-            let text = CStr::from_ptr(configuration).to_bytes();
-            Ok(Source::Text(String::from_utf8_lossy(text).into_owned()))
+            let text = CStr::from_ptr(configuration).to_str().map_err(|_| HandError::from(not_utf_8()))?;
+            Ok(Source::Text(text.to_owned()))
         })
     }
 }
@@ -148,6 +149,10 @@ pub extern "C" fn sun2xp_close(hand: *mut sun2xp_hand) -> c_int {
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_default_hand() -> *mut sun2xp_hand {
     uncancelled(|| default_handle().to_c())
+}
+
+fn not_utf_8() -> ConfigurationError {
+    ConfigurationError::Invalid { file: "configuration text".into(), line: None, reason: "is not UTF-8".into() }
 }
 
 /// Opens a hand and writes its handle.

@@ -56,7 +56,8 @@ mod tests {
         let hand = Hand::open(configuration).expect("the simulated hand");
         let limits = hand.limits(2).expect("finger 2");
         let close = |found: f64, expected: f64| (found - expected).abs() < 1e-4;
-        assert!(close(limits.joint_minimum[0], -1.0472) && close(limits.joint_maximum[2], 2.0944), "{limits:?}");
+        let (lowest, highest) = (-60.0_f64.to_radians(), 120.0_f64.to_radians());
+        assert!(close(limits.joint_minimum[0], lowest) && close(limits.joint_maximum[2], highest), "{limits:?}");
         assert!(close(limits.stiffness, 6.0), "{limits:?}");
         hand.adjust(2, "stiffness.bound = 4\ntendon.minimum = 6\njoints.maximum_degrees = [50, 100, 120]")
             .expect("finger 2 is adjusted");

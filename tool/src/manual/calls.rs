@@ -67,7 +67,7 @@ fn page(comment: &Comment, header: &Header) -> Page {
     text.control("SH", ["SYNOPSIS"]);
     prototype(&mut text, &[&format!("#include <{}.h>", header.name)]);
     text.control("PP", []);
-    let mut declarations: Vec<&str> = comment.lines[..signature].iter().copied().collect();
+    let mut declarations: Vec<&str> = comment.lines[..signature].to_vec();
     declarations.retain(|line| !line.is_empty());
     if declarations.is_empty() {
         declarations.push(comment.declaration);
