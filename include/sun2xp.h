@@ -253,16 +253,18 @@ typedef struct sun2xp_hand sun2xp_hand;
 
 /* ---- ERRORS ------------------------------------------------------------------------------------------------------ */
 
-/* A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread. */
+/*
+ A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread.
+
+ remedy is empty if the text has another remedy than calls.
+ */
 struct sun2xp_error {
     size_t size;                            /* sizeof (struct sun2xp_error), set before the call. */
     int number;                             /* SUN2XP_ERROR_..., or 0 if no call was refused. */
     int system_errno;                       /* errno of the refusal. */
     const char *call;                       /* Name of the call; never null. */
-    const char *text;                       /* One line with the name of the call, the cause and the remedy; never
-                                               null. */
-    const char *remedy;                     /* Calls that help, in their order, separated by commas; empty if the
-                                               text has another remedy; never null. */
+    const char *text;                       /* One line with the call, the cause and the remedy; never null. */
+    const char *remedy;                     /* Calls that help, separated by commas; may be empty; never null. */
 };
 
 /*
@@ -570,29 +572,27 @@ int sun2xp_position(sun2xp_hand *hand, int finger, double *position);
 
 /* ---- FINGERTIPS -------------------------------------------------------------------------------------------------- */
 
-/* Result of sun2xp_tip. Vectors are in the finger's frame. */
+/*
+ Result of sun2xp_tip. Vectors are in the finger's frame.
+
+ force is computed from the measured tensions, so it includes friction, weight and inertia of the finger.
+ It is never NaN, and is zero along directions that the joints cannot measure, of which there are some
+ near singular poses. contact_force is also without constant errors of the gauges, and is zero while the
+ finger is not running. stiffness is the fraction of Kx that is in force, plus what joint limits,
+ nearness to the axis of joint 0 and the rotational stiffness of a contact add. It is zero along
+ directions that the joints cannot measure, and while the finger is not running. slide_speed is that of a
+ tip that slides on the object, or moves it, while touching is 1.
+ */
 struct sun2xp_tip {
     size_t size;                            /* sizeof (struct sun2xp_tip), set before the call. */
-    int force_directions;                   /* Number of directions of force that the joints can measure: 3, or fewer
-                                               near singular poses. */
+    int force_directions;                   /* Directions of force that the joints can measure, 0 to 3. */
     double position[3];                     /* Position of the tip: x, y, z, cm. */
-    double force[3];                        /* Force of the tip on the object that it touches: x, y, z, N. It is
-                                               computed from the measured tensions, so it includes friction, weight
-                                               and inertia of the finger. It is never NaN, and is zero along
-                                               directions that the joints cannot measure. */
+    double force[3];                        /* Force of the tip on an object, with friction and weight: x, y, z, N. */
     double tensions[4];                     /* Measured tendon tensions, N. */
-    double stiffness[3][3];                 /* Stiffness of the tip in its present pose, N/cm, row by row: the
-                                               fraction of Kx that is in force, plus what joint limits, nearness to
-                                               the axis of joint 0 and the rotational stiffness of a contact add. It
-                                               is zero along directions that the joints cannot measure, and while the
-                                               finger is not running. */
-    double contact_force[3];                /* Force of the tip on the object that it touches: x, y, z, N, without
-                                               friction, weight and inertia of the finger, and without constant
-                                               errors of the gauges. It is zero while the finger is not running. */
-    double slide_speed;                     /* Speed of the tip perpendicular to contact_force, cm/s, while touching:
-                                               the tip slides on the object, or moves it. */
-    int touching;                           /* 1: according to tensions and motion, the finger touches something. 0:
-                                               it does not. */
+    double stiffness[3][3];                 /* Stiffness of the tip in its present pose, N/cm, row by row. */
+    double contact_force[3];                /* Force of the tip without friction, weight, inertia: x, y, z, N. */
+    double slide_speed;                     /* Speed of the tip perpendicular to contact_force, cm/s. */
+    int touching;                           /* 1: tensions and motion show that the finger touches something. */
 };
 
 /*
@@ -813,13 +813,10 @@ int sun2xp_send_joint_torque(sun2xp_hand *hand, int finger, const double *torque
 
 /* Command to one finger of a group (sun2xp_send_group). */
 struct sun2xp_set_point {
-    size_t size;                            /* sizeof (struct sun2xp_set_point), the same in every command of the
-                                               group. */
+    size_t size;                            /* sizeof (struct sun2xp_set_point), the same in every set point. */
     int finger;                             /* Finger, 1 to 3. */
-    const double *position;                 /* Angles of sun2xp_send_position. Null: the pose stays, or is that of
-                                               tip. */
-    const double *tip;                      /* Position of sun2xp_send_tip. Null: the pose stays, or is that of
-                                               position. */
+    const double *position;                 /* Angles of sun2xp_send_position. Null: those in force, or tip. */
+    const double *tip;                      /* Position of sun2xp_send_tip. Null: that in force, or position. */
     const double *stiffness;                /* Matrix of sun2xp_send_stiffness. Null: the stiffness stays. */
     double damping;                         /* Ratio of sun2xp_send_damping. 0: the damping stays. */
 };
@@ -900,16 +897,17 @@ int sun2xp_wait(sun2xp_hand *hand, int finger, int until, double seconds);
 
 /* ---- PATHS ------------------------------------------------------------------------------------------------------- */
 
-/* Pose of a path (sun2xp_send_path). */
+/*
+ Pose of a path (sun2xp_send_path).
+
+ is_tip is the same in every pose of a path.
+ */
 struct sun2xp_path_pose {
     size_t size;                            /* sizeof (struct sun2xp_path_pose), the same in every pose of the path. */
-    int is_tip;                             /* 0: place holds joint angles. Otherwise: place holds a position of the
-                                               tip. The same in every pose. */
+    int is_tip;                             /* 0: place holds joint angles. 1: a position of the tip. */
     double time;                            /* Time since the beginning of the path, s. */
-    double place[3];                        /* Angles of joints 0, 1, 2, rad, or x, y, z of the tip in the finger's
-                                               frame, cm. */
-    const double *stiffness;                /* Matrix of sun2xp_send_stiffness at this pose. Null: the pose does not
-                                               affect the stiffness. */
+    double place[3];                        /* Joint angles, rad, or x, y, z of the tip, finger's frame, cm. */
+    const double *stiffness;                /* Matrix of sun2xp_send_stiffness. Null: no effect on stiffness. */
 };
 
 /*
@@ -997,8 +995,7 @@ int sun2xp_send_position_for(sun2xp_hand *hand, int finger, const double *positi
 /* Result of sun2xp_joint_torques. */
 struct sun2xp_joint_torques {
     size_t size;                            /* sizeof (struct sun2xp_joint_torques), set before the call. */
-    double measured[3];                     /* Torques of joints 0, 1, 2 from the measured tensions, N cm. They
-                                               include friction, weight and inertia. */
+    double measured[3];                     /* From the measured tensions: joints 0, 1, 2, N cm. */
     double commanded[3];                    /* Torques that the servo commands, N cm, within the tension limits. */
 };
 
@@ -1006,11 +1003,9 @@ struct sun2xp_joint_torques {
 struct sun2xp_palm_pose {
     size_t size;                            /* sizeof (struct sun2xp_palm_pose), set before the call. */
     double base[3];                         /* Origin of the finger's frame: x, y, z, cm. */
-    double rotation[3][3];                  /* Axes of the finger's frame as columns, row by row. It turns a vector
-                                               of the finger's frame into one of the palm's. */
+    double rotation[3][3];                  /* Axes of the finger's frame as columns, row by row. */
     double tip[3];                          /* Position of the tip, from the measured joint angles: x, y, z, cm. */
-    double tip_rotation[3][3];              /* Axes of the last link as columns, row by row. Its z axis points from
-                                               joint 2 to the tip. */
+    double tip_rotation[3][3];              /* Axes of the last link as columns; z points to the tip. */
 };
 
 /*
@@ -1196,18 +1191,20 @@ int sun2xp_limits(sun2xp_hand *hand, int finger, struct sun2xp_limits *limits);
 
 /* ---- TOUCH ------------------------------------------------------------------------------------------------------- */
 
-/* Result of sun2xp_touch. */
+/*
+ Result of sun2xp_touch.
+
+ If valid is 0, pressed, count and force are 0 too. force is the count minus its zero, times
+ newton_per_count of the configuration. Events are lost if they do not fit into the queue of the board,
+ or if their element is not configured.
+ */
 struct sun2xp_touch {
     size_t size;                            /* sizeof (struct sun2xp_touch), set before the call. */
-    int valid;                              /* 1 if the board has reported this element since sun2xp_open and could
-                                               read it, otherwise 0. If it is 0, pressed, count and force are 0 too. */
+    int valid;                              /* 1: the board has reported this element and could read it. */
     int pressed;                            /* 1 if something presses the element, otherwise 0. */
     unsigned int count;                     /* The raw count of the element. */
-    double force;                           /* Force on the element, N: its count minus its zero, times
-                                               newton_per_count of the configuration. */
-    unsigned long lost_events;              /* Tactile events of the finger that were lost since sun2xp_open, because
-                                               they did not fit into the queue of the board or because their element
-                                               is not configured. */
+    double force;                           /* Force on the element, N. */
+    unsigned long lost_events;              /* Tactile events of the finger that were lost since sun2xp_open. */
 };
 
 /*
@@ -1261,20 +1258,21 @@ int sun2xp_tare_touch(sun2xp_hand *hand, int finger);
 
 /* ---- SIMULATION -------------------------------------------------------------------------------------------------- */
 
-/* Result of sun2xp_object. Vectors are in the palm's frame. */
+/*
+ Result of sun2xp_object. Vectors are in the palm's frame.
+
+ time stops while the machine is too busy for the simulation. rotation is the unit matrix at the start.
+ force has no errors of gauges, and is zero for a finger that does not touch the object.
+ */
 struct sun2xp_object {
     size_t size;                            /* sizeof (struct sun2xp_object), set before the call. */
     int touching;                           /* Number of fingers that touch the object. */
-    double time;                            /* Simulated time since sun2xp_open, s. It stops while the machine is too
-                                               busy for the simulation. */
+    double time;                            /* Simulated time since sun2xp_open, s. */
     double position[3];                     /* Position of the middle: x, y, z, cm. */
-    double rotation[3][3];                  /* Rotation matrix from the object's frame to the palm's, row by row. At
-                                               the start it is the unit matrix. */
+    double rotation[3][3];                  /* Rotation from the object's frame to the palm's, row by row. */
     double velocity[3];                     /* Velocity of the middle, cm/s. */
     double angular_velocity[3];             /* Angular velocity, rad/s. */
-    double force[3][3];                     /* Force of each finger on the object, N: force[0] is that of finger 1.
-                                               It is the true force, without the errors of sun2xp_tip. It is zero for
-                                               a finger that does not touch the object. */
+    double force[3][3];                     /* True force of each finger on the object, N; [0]: finger 1. */
 };
 
 /*
@@ -1378,21 +1376,25 @@ int sun2xp_adjust(sun2xp_hand *hand, int finger, const char *keys);
                                                configured end state or is in it. Only exit handlers and remaining
                                                threads see this state. */
 
-/* Result of sun2xp_status. */
+/*
+ Result of sun2xp_status.
+
+ measured_rate is the cycles divided by the time up to this call: it falls while the servo does not run.
+ The delays count since sun2xp_open or sun2xp_reset_timing. torque_scale keeps the direction of the
+ torque. stiffness_scale is below 1 in poses in which the tendons cannot provide the whole Kx, for
+ example near the straight pose. A joint beyond its limit can reduce it too, because the spring of the
+ limit needs a part of what the tendons provide. sun2xp_tip gives the stiffness that results.
+ */
 struct sun2xp_status {
     size_t size;                            /* sizeof (struct sun2xp_status), set before the call. */
     int state;                              /* SUN2XP_STATE_RUNNING to SUN2XP_STATE_CLOSED. */
-    int realtime;                           /* 1: all servo threads of the hand run under SCHED_FIFO. 0: at least one
-                                               does not. */
+    int realtime;                           /* 1: all servo threads of the hand run under SCHED_FIFO. */
     double rate;                            /* Configured servo rate, Hz. */
-    double measured_rate;                   /* Measured servo rate since sun2xp_open, Hz: cycles divided by the time
-                                               up to this call. It falls while the servo does not run. */
-    double wake_up_median;                  /* Jitter: median delay of the start of a cycle, since sun2xp_open or
-                                               sun2xp_reset_timing, us. */
-    double wake_up_p99;                     /* Delay that 99 of 100 cycles did not exceed, over the same time, us. */
-    double wake_up_maximum;                 /* Maximum delay over the same time, us. */
-    double torque_scale;                    /* Fraction of the joint torque that the tension limits admitted in the
-                                               last cycle, 0 to 1. The direction of the torque is kept. */
+    double measured_rate;                   /* Measured servo rate since sun2xp_open, Hz. */
+    double wake_up_median;                  /* Median delay of the start of a cycle, us (jitter). */
+    double wake_up_p99;                     /* Delay that 99 of 100 cycles did not exceed, us. */
+    double wake_up_maximum;                 /* Maximum delay, us. */
+    double torque_scale;                    /* Fraction of the joint torque within the tension limits, 0 to 1. */
     unsigned long cycles;                   /* Cycles since sun2xp_open. */
     unsigned long skipped_periods;          /* Whole periods in which no cycle began because the previous cycle was
                                                not over or the servo thread did not run, up to now. One late cycle
@@ -1407,14 +1409,8 @@ struct sun2xp_status {
                                                locked. If the planner calls munlockall later, this memory is unlocked
                                                too, and this member stays 1. sun2xp_close and sun2xp_open lock the
                                                memory again. */
-    int on_core;                            /* 1: each servo thread with a configured core runs on that core. 0: at
-                                               least one does not. */
-    double stiffness_scale;                 /* Fraction of Kx in force in the last cycle, 0 to 1, with every
-                                               controller and law. It is below 1 in poses in which the tendons cannot
-                                               provide the whole Kx, for example near the straight pose. A joint
-                                               beyond its limit can reduce it too, because the spring of the limit
-                                               needs a part of what the tendons provide. sun2xp_tip gives the
-                                               stiffness that results. */
+    int on_core;                            /* 1: each servo thread with a configured core runs on it. */
+    double stiffness_scale;                 /* Fraction of Kx in force in the last cycle, 0 to 1. */
 };
 
 /*
@@ -1472,8 +1468,7 @@ struct sun2xp_timing {
     unsigned long p99;                      /* 99 of 100 cycles took no longer. */
     unsigned long p999;                     /* 999 of 1000 cycles took no longer. */
     unsigned long maximum;                  /* Longest time of the stage. */
-    unsigned long cycles;                   /* All cycles of the finger. This and the members below do not depend on
-                                               stage. */
+    unsigned long cycles;                   /* All cycles of the finger. From here on independent of stage. */
     unsigned long overruns;                 /* Cycles that were not over when the next one was due. */
     unsigned long skipped_periods;          /* Whole periods in which no cycle began because the previous cycle was
                                                not over or the servo thread did not run, up to the last cycle. */
@@ -1584,17 +1579,19 @@ int sun2xp_reset_timing(sun2xp_hand *hand, int finger);
 #define SUN2XP_FAULT_STOP_CALL              50 /* stop of the finger, call */
 #define SUN2XP_FAULT_SET_POINT_EXPIRED      51 /* set point expired */
 #define SUN2XP_FAULT_REFLEX_STOP            52 /* stopped by a reflex */
-/* Result of sun2xp_fault. */
+/*
+ Result of sun2xp_fault.
+
+ sun2xp_fault_text says which kind of part a fault has. A part is 0 if the fault concerns the whole
+ finger.
+ */
 struct sun2xp_fault {
     size_t size;                            /* sizeof (struct sun2xp_fault), set before the call. */
     int number;                             /* Fault that has stopped the finger: SUN2XP_FAULT_..., or 0 if none has. */
-    int part;                               /* Part that has the fault: joint (0 to 2), or tendon, motor, gauge or
-                                               encoder (1 to 4). sun2xp_fault_text says which kind of part it is. 0
-                                               if the fault concerns the whole finger. */
+    int part;                               /* Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0. */
     int warning;                            /* Warning of the last second: SUN2XP_FAULT_..., or 0 if there was none. */
     int warning_part;                       /* Part that the warning concerns, numbered as in part. */
-    double value;                           /* Value of the fault: N, ms, degrees, counts, per cent, errno or status
-                                               bits (docs/faults.md). */
+    double value;                           /* Value of the fault, in its unit (docs/faults.md). */
     double warning_value;                   /* Value of the warning. */
     unsigned long warnings;                 /* Warnings since sun2xp_open. A warning that persists counts once. */
 };
@@ -1822,22 +1819,21 @@ int sun2xp_identify(sun2xp_hand *hand, int finger);
 #define SUN2XP_EVENT_PATH_ENDED             16 /* path ended */
 #define SUN2XP_EVENT_EXPIRED                17 /* set point expired */
 #define SUN2XP_EVENT_TOUCH_INVALID          18 /* touch invalid */
-/* An event: something that happened to a finger in one cycle of its servo. */
+/*
+ An event: something that happened to a finger in one cycle of its servo.
+
+ part is 0 if the event concerns the whole finger. All events of a cycle have the same time. The oldest
+ events are lost first.
+ */
 struct sun2xp_event {
     size_t size;                            /* sizeof (struct sun2xp_event), set before the call. */
     int finger;                             /* Finger, 1 to 3. */
     int kind;                               /* Kind of the event: SUN2XP_EVENT_... */
-    int part;                               /* Part of the finger that the event concerns: joint (0 to 2), or tendon,
-                                               motor, gauge or encoder (1 to 4). 0 if the event concerns the whole
-                                               finger. */
-    unsigned long cycle;                    /* Number of the cycle to which the event belongs, as in
-                                               sun2xp_status.cycles and sun2xp_record.cycle. */
-    unsigned long lost;                     /* Events that were lost since sun2xp_open, the oldest first, because
-                                               they were not taken in time. */
-    double time;                            /* Time at which this cycle began, s of CLOCK_MONOTONIC. All events of a
-                                               cycle have the same time. */
-    double values[4];                       /* Values, with the meanings and units of the kind (docs/events.md).
-                                               Unused values are 0. */
+    int part;                               /* Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0. */
+    unsigned long cycle;                    /* Cycle of the event, as in sun2xp_status and sun2xp_record. */
+    unsigned long lost;                     /* Events that were lost since sun2xp_open: not taken in time. */
+    double time;                            /* Beginning of that cycle, s of CLOCK_MONOTONIC. */
+    double values[4];                       /* Values of the kind (docs/events.md); unused ones are 0. */
 };
 
 /*
@@ -1978,28 +1974,27 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
                                                needs a Kx without an eigenvalue of 0. */
 #define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio Value. */
 
-/* A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored. */
+/*
+ A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.
+
+ With refractory 0 the rule fires again only after its condition was false. During inhibition the finger
+ ignores set points of the planner. For SUN2XP_THEN_GRIP, position is the direction in the finger's frame
+ in which the tip presses harder; 0, 0, 0 is the direction in which its spring presses.
+ */
 struct sun2xp_reflex {
-    size_t size;                            /* sizeof (struct sun2xp_reflex). */
+    size_t size;                            /* sizeof (struct sun2xp_reflex), set before the call. */
     int condition;                          /* SUN2XP_WHEN_EVENT to SUN2XP_WHEN_PLANNER_SILENT. */
-    int event;                              /* SUN2XP_EVENT_ constant for SUN2XP_WHEN_EVENT and
-                                               SUN2XP_WHEN_OTHER_FINGER. */
+    int event;                              /* SUN2XP_EVENT_... for the conditions EVENT and OTHER_FINGER. */
     int finger;                             /* The other finger for SUN2XP_WHEN_OTHER_FINGER. */
-    int joint;                              /* Joint, 0 to 2, for SUN2XP_WHEN_JOINT_ABOVE and
-                                               SUN2XP_WHEN_JOINT_BELOW. */
+    int joint;                              /* Joint, 0 to 2, for the conditions JOINT_ABOVE and JOINT_BELOW. */
     int reaction;                           /* SUN2XP_THEN_STOP to SUN2XP_THEN_DAMP. */
-    int priority;                           /* If several rules fire in one cycle, the one with the highest priority
-                                               is first; 0 to 255. */
+    int priority;                           /* 0 to 255. The highest fires first in a cycle. */
     double bound;                           /* N, rad or s, as the condition says. */
     double value;                           /* SUN2XP_THEN_GRIP: increase of the force, N. SUN2XP_THEN_DAMP: ratio. */
     double largest;                         /* SUN2XP_THEN_GRIP: largest force, N. */
-    double refractory;                      /* Time after a reaction in which the rule does not fire again, s, 0 to
-                                               3600. 0: the rule fires again only after its condition was false. */
-    double inhibition;                      /* Time after a reaction in which the finger ignores set points of the
-                                               planner, s, 0 to 3600. */
-    double position[3];                     /* SUN2XP_THEN_RETRACT: joint angles, rad. SUN2XP_THEN_GRIP: direction in
-                                               the finger's frame in which the tip presses harder; 0, 0, 0 for the
-                                               direction in which its spring presses. */
+    double refractory;                      /* Time after a reaction in which it does not fire, s, 0 to 3600. */
+    double inhibition;                      /* Time after a reaction without set points, s, 0 to 3600. */
+    double position[3];                     /* RETRACT: joint angles, rad. GRIP: direction of the force. */
     double stiffness[3][3];                 /* SUN2XP_THEN_SOFTEN: stiffness, N/cm, row by row. */
 };
 
@@ -2067,28 +2062,28 @@ int sun2xp_remove_reflex(sun2xp_hand *hand, int finger, int number);
 
 /* ---- BLACK BOX --------------------------------------------------------------------------------------------------- */
 
-/* Result of sun2xp_record: one cycle of a finger, from the black box. */
+/*
+ Result of sun2xp_record: one cycle of a finger, from the black box.
+
+ All cycles from oldest to newest are stored. computed is 0, and the members below are 0, if the finger
+ was already faulted or a simulated finger had not answered.
+ */
 struct sun2xp_record {
     size_t size;                            /* sizeof (struct sun2xp_record), set before the call. */
     int state;                              /* SUN2XP_STATE_RUNNING to SUN2XP_STATE_CLOSED, at the end of the cycle. */
     unsigned long cycle;                    /* The cycle, counted from sun2xp_open; the first is 1. */
-    unsigned long oldest;                   /* First cycle that is stored now. All cycles from oldest to newest are
-                                               stored. */
+    unsigned long oldest;                   /* First cycle that is stored now. */
     unsigned long newest;                   /* Last cycle that is stored now. */
     double time;                            /* Start of the cycle on CLOCK_MONOTONIC, s. */
     int answered;                           /* 1: the board's reply arrived. 0: it was lost. */
     int status_bits;                        /* Status bits of the newest reply (docs/board-protocol.md). */
-    int computed;                           /* 1: the controller ran and computed the members below. 0: they are 0,
-                                               because the finger was already faulted or a simulated finger had not
-                                               answered. */
-    int follows;                            /* 1: position_sent is the set point in force. 0: none is in force, and
-                                               position_sent is 0. */
+    int computed;                           /* 1: the controller ran and computed the members below. */
+    int follows;                            /* 1: position_sent is the set point in force. 0: none is in force. */
     double position[3];                     /* Measured joint angles, rad. */
     double position_sent[3];                /* Joint angles at which the spring is anchored, rad. */
     double tension[4];                      /* Measured tendon tensions, N. */
     double tension_sent[4];                 /* Commanded tendon tensions, N. */
-    double torque[4];                       /* Commanded motor torques, N cm. They are sent to the board in the next
-                                               cycle. */
+    double torque[4];                       /* Commanded motor torques, N cm, sent in the next cycle. */
 };
 
 /*

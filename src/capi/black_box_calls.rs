@@ -18,6 +18,9 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
 
 /// Result of sun2xp_record: one cycle of a finger, from the black box.
+///
+/// All cycles from oldest to newest are stored. computed is 0, and the members below are 0, if the finger
+/// was already faulted or a simulated finger had not answered.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_record {
@@ -27,7 +30,7 @@ pub struct sun2xp_record {
     pub state: c_int,
     /// The cycle, counted from sun2xp_open; the first is 1.
     pub cycle: c_ulong,
-    /// First cycle that is stored now. All cycles from oldest to newest are stored.
+    /// First cycle that is stored now.
     pub oldest: c_ulong,
     /// Last cycle that is stored now.
     pub newest: c_ulong,
@@ -37,10 +40,9 @@ pub struct sun2xp_record {
     pub answered: c_int,
     /// Status bits of the newest reply (docs/board-protocol.md).
     pub status_bits: c_int,
-    /// 1: the controller ran and computed the members below. 0: they are 0, because the finger was already faulted or
-    /// a simulated finger had not answered.
+    /// 1: the controller ran and computed the members below.
     pub computed: c_int,
-    /// 1: position_sent is the set point in force. 0: none is in force, and position_sent is 0.
+    /// 1: position_sent is the set point in force. 0: none is in force.
     pub follows: c_int,
     /// Measured joint angles, rad.
     pub position: [f64; 3],
@@ -50,7 +52,7 @@ pub struct sun2xp_record {
     pub tension: [f64; 4],
     /// Commanded tendon tensions, N.
     pub tension_sent: [f64; 4],
-    /// Commanded motor torques, N cm. They are sent to the board in the next cycle.
+    /// Commanded motor torques, N cm, sent in the next cycle.
     pub torque: [f64; 4],
 }
 

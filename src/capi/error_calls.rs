@@ -11,6 +11,8 @@ use crate::capi::thread_errors::find;
 use std::ffi::{c_char, c_int};
 
 /// A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread.
+///
+/// remedy is empty if the text has another remedy than calls.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_error {
@@ -22,9 +24,9 @@ pub struct sun2xp_error {
     pub system_errno: c_int,
     /// Name of the call; never null.
     pub call: *const c_char,
-    /// One line with the name of the call, the cause and the remedy; never null.
+    /// One line with the call, the cause and the remedy; never null.
     pub text: *const c_char,
-    /// Calls that help, in their order, separated by commas; empty if the text has another remedy; never null.
+    /// Calls that help, separated by commas; may be empty; never null.
     pub remedy: *const c_char,
 }
 

@@ -18,6 +18,9 @@ use std::sync::atomic::{AtomicI32, Ordering};
 use std::time::{Duration, Instant};
 
 /// An event: something that happened to a finger in one cycle of its servo.
+///
+/// part is 0 if the event concerns the whole finger. All events of a cycle have the same time. The oldest
+/// events are lost first.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_event {
@@ -27,16 +30,15 @@ pub struct sun2xp_event {
     pub finger: c_int,
     /// Kind of the event: SUN2XP_EVENT_...
     pub kind: c_int,
-    /// Part of the finger that the event concerns: joint (0 to 2), or tendon, motor, gauge or encoder (1 to 4). 0 if
-    /// the event concerns the whole finger.
+    /// Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0.
     pub part: c_int,
-    /// Number of the cycle to which the event belongs, as in sun2xp_status.cycles and sun2xp_record.cycle.
+    /// Cycle of the event, as in sun2xp_status and sun2xp_record.
     pub cycle: c_ulong,
-    /// Events that were lost since sun2xp_open, the oldest first, because they were not taken in time.
+    /// Events that were lost since sun2xp_open: not taken in time.
     pub lost: c_ulong,
-    /// Time at which this cycle began, s of CLOCK_MONOTONIC. All events of a cycle have the same time.
+    /// Beginning of that cycle, s of CLOCK_MONOTONIC.
     pub time: f64,
-    /// Values, with the meanings and units of the kind (docs/events.md). Unused values are 0.
+    /// Values of the kind (docs/events.md); unused ones are 0.
     pub values: [f64; 4],
 }
 

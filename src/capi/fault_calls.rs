@@ -12,6 +12,9 @@ use crate::hand::FingerFault;
 use std::ffi::{c_char, c_int, c_ulong};
 
 /// Result of sun2xp_fault.
+///
+/// sun2xp_fault_text says which kind of part a fault has. A part is 0 if the fault concerns the whole
+/// finger.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_fault {
@@ -19,14 +22,13 @@ pub struct sun2xp_fault {
     pub size: usize,
     /// Fault that has stopped the finger: SUN2XP_FAULT_..., or 0 if none has.
     pub number: c_int,
-    /// Part that has the fault: joint (0 to 2), or tendon, motor, gauge or encoder (1 to 4). sun2xp_fault_text says
-    /// which kind of part it is. 0 if the fault concerns the whole finger.
+    /// Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0.
     pub part: c_int,
     /// Warning of the last second: SUN2XP_FAULT_..., or 0 if there was none.
     pub warning: c_int,
     /// Part that the warning concerns, numbered as in part.
     pub warning_part: c_int,
-    /// Value of the fault: N, ms, degrees, counts, per cent, errno or status bits (docs/faults.md).
+    /// Value of the fault, in its unit (docs/faults.md).
     pub value: f64,
     /// Value of the warning.
     pub warning_value: f64,

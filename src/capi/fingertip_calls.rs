@@ -15,32 +15,34 @@ use nalgebra::{Matrix3, Matrix4, Vector3};
 use std::ffi::c_int;
 
 /// Result of sun2xp_tip. Vectors are in the finger's frame.
+///
+/// force is computed from the measured tensions, so it includes friction, weight and inertia of the finger.
+/// It is never NaN, and is zero along directions that the joints cannot measure, of which there are some
+/// near singular poses. contact_force is also without constant errors of the gauges, and is zero while the
+/// finger is not running. stiffness is the fraction of Kx that is in force, plus what joint limits,
+/// nearness to the axis of joint 0 and the rotational stiffness of a contact add. It is zero along
+/// directions that the joints cannot measure, and while the finger is not running. slide_speed is that of a
+/// tip that slides on the object, or moves it, while touching is 1.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_tip {
     /// sizeof (struct sun2xp_tip), set before the call.
     pub size: usize,
-    /// Number of directions of force that the joints can measure: 3, or fewer near singular poses.
+    /// Directions of force that the joints can measure, 0 to 3.
     pub force_directions: c_int,
     /// Position of the tip: x, y, z, cm.
     pub position: [f64; 3],
-    /// Force of the tip on the object that it touches: x, y, z, N. It is computed from the measured tensions, so it
-    /// includes friction, weight and inertia of the finger. It is never NaN, and is zero along directions that the
-    /// joints cannot measure.
+    /// Force of the tip on an object, with friction and weight: x, y, z, N.
     pub force: [f64; 3],
     /// Measured tendon tensions, N.
     pub tensions: [f64; 4],
-    /// Stiffness of the tip in its present pose, N/cm, row by row: the fraction of Kx that is in force, plus
-    /// what joint limits, nearness to the axis of joint 0 and the rotational stiffness of a contact add. It is zero
-    /// along directions that the joints cannot measure, and while the finger is not running.
+    /// Stiffness of the tip in its present pose, N/cm, row by row.
     pub stiffness: [[f64; 3]; 3],
-    /// Force of the tip on the object that it touches: x, y, z, N, without friction, weight and inertia of the
-    /// finger, and without constant errors of the gauges. It is zero while the finger is not running.
+    /// Force of the tip without friction, weight, inertia: x, y, z, N.
     pub contact_force: [f64; 3],
-    /// Speed of the tip perpendicular to contact_force, cm/s, while touching: the tip slides on the object, or moves
-    /// it.
+    /// Speed of the tip perpendicular to contact_force, cm/s.
     pub slide_speed: f64,
-    /// 1: according to tensions and motion, the finger touches something. 0: it does not.
+    /// 1: tensions and motion show that the finger touches something.
     pub touching: c_int,
 }
 

@@ -27,13 +27,13 @@ pub const SUN2XP_WAIT_SETTLED: c_int = 2;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_set_point {
-    /// sizeof (struct sun2xp_set_point), the same in every command of the group.
+    /// sizeof (struct sun2xp_set_point), the same in every set point.
     pub size: usize,
     /// Finger, 1 to 3.
     pub finger: c_int,
-    /// Angles of sun2xp_send_position. Null: the pose stays, or is that of tip.
+    /// Angles of sun2xp_send_position. Null: those in force, or tip.
     pub position: *const f64,
-    /// Position of sun2xp_send_tip. Null: the pose stays, or is that of position.
+    /// Position of sun2xp_send_tip. Null: that in force, or position.
     pub tip: *const f64,
     /// Matrix of sun2xp_send_stiffness. Null: the stiffness stays.
     pub stiffness: *const f64,

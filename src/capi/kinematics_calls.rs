@@ -19,7 +19,7 @@ use std::ffi::c_int;
 pub struct sun2xp_joint_torques {
     /// sizeof (struct sun2xp_joint_torques), set before the call.
     pub size: usize,
-    /// Torques of joints 0, 1, 2 from the measured tensions, N cm. They include friction, weight and inertia.
+    /// From the measured tensions: joints 0, 1, 2, N cm.
     pub measured: [f64; 3],
     /// Torques that the servo commands, N cm, within the tension limits.
     pub commanded: [f64; 3],
@@ -33,12 +33,11 @@ pub struct sun2xp_palm_pose {
     pub size: usize,
     /// Origin of the finger's frame: x, y, z, cm.
     pub base: [f64; 3],
-    /// Axes of the finger's frame as columns, row by row. It turns a vector of the finger's frame into one of the
-    /// palm's.
+    /// Axes of the finger's frame as columns, row by row.
     pub rotation: [[f64; 3]; 3],
     /// Position of the tip, from the measured joint angles: x, y, z, cm.
     pub tip: [f64; 3],
-    /// Axes of the last link as columns, row by row. Its z axis points from joint 2 to the tip.
+    /// Axes of the last link as columns; z points to the tip.
     pub tip_rotation: [[f64; 3]; 3],
 }
 

@@ -13,6 +13,9 @@ use crate::simulated;
 use std::ffi::c_int;
 
 /// Result of sun2xp_object. Vectors are in the palm's frame.
+///
+/// time stops while the machine is too busy for the simulation. rotation is the unit matrix at the start.
+/// force has no errors of gauges, and is zero for a finger that does not touch the object.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_object {
@@ -20,18 +23,17 @@ pub struct sun2xp_object {
     pub size: usize,
     /// Number of fingers that touch the object.
     pub touching: c_int,
-    /// Simulated time since sun2xp_open, s. It stops while the machine is too busy for the simulation.
+    /// Simulated time since sun2xp_open, s.
     pub time: f64,
     /// Position of the middle: x, y, z, cm.
     pub position: [f64; 3],
-    /// Rotation matrix from the object's frame to the palm's, row by row. At the start it is the unit matrix.
+    /// Rotation from the object's frame to the palm's, row by row.
     pub rotation: [[f64; 3]; 3],
     /// Velocity of the middle, cm/s.
     pub velocity: [f64; 3],
     /// Angular velocity, rad/s.
     pub angular_velocity: [f64; 3],
-    /// Force of each finger on the object, N: force[0] is that of finger 1. It is the true force, without the errors of
-    /// sun2xp_tip. It is zero for a finger that does not touch the object.
+    /// True force of each finger on the object, N; [0]: finger 1.
     pub force: [[f64; 3]; 3],
 }
 

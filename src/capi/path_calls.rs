@@ -19,18 +19,20 @@ use std::time::Duration;
 const MEMORY_OF_PATH: usize = 1 << 20;
 
 /// Pose of a path (sun2xp_send_path).
+///
+/// is_tip is the same in every pose of a path.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_path_pose {
     /// sizeof (struct sun2xp_path_pose), the same in every pose of the path.
     pub size: usize,
-    /// 0: place holds joint angles. Otherwise: place holds a position of the tip. The same in every pose.
+    /// 0: place holds joint angles. 1: a position of the tip.
     pub is_tip: c_int,
     /// Time since the beginning of the path, s.
     pub time: f64,
-    /// Angles of joints 0, 1, 2, rad, or x, y, z of the tip in the finger's frame, cm.
+    /// Joint angles, rad, or x, y, z of the tip, finger's frame, cm.
     pub place: [f64; 3],
-    /// Matrix of sun2xp_send_stiffness at this pose. Null: the pose does not affect the stiffness.
+    /// Matrix of sun2xp_send_stiffness. Null: no effect on stiffness.
     pub stiffness: *const f64,
 }
 

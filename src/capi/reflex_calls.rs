@@ -62,22 +62,26 @@ pub const SUN2XP_THEN_GRIP: c_int = 5;
 pub const SUN2XP_THEN_DAMP: c_int = 6;
 
 /// A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.
+///
+/// With refractory 0 the rule fires again only after its condition was false. During inhibition the finger
+/// ignores set points of the planner. For SUN2XP_THEN_GRIP, position is the direction in the finger's frame
+/// in which the tip presses harder; 0, 0, 0 is the direction in which its spring presses.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_reflex {
-    /// sizeof (struct sun2xp_reflex).
+    /// sizeof (struct sun2xp_reflex), set before the call.
     pub size: usize,
     /// SUN2XP_WHEN_EVENT to SUN2XP_WHEN_PLANNER_SILENT.
     pub condition: c_int,
-    /// SUN2XP_EVENT_ constant for SUN2XP_WHEN_EVENT and SUN2XP_WHEN_OTHER_FINGER.
+    /// SUN2XP_EVENT_... for the conditions EVENT and OTHER_FINGER.
     pub event: c_int,
     /// The other finger for SUN2XP_WHEN_OTHER_FINGER.
     pub finger: c_int,
-    /// Joint, 0 to 2, for SUN2XP_WHEN_JOINT_ABOVE and SUN2XP_WHEN_JOINT_BELOW.
+    /// Joint, 0 to 2, for the conditions JOINT_ABOVE and JOINT_BELOW.
     pub joint: c_int,
     /// SUN2XP_THEN_STOP to SUN2XP_THEN_DAMP.
     pub reaction: c_int,
-    /// If several rules fire in one cycle, the one with the highest priority is first; 0 to 255.
+    /// 0 to 255. The highest fires first in a cycle.
     pub priority: c_int,
     /// N, rad or s, as the condition says.
     pub bound: c_double,
@@ -85,13 +89,11 @@ pub struct sun2xp_reflex {
     pub value: c_double,
     /// SUN2XP_THEN_GRIP: largest force, N.
     pub largest: c_double,
-    /// Time after a reaction in which the rule does not fire again, s, 0 to 3600. 0: the rule fires again only
-    /// after its condition was false.
+    /// Time after a reaction in which it does not fire, s, 0 to 3600.
     pub refractory: c_double,
-    /// Time after a reaction in which the finger ignores set points of the planner, s, 0 to 3600.
+    /// Time after a reaction without set points, s, 0 to 3600.
     pub inhibition: c_double,
-    /// SUN2XP_THEN_RETRACT: joint angles, rad. SUN2XP_THEN_GRIP: direction in the finger's frame in which the tip
-    /// presses harder; 0, 0, 0 for the direction in which its spring presses.
+    /// RETRACT: joint angles, rad. GRIP: direction of the force.
     pub position: [c_double; 3],
     /// SUN2XP_THEN_SOFTEN: stiffness, N/cm, row by row.
     pub stiffness: [[c_double; 3]; 3],

@@ -32,6 +32,12 @@ pub const SUN2XP_STATE_TENSIONING: c_int = 5;
 pub const SUN2XP_STATE_CLOSED: c_int = 6;
 
 /// Result of sun2xp_status.
+///
+/// measured_rate is the cycles divided by the time up to this call: it falls while the servo does not run.
+/// The delays count since sun2xp_open or sun2xp_reset_timing. torque_scale keeps the direction of the
+/// torque. stiffness_scale is below 1 in poses in which the tendons cannot provide the whole Kx, for
+/// example near the straight pose. A joint beyond its limit can reduce it too, because the spring of the
+/// limit needs a part of what the tendons provide. sun2xp_tip gives the stiffness that results.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_status {
@@ -39,21 +45,19 @@ pub struct sun2xp_status {
     pub size: usize,
     /// SUN2XP_STATE_RUNNING to SUN2XP_STATE_CLOSED.
     pub state: c_int,
-    /// 1: all servo threads of the hand run under SCHED_FIFO. 0: at least one does not.
+    /// 1: all servo threads of the hand run under SCHED_FIFO.
     pub realtime: c_int,
     /// Configured servo rate, Hz.
     pub rate: f64,
-    /// Measured servo rate since sun2xp_open, Hz: cycles divided by the time up to this call. It falls while the servo
-    /// does not run.
+    /// Measured servo rate since sun2xp_open, Hz.
     pub measured_rate: f64,
-    /// Jitter: median delay of the start of a cycle, since sun2xp_open or sun2xp_reset_timing, us.
+    /// Median delay of the start of a cycle, us (jitter).
     pub wake_up_median: f64,
-    /// Delay that 99 of 100 cycles did not exceed, over the same time, us.
+    /// Delay that 99 of 100 cycles did not exceed, us.
     pub wake_up_p99: f64,
-    /// Maximum delay over the same time, us.
+    /// Maximum delay, us.
     pub wake_up_maximum: f64,
-    /// Fraction of the joint torque that the tension limits admitted in the last cycle, 0 to 1. The direction of the
-    /// torque is kept.
+    /// Fraction of the joint torque within the tension limits, 0 to 1.
     pub torque_scale: f64,
     /// Cycles since sun2xp_open.
     pub cycles: c_ulong,
@@ -71,12 +75,9 @@ pub struct sun2xp_status {
     /// memory of at least one is not locked. If the planner calls munlockall later, this memory is unlocked too, and
     /// this member stays 1. sun2xp_close and sun2xp_open lock the memory again.
     pub memory_locked: c_int,
-    /// 1: each servo thread with a configured core runs on that core. 0: at least one does not.
+    /// 1: each servo thread with a configured core runs on it.
     pub on_core: c_int,
-    /// Fraction of Kx in force in the last cycle, 0 to 1, with every controller and law. It is below 1 in poses in
-    /// which the tendons cannot provide the whole Kx, for example near the straight pose. A joint beyond its limit can
-    /// reduce it too, because the spring of the limit needs a part of what the tendons provide. sun2xp_tip gives the
-    /// stiffness that results.
+    /// Fraction of Kx in force in the last cycle, 0 to 1.
     pub stiffness_scale: f64,
 }
 

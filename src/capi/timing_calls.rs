@@ -61,7 +61,7 @@ pub struct sun2xp_timing {
     pub p999: c_ulong,
     /// Longest time of the stage.
     pub maximum: c_ulong,
-    /// All cycles of the finger. This and the members below do not depend on stage.
+    /// All cycles of the finger. From here on independent of stage.
     pub cycles: c_ulong,
     /// Cycles that were not over when the next one was due.
     pub overruns: c_ulong,

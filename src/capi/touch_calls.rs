@@ -13,22 +13,24 @@ use crate::hand::Hand;
 use std::ffi::{c_double, c_int, c_uint, c_ulong};
 
 /// Result of sun2xp_touch.
+///
+/// If valid is 0, pressed, count and force are 0 too. force is the count minus its zero, times
+/// newton_per_count of the configuration. Events are lost if they do not fit into the queue of the board,
+/// or if their element is not configured.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_touch {
     /// sizeof (struct sun2xp_touch), set before the call.
     pub size: usize,
-    /// 1 if the board has reported this element since sun2xp_open and could read it, otherwise 0. If it is 0,
-    /// pressed, count and force are 0 too.
+    /// 1: the board has reported this element and could read it.
     pub valid: c_int,
     /// 1 if something presses the element, otherwise 0.
     pub pressed: c_int,
     /// The raw count of the element.
     pub count: c_uint,
-    /// Force on the element, N: its count minus its zero, times newton_per_count of the configuration.
+    /// Force on the element, N.
     pub force: c_double,
-    /// Tactile events of the finger that were lost since sun2xp_open, because they did not fit into the queue of the
-    /// board or because their element is not configured.
+    /// Tactile events of the finger that were lost since sun2xp_open.
     pub lost_events: c_ulong,
 }
 
