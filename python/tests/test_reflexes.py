@@ -62,3 +62,24 @@ def test_touch_without_elements_is_refused(shared):
     with pytest.raises(sun2xp.Refused, match="0 tactile elements"):
         shared.touch(1, 0)
     assert shared.lost_touch_events(1) == 0 and shared.tare_touch(1) == []
+
+
+def test_a_tactile_element_feels_a_wall():
+    text = """
+[finger.1.touch]
+elements = [{ position = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0], newton_per_count = 0.001 }]
+[finger.1.simulation]
+surface = { wall = { point = [0.0, -6.8, 0.0], normal = [0.0, 1.0, 0.0], stiffness = 50.0 } }
+"""
+    with sun2xp.simulated(text=text) as hand:
+        assert not hand.touch(1, 0).pressed
+        events = hand.events()
+        hand.send_tip(1, hand.tip(1).position + [0.0, -0.6, 0.0])
+        made = next(event for event in events if event.kind == EventKind.TOUCH_MADE)
+        assert made.finger == 1 and made.values[0] == 0
+        while not (reading := hand.touch(1, 0)).pressed:
+            pass
+        assert reading.valid and reading.count > 0 and reading.force > 0
+        assert len(hand.tare_touch(1)) == 1
+        with pytest.raises(sun2xp.Refused):
+            hand.touch(1, 1)
