@@ -21,6 +21,8 @@ mod record;
 mod recording;
 mod replay;
 mod schedule;
+mod sensors;
+mod size;
 mod status;
 pub mod trace;
 mod virtual_machine;
@@ -56,6 +58,8 @@ enum Tool {
     Record(record::Arguments),
     Replay(replay::Arguments),
     Schedule(schedule::Arguments),
+    Sensors(sensors::Arguments),
+    Size(size::Arguments),
     Status(status::Arguments),
 }
 
@@ -86,6 +90,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Tool::Record(arguments) => record::run(&arguments),
         Tool::Replay(arguments) => replay::run(&arguments),
         Tool::Schedule(arguments) => schedule::run(&arguments),
+        Tool::Sensors(arguments) => sensors::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Size(arguments) => size::run(&arguments),
         Tool::Status(arguments) => status::run(&arguments),
     };
     result.unwrap_or_else(|error| failure::report(&error)).0
