@@ -74,8 +74,8 @@ pub(super) struct ServoEnd {
     stops_seen: u32,
 }
 
-/// Creates a mailbox with `report`, its set point, `adjustable` and `gravity` at both ends. Also returns the memory that
-/// both ends share.
+/// Creates a mailbox with `report`, its set point, `adjustable` and `gravity` at both ends. Also returns the memory
+/// that both ends share.
 pub(super) fn mailbox(
     report: FingerReport,
     adjustable: &Adjustable,
