@@ -54,130 +54,166 @@ impl Figure {
     }
 }
 
+/// A finger, with what its figures are computed from.
+struct Finger<'a> {
+    configured: &'a ConfiguredFinger,
+    mechanics: Mechanics,
+    /// Radius of each drum, cm.
+    radius: Vector4<f64>,
+}
+
 /// Returns the figures of a finger. The worst tendon determines each.
-pub fn figures(finger: &ConfiguredFinger, rate: f64, wanted: &Wanted) -> Result<Vec<Figure>, Failure> {
-    let mechanics = Mechanics::new(finger)?;
-    let radius = Vector4::from(finger.geometry.motor_radius);
-    let friction = &finger.friction;
-    // The tension that a motor torque can hold against its friction, eq. 22.
-    let tension = |torque: &[f64; 4]| {
+pub fn figures(configured: &ConfiguredFinger, rate: f64, wanted: &Wanted) -> Result<Vec<Figure>, Failure> {
+    let radius = Vector4::from(configured.geometry.motor_radius);
+    let finger = Finger { configured, mechanics: Mechanics::new(configured)?, radius };
+    let mut figures = finger.forces(wanted.force)?;
+    figures.extend(finger.drives(wanted.speed, rate));
+    figures.extend(finger.sensors(wanted));
+    figures.extend(finger.tendons(wanted, rate));
+    Ok(figures)
+}
+
+impl Finger<'_> {
+    /// Returns the tension that each motor holds with a torque against its friction, N (eq. 22).
+    fn tension(&self, torque: &[f64; 4]) -> Vector4<f64> {
+        let friction = &self.configured.friction;
         Vector4::from_fn(|motor, _| {
-            (torque[motor] - friction.motor_coulomb[motor]) / (radius[motor] * (1.0 + friction.conduit[motor]))
+            (torque[motor] - friction.motor_coulomb[motor]) / (self.radius[motor] * (1.0 + friction.conduit[motor]))
         })
-    };
-    let peak = tension(&finger.motor.torque_limit).map(|tension| tension.min(finger.tendon.maximum));
-    let continuous = tension(&finger.motor.continuous_torque).inf(&peak);
-    let speed = mechanics.tendon_speed(wanted.speed).component_div(&radius);
-    let counts = Vector4::from(finger.encoder.counts_per_revolution.map(f64::from));
-    let travel = radius.component_div(&counts) * TAU;
-    let gauge = Vector4::from(finger.gauge.newton_per_count.map(f64::abs));
-    let locked = STABLE_PART * mechanics.locked_stiffness();
-    let stiffness = Vector4::from(finger.tendon.stiffness);
-    let oscillation = Vector4::from_fn(|motor, _| {
-        // N/cm to N/m, and the mass of the rotor at its tendon, kg.
-        let mass = finger.motor.inertia[motor] / (radius[motor] * 1e-2).powi(2);
-        (stiffness[motor] * 1e2 / mass).sqrt() / TAU
-    });
-    let constant = Vector4::from(finger.motor.torque_constant);
-    let current = |torque: &[f64; 4]| Vector4::from(*torque).component_div(&constant);
-    let lowest = tension(&finger.motor.torque_limit).min();
-    Ok(vec![
-        Figure::least(
-            "force of the tip, for any time",
-            mechanics.force(&continuous),
-            wanted.force,
-            "N",
-            "motors with more continuous torque, a smaller motor radius, or less finger.tendon.minimum",
-        ),
-        Figure::least(
-            "force of the tip, for some seconds",
-            mechanics.force(&peak),
-            wanted.force,
-            "N",
-            "a higher finger.tendon.maximum and motors with more torque",
-        ),
-        Figure::least(
-            "tension that the weakest motor can make",
-            lowest,
-            finger.tendon.maximum,
-            "N",
-            "motors with more torque, a smaller motor radius, or a lower finger.tendon.maximum",
-        ),
-        Figure::choose(
-            "tension of the tendons at that force",
-            mechanics.tensions(wanted.force)?.max(),
-            "N",
-            "tendons that break at ten times this tension",
-        ),
-        Figure::choose(
-            "speed of a motor",
-            speed.max() * 60.0 / TAU,
-            "rpm",
-            "motors with this speed at the torque of the lowest tension",
-        ),
-        Figure::choose(
-            "voltage that turns a motor at that speed",
-            speed.component_mul(&constant).max() * 1e-2,
-            "V",
-            "a supply above this voltage plus winding resistance times current",
-        ),
-        Figure::choose(
-            "continuous current of a driver",
-            current(&finger.motor.continuous_torque).max(),
-            "A",
-            "drivers that regulate the current; four for each finger",
-        ),
-        Figure::choose(
-            "peak current of a driver",
-            current(&finger.motor.torque_limit).max(),
-            "A",
-            "drivers and a supply for this current",
-        ),
-        Figure::choose(
-            "bandwidth of a current loop",
-            CURRENT_LOOP * rate,
-            "Hz",
-            "a driver whose data sheet gives at least this bandwidth with the inductance of the motor",
-        ),
-        Figure::most(
-            "displacement of the tip by one encoder count",
-            mechanics.tip_by_travel(&travel) * 1e4,
-            wanted.resolution,
-            "um",
-            "encoders with more counts, or a smaller motor radius",
-        ),
-        Figure::most(
-            "displacement of the tip by one gauge count",
-            mechanics.tip_force_by_tension(&gauge) / wanted.stiffness * 1e4,
-            wanted.resolution,
-            "um",
-            "a converter with more bits, or gauges with a smaller range",
-        ),
-        Figure::choose(
-            "range of a gauge",
-            GAUGE_RANGE * finger.tendon.maximum,
-            "N",
-            "a gauge and an amplifier that reach this tension within the converter's range",
-        ),
-        Figure::least(
-            "stiffness that the tendons permit",
-            locked,
-            wanted.stiffness,
-            "N/cm",
-            "stiffer tendons (shorter, thicker, steel), or larger pulleys at the joints",
-        ),
-        Figure::choose(
-            "E A of a tendon",
-            stiffness.max() * wanted.tendon_length,
-            "N",
-            "a tendon with this product of modulus and cross-section, for finger.tendon.stiffness",
-        ),
-        Figure::least(
-            "rate of the servo",
-            rate,
-            CYCLES * oscillation.max(),
-            "Hz",
-            "a higher hand.rate, or rotors with more inertia",
-        ),
-    ])
+    }
+
+    fn forces(&self, wanted: f64) -> Result<Vec<Figure>, Failure> {
+        let (motor, maximum) = (&self.configured.motor, self.configured.tendon.maximum);
+        let most = self.tension(&motor.torque_limit);
+        let peak = most.map(|tension| tension.min(maximum));
+        let continuous = self.tension(&motor.continuous_torque).inf(&peak);
+        Ok(vec![
+            Figure::least(
+                "force of the tip, for any time",
+                self.mechanics.force(&continuous),
+                wanted,
+                "N",
+                "motors with more continuous torque, a smaller motor radius, or less finger.tendon.minimum",
+            ),
+            Figure::least(
+                "force of the tip, for some seconds",
+                self.mechanics.force(&peak),
+                wanted,
+                "N",
+                "a higher finger.tendon.maximum and motors with more torque",
+            ),
+            Figure::least(
+                "tension that the weakest motor can make",
+                most.min(),
+                maximum,
+                "N",
+                "motors with more torque, a smaller motor radius, or a lower finger.tendon.maximum",
+            ),
+            Figure::choose(
+                "tension of the tendons at that force",
+                self.mechanics.tensions(wanted)?.max(),
+                "N",
+                "tendons that break at ten times this tension",
+            ),
+        ])
+    }
+
+    fn drives(&self, speed: f64, rate: f64) -> Vec<Figure> {
+        let motor = &self.configured.motor;
+        let speed = self.mechanics.tendon_speed(speed).component_div(&self.radius);
+        let constant = Vector4::from(motor.torque_constant);
+        let current = |torque: &[f64; 4]| Vector4::from(*torque).component_div(&constant).max();
+        vec![
+            Figure::choose(
+                "speed of a motor",
+                speed.max() * 60.0 / TAU,
+                "rpm",
+                "motors with this speed at the torque of the lowest tension",
+            ),
+            Figure::choose(
+                "voltage that turns a motor at that speed",
+                // N cm/A to V s/rad.
+                speed.component_mul(&constant).max() * 1e-2,
+                "V",
+                "a supply above this voltage plus winding resistance times current",
+            ),
+            Figure::choose(
+                "continuous current of a driver",
+                current(&motor.continuous_torque),
+                "A",
+                "drivers that regulate the current; four for each finger",
+            ),
+            Figure::choose(
+                "peak current of a driver",
+                current(&motor.torque_limit),
+                "A",
+                "drivers and a supply for this current",
+            ),
+            Figure::choose(
+                "bandwidth of a current loop",
+                CURRENT_LOOP * rate,
+                "Hz",
+                "a driver whose data sheet gives at least this bandwidth with the inductance of the motor",
+            ),
+        ]
+    }
+
+    fn sensors(&self, wanted: &Wanted) -> Vec<Figure> {
+        let counts = Vector4::from(self.configured.encoder.counts_per_revolution.map(f64::from));
+        let travel = self.radius.component_div(&counts) * TAU;
+        let gauge = Vector4::from(self.configured.gauge.newton_per_count.map(f64::abs));
+        vec![
+            Figure::most(
+                "displacement of the tip by one encoder count",
+                self.mechanics.tip_by_travel(&travel) * 1e4,
+                wanted.resolution,
+                "um",
+                "encoders with more counts, or a smaller motor radius",
+            ),
+            Figure::most(
+                "displacement of the tip by one gauge count",
+                self.mechanics.tip_force_by_tension(&gauge) / wanted.stiffness * 1e4,
+                wanted.resolution,
+                "um",
+                "a converter with more bits, or gauges with a smaller range",
+            ),
+            Figure::choose(
+                "range of a gauge",
+                GAUGE_RANGE * self.configured.tendon.maximum,
+                "N",
+                "a gauge and an amplifier that reach this tension within the converter's range",
+            ),
+        ]
+    }
+
+    fn tendons(&self, wanted: &Wanted, rate: f64) -> Vec<Figure> {
+        let stiffness = Vector4::from(self.configured.tendon.stiffness);
+        let oscillation = Vector4::from_fn(|motor, _| {
+            // The mass of the rotor at its tendon, kg; then N/cm to N/m.
+            let mass = self.configured.motor.inertia[motor] / (self.radius[motor] * 1e-2).powi(2);
+            (stiffness[motor] * 1e2 / mass).sqrt() / TAU
+        });
+        vec![
+            Figure::least(
+                "stiffness that the tendons permit",
+                STABLE_PART * self.mechanics.locked_stiffness(),
+                wanted.stiffness,
+                "N/cm",
+                "stiffer tendons (shorter, thicker, steel), or larger pulleys at the joints",
+            ),
+            Figure::choose(
+                "E A of a tendon",
+                stiffness.max() * wanted.tendon_length,
+                "N",
+                "a tendon with this product of modulus and cross-section, for finger.tendon.stiffness",
+            ),
+            Figure::least(
+                "rate of the servo",
+                rate,
+                CYCLES * oscillation.max(),
+                "Hz",
+                "a higher hand.rate, or rotors with more inertia",
+            ),
+        ]
+    }
 }
