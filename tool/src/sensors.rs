@@ -19,8 +19,8 @@ const AVERAGED: u64 = 200;
 /// Prints what the encoders and gauges of a finger measure, twice a second, with the motors off, until Ctrl-C.
 ///
 /// Turn a motor by hand, and see which encoder counts; hang a weight on a tendon, and see which gauge measures how
-/// much. Turns and tensions are relative to the first line. They include the signs and scales of the configuration, and the
-/// gauges are averaged over 200 cycles.
+/// much. Turns and tensions are relative to the first line. They include the signs and scales of the configuration, and
+/// the gauges are averaged over 200 cycles.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file.
