@@ -115,6 +115,8 @@ def test_a_hand_is_closed_while_another_thread_waits(hand):
 def test_control_c_ends_a_wait(wait):
     program = f"""
 import os, signal, sun2xp, threading, time
+# A program that a shell starts in the background ignores the signal.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 silent = os.ttyname(os.openpty()[1])
 slow = "[hand]\\nopen_timeout_ms = 60000\\n[finger]\\nport = 'simulated'\\n[finger.1]\\nport = '" + silent + "'"
 hand = sun2xp.simulated()
