@@ -1,4 +1,5 @@
-//! Every link of the documentation to a file of the project, and to a heading in it, leads somewhere.
+//! Every link of the documentation to a file of the project, and to a heading in it, leads somewhere. No page contains
+//! the marks of a merge that was not finished.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -53,4 +54,13 @@ fn every_link_leads_to_a_file_and_a_heading() {
     let all = pages.iter().zip(&texts).flat_map(|(page, text)| links(text).map(move |link| (page, link)));
     let wrong: Vec<String> = all.filter_map(|(page, link)| wrong(page, link)).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn no_page_contains_the_marks_of_a_merge() {
+    for page in pages() {
+        let text = fs::read_to_string(&page).expect("a page");
+        let mark = text.lines().find(|line| line.starts_with("<<<<<<<") || line.starts_with(">>>>>>>"));
+        assert_eq!(mark, None, "{}", page.display());
+    }
 }

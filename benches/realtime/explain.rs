@@ -168,6 +168,16 @@ impl Pauses {
         self.0.iter().map(Vec::len).sum()
     }
 
+    /// Returns how long the core that paused longest paused between two times, ns.
+    pub fn longest(&self, [from, to]: [u64; 2]) -> u64 {
+        let overlap = |&(begun, ended): &Pause| ended.min(to).saturating_sub(begun.max(from));
+        let total = |core: &Vec<Pause>| {
+            let near = &core[core.partition_point(|pause| pause.1 <= from)..];
+            near.iter().take_while(|pause| pause.0 < to).map(overlap).sum()
+        };
+        self.0.iter().map(total).max().unwrap_or(0)
+    }
+
     /// Returns whether the pauses of any one core explain why a cycle was late. The servo may have been on any core.
     fn explain(&self, cycle: &LateCycle, period: u64) -> bool {
         let excess = cycle.done - (cycle.beginning + period);

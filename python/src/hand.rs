@@ -108,7 +108,7 @@ impl Hand {
 
     fn __repr__(&self, py: Python<'_>) -> String {
         let stages = (1..=3).map(|finger| match self.0.with(|hand| hand.report(finger)) {
-            Ok(report) => records::stage(&report.stage),
+            Ok(report) => report.stage.name(),
             Err(_) => "absent",
         });
         let _ = py;

@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
-use sun2xp::{Distribution, Fault, FingerFault, FingerStatus, FingerTip, Losses, Stage};
+use sun2xp::{Distribution, Fault, FingerFault, FingerStatus, FingerTip, Losses};
 
 /// Returns an object of a class of sun2xp/_types.py with these fields.
 pub fn record<'py>(py: Python<'py>, class: &str, fields: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
@@ -38,7 +38,7 @@ pub fn tip<'py>(py: Python<'py>, tip: &FingerTip) -> PyResult<Bound<'py, PyAny>>
 
 pub fn status<'py>(py: Python<'py>, status: &FingerStatus) -> PyResult<Bound<'py, PyAny>> {
     let fields = PyDict::new(py);
-    fields.set_item("stage", stage(&status.stage))?;
+    fields.set_item("stage", status.stage.name())?;
     fields.set_item("realtime", status.realtime)?;
     fields.set_item("memory_locked", status.memory_locked)?;
     fields.set_item("on_core", status.on_core)?;
@@ -93,19 +93,4 @@ pub fn fault<'py>(py: Python<'py>, fault: &Fault) -> PyResult<Bound<'py, PyAny>>
     fields.set_item("text", fault.to_string())?;
     fields.set_item("remedy", errors::remedy(fault.kind))?;
     record(py, "FaultDescription", &fields)
-}
-
-/// Returns the name of a stage.
-pub fn stage(stage: &Stage) -> &'static str {
-    match stage {
-        Stage::Opening => "opening",
-        Stage::Limp => "limp",
-        Stage::Calibrating => "calibrating",
-        Stage::Running => "running",
-        Stage::Closing => "closing",
-        Stage::Closed => "closed",
-        Stage::Faulted(_) => "faulted",
-        // The library has no other stages.
-        _ => "unknown",
-    }
 }

@@ -146,9 +146,15 @@ pub(super) fn close(handle: Handle, in_callback: bool) -> Result<(), Refusal> {
 }
 
 impl Place {
+    /// The place that a handle names. The hand of the handle may be closed, and another one be open there.
+    #[inline]
+    fn named_by(handle: Handle) -> Result<&'static Self, Refusal> {
+        handle.place().and_then(|place| TABLE.get(place)).ok_or(Refusal::NoHand)
+    }
+
     /// The place of an open hand.
     fn of(handle: Handle) -> Result<&'static Self, Refusal> {
-        let place = handle.place().and_then(|place| TABLE.get(place)).ok_or(Refusal::NoHand)?;
+        let place = Self::named_by(handle)?;
         if place.handle.load(Ordering::Acquire) == handle.value() { Ok(place) } else { Err(Refusal::NoHand) }
     }
 
@@ -190,7 +196,7 @@ pub(super) fn with<T, E: Into<Refusal>>(
     handle: Handle,
     call: impl FnOnce(&Hand) -> Result<T, E>,
 ) -> Result<T, Refusal> {
-    let place = handle.place().and_then(|place| TABLE.get(place)).ok_or(Refusal::NoHand)?;
+    let place = Place::named_by(handle)?;
     let opened = place.hand.read();
     let opened = opened.as_ref().filter(|opened| opened.handle == handle).ok_or(Refusal::NoHand)?;
     call(&opened.hand).map_err(E::into)
@@ -208,7 +214,7 @@ pub(super) fn command<T, E: Into<Refusal>>(
 
 /// The events of an open hand. They can be used without locking the hand.
 pub(super) fn events(handle: Handle) -> Result<&'static HandEvents, Refusal> {
-    handle.place().and_then(|place| TABLE.get(place)).map(|place| &place.events).ok_or(Refusal::NoHand)
+    Place::named_by(handle).map(|place| &place.events)
 }
 
 fn refuse_while_exiting() -> Result<(), Refusal> {

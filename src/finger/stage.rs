@@ -25,16 +25,28 @@ pub enum Stage {
     Faulted(Fault),
 }
 
-impl fmt::Display for Stage {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
+impl Stage {
+    /// Returns the name of the stage, in one word.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
             Stage::Opening => "opening",
             Stage::Limp => "limp",
             Stage::Calibrating => "calibrating",
             Stage::Running => "running",
             Stage::Closing => "closing",
             Stage::Closed => "closed",
-            Stage::Faulted(fault) => return write!(f, "faulted: {fault}"),
-        })
+            Stage::Faulted(_) => "faulted",
+        }
+    }
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())?;
+        match self {
+            Stage::Faulted(fault) => write!(f, ": {fault}"),
+            _ => Ok(()),
+        }
     }
 }

@@ -161,16 +161,7 @@ impl FingerState {
             Stage::Faulted(fault) => Some(fault),
             _ => None,
         };
-        self.stage = match stage {
-            Stage::Opening => "opening",
-            Stage::Limp => "limp",
-            Stage::Calibrating => "calibrating",
-            Stage::Running => "running",
-            Stage::Closing => "closing",
-            Stage::Closed => "closed",
-            Stage::Faulted(_) => "faulted",
-            _ => "unknown",
-        };
+        self.stage = stage.name();
         // The text of a fault is made once, and not in every cycle.
         if fault != self.stopped {
             self.fault = fault.as_ref().map(FaultState::from);
