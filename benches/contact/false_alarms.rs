@@ -8,7 +8,7 @@ use std::error::Error;
 use sun2xp::model::configuration::ConfiguredContact;
 
 /// The fastest joint rates of the set points, rad/s. Infinity is a set point that jumps from pose to pose, which the
-/// controller follows as fast as it can. A run has equal times of each.
+/// controller follows as fast as it can. A run spends the same time at each of these speeds.
 pub const SPEEDS: [f64; 3] = [1.0, 3.0, f64::INFINITY];
 
 /// The result of a run.
@@ -20,14 +20,14 @@ pub struct Alarms {
     pub first: Option<f64>,
 }
 
-/// Moves a finger that touches nothing for `seconds`.
+/// Moves a finger for `seconds`. The finger touches nothing.
 pub fn count(hand: &Hand, contact: &ConfiguredContact, seconds: f64, seed: u64) -> Result<Alarms, Box<dyn Error>> {
     let (finger, own) = hand.finger(contact, seed);
     let start = Vector3::from(finger.simulation.start_degrees.map(f64::to_radians));
     let mut run = Finger::new(&finger, &own, hand.gravity)?;
     let mut motion = Motion::new(seed, finger.joint_limits(), start);
     let (mut count, mut touched, mut touching, mut first) = (0, 0, false, None);
-    // The stops, with half a degree for their elasticity.
+    // A joint counts as stopped when it is at most half a degree before its mechanical stop.
     let margin = (finger.simulation.stop_margin_degrees - 0.5).to_radians();
     let (low, high) = finger.joint_limits();
     let (low, high) = (low.add_scalar(-margin), high.add_scalar(margin));

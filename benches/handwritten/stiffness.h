@@ -84,7 +84,7 @@ static double largest_eigenvalue(const double m[JOINTS][JOINTS])
     return third + 2.0 * root * cos(acos(clamp(cubic / (spread * root), -1.0, 1.0)) / 3.0);
 }
 
-/* The stiffness of joint 0 in addition to J^T K J when the tip is near its axis. */
+/* Joint 0 needs more stiffness than J^T K J when the tip is near the axis of joint 0. Returns this addition. */
 static double hold(const double k[TIP][TIP], const double j[TIP][JOINTS])
 {
     double lacking = LEAST_LEVER * LEAST_LEVER - (j[0][0] * j[0][0] + j[1][0] * j[1][0] + j[2][0] * j[2][0]);
@@ -97,7 +97,7 @@ static double hold(const double k[TIP][TIP], const double j[TIP][JOINTS])
     return held * lacking;
 }
 
-/* The part of K_theta that the locked tendons can carry in addition to the soft limits of the joints. */
+/* The locked tendons carry the soft limits of the joints first. Returns the part of K_theta that they can carry too. */
 static double admissible(const struct parameters *p, const double k_theta[JOINTS][JOINTS], const double limits[JOINTS])
 {
     double half[JOINTS][JOINTS], transposed[JOINTS][JOINTS], whole[JOINTS][JOINTS];

@@ -2,8 +2,8 @@
 //!
 //!     cargo bench --bench motion
 //!
-//! The default finger runs with its whole servo and its simulated board, in memory and in simulated time. The lag is
-//! the distance of the true tip from the place at which the path is in the same period.
+//! The default finger runs with its whole servo and its simulated board, in memory and in simulated time. The path has
+//! one point for every period. The lag is the distance of the true tip from that point.
 
 #[allow(dead_code)]
 #[path = "../../tests/common/finger_on_a_cable.rs"]
@@ -97,7 +97,8 @@ impl Bench {
     }
 }
 
-/// Turns that are completed after some seconds, from rest to rest, at one turn a second in between.
+/// Returns how many turns are completed after some seconds. The motion begins and ends at rest. Between its two ramps
+/// it makes one turn a second.
 fn turns(seconds: f64) -> f64 {
     let ramp = |seconds: f64| 0.5 * (seconds - (PI * seconds / RAMP).sin() * RAMP / PI);
     let length = TURNS + RAMP;
@@ -115,7 +116,7 @@ fn on_circle(centre: &Vector3<f64>, turns: f64) -> Vector3<f64> {
     centre + Vector3::new(cos, sin, 0.0)
 }
 
-/// Worst and mean distance of the tip from the circle's point at the same time, cm.
+/// Worst and mean distance of the tip from its wanted place in the same period, cm.
 struct Lag {
     worst: f64,
     sum: f64,

@@ -9,8 +9,8 @@
 //!     cargo bench --bench realtime -- telemetry [--repeats 5] [--seconds 5]
 //!     cargo bench --bench realtime -- long-run [--minutes 30]
 //!
-//! wake-up and long-run need cyclictest (Debian: rt-tests), and wake-up also needs stress-ng. The sides of a comparison
-//! alternate within one run. Without a name, everything except the long run is measured.
+//! wake-up and long-run need cyclictest (Debian: rt-tests), and wake-up also needs stress-ng. A measurement that
+//! compares two cases measures them alternately. Without a name, everything except the long run is measured.
 
 mod cyclictest;
 mod events;

@@ -14,8 +14,8 @@ use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::{CycleStage, Distribution};
 use sun2xp::telemetry::{Reader, View};
 
-/// What each reader does with the messages, besides converting every cycle to a sample. A monitor and a page do that,
-/// and a recorder also writes.
+/// Whether each reader writes the messages to a file. All readers convert every cycle to a sample. The first two stand
+/// for a monitor and a page, which do not write. The third stands for a recorder.
 const READERS: [bool; 3] = [false, false, true];
 
 /// Time after a change of the readers that is not measured.
@@ -31,7 +31,8 @@ pub struct ReaderArguments {
     write: bool,
 }
 
-/// The wake-up latencies of the fingers in the turns of one side, us.
+/// One side of the comparison: with readers, or without. Each distribution is that of the wake-up latencies, us, of one
+/// finger in one measurement.
 #[derive(Default)]
 struct Side(Vec<Distribution>);
 

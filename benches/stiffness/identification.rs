@@ -1,4 +1,4 @@
-//! Identifies a finger whose tendons differ from their configuration, as it would be identified before use.
+//! Identifies a finger whose tendons differ from their configuration. Users do the same before they use a hand.
 
 use crate::cases::{Case, Friction, stiffen};
 use nalgebra::Vector3;
@@ -8,7 +8,7 @@ use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
 /// Returns the stiffness of each tendon that identification finds, N/cm, if the true tendons are stiffer than
-/// configured by the factors `ratio`. With the default friction and measurements in counts.
+/// configured by the factors `ratio`. The finger has the default friction, and its sensors return whole counts.
 pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obstacle> {
     let pose = Vector3::from(ConfiguredFinger::default().simulation.start_degrees.map(f64::to_radians));
     let mut truth = case.finger(&pose, Friction::Default);

@@ -66,9 +66,9 @@ impl Drop for Claim {
 }
 
 impl Calibrating {
-    /// Begins a calibration. With [`Task::Identify`] the joints move between their stops, and the finger presses. With
-    /// [`Task::Zero`] its tendons are slack for a second. The whole range of its joints must be free. Set points are
-    /// ignored until the calibration is done.
+    /// Begins a calibration. With [`Task::Identify`] the joints move between their stops, and the finger presses
+    /// against its lower stops. With [`Task::Zero`] its tendons are slack for a second. The whole range of its joints
+    /// must be free. Set points are ignored until the calibration is done.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if the finger is faulted or busy, or if the routine cannot work
@@ -109,13 +109,13 @@ impl Calibrating {
         let finger = self.finger;
         let report = hand.dispatcher.report(finger)?;
         if report.recoveries != self.recoveries {
-            // The finger has faulted and recovered between two polls. Its verdict, if it has one, is not that of this
-            // calibration, and it would remain in progress without end.
+            // The finger has faulted and recovered between two polls, so this calibration is over. If the report has a
+            // verdict, it is not that of this calibration. Without this return, progress would be reported without end.
             return Err(HandError::Interrupted(finger));
         }
         if report.orders != self.order {
-            // Orders are counted from open. If the hand was opened again since, it has not received this order, and its
-            // count began again at 0.
+            // The servo has not yet taken the order. If the hand was closed and opened again since the order was given,
+            // it never takes it: the new servo has not received this order, and counts its orders from 0.
             if self.asked.elapsed() > ANSWER {
                 return Err(HandError::NoAnswer(finger));
             }
@@ -208,8 +208,9 @@ impl Hand {
         Ok(self.configuration.read().fingers[finger.index()].clone())
     }
 
-    /// Writes the calibration results of finger 1, 2 or 3 since the last such call into the configuration file that the
-    /// hand was opened with, by `store_findings`. Returns false if there is no such file, or nothing to write.
+    /// Writes calibration results of finger 1, 2 or 3 into the configuration file that the hand was opened with, by
+    /// `store_findings`. It writes the results that no earlier call has written. Returns false if there is no such
+    /// file, or nothing to write.
     ///
     /// # Errors
     /// Returns an error if there is no such finger. Returns [`HandError::NotStored`] with the reason if the file cannot
@@ -220,7 +221,8 @@ impl Hand {
         self.to_store(finger).map_or(Ok(false), |calibration| calibration.store().map(|()| true))
     }
 
-    /// What [`Hand::store_calibration`] would write, for a caller that writes it without the hand.
+    /// Takes the results that [`Hand::store_calibration`] would write, and returns them with the file. The caller
+    /// writes them. It need not keep the hand locked for this.
     pub(crate) fn to_store(&self, finger: FingerNumber) -> Option<ToStore> {
         let mut all = self.found.lock();
         let place = all.iter().position(|found| found.finger() == finger)?;

@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 pub struct LinkMomentum {
     /// H(theta). Joint 0 is decoupled from the other joints.
     pub(super) inertia: Matrix3<f64>,
-    /// Half the derivatives of the inertia about the axis of joint 0 with respect to theta_1 and theta_2.
+    /// Half the derivative of `inertia.m11`, the inertia about the axis of joint 0, with respect to theta_1.
     pub(super) by_1: f64,
+    /// Half the derivative of `inertia.m11` with respect to theta_2.
     pub(super) by_2: f64,
     /// Derivative of the coupled inertia of joints 1 and 2 with respect to theta_2, with the opposite sign.
     pub(super) bend: f64,

@@ -4,8 +4,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Largest number of sweeps of projected Gauss-Seidel. With the default masses the coupling of joints 1 and 2 reduces
-/// the error to three quarters or less in each sweep. The iteration ends early when nothing changes.
+/// Largest number of sweeps of projected Gauss-Seidel. Each sweep leaves a part of the error, because joints 1 and 2
+/// are coupled. With the default masses this part is three quarters or less. The iteration ends early when nothing
+/// changes.
 const SWEEPS: usize = 60;
 
 /// Returns the joint rates after friction. `rates` are those without friction, and `bound` contains the largest impulse

@@ -55,8 +55,8 @@ impl PseudoTerminal {
         &self.path
     }
 
-    /// Waits for bytes, at most for `timeout`, and reads what has arrived. Returns 0 only after waiting, even after a
-    /// failed read.
+    /// Waits for bytes, at most for `timeout`, and reads what has arrived. It returns 0 only after the whole `timeout`.
+    /// If the read fails, it sleeps for `timeout` first.
     ///
     /// # Errors
     /// Returns [`Closed`] if another part of the program has closed a descriptor.
@@ -83,7 +83,8 @@ impl PseudoTerminal {
         Ok(0)
     }
 
-    /// Waits until one of these terminals has bytes, at most for `timeout`. Returns whether one has, or has failed.
+    /// Waits at most for `timeout` until one of these terminals has bytes or has failed. Returns false if the time has
+    /// passed without either.
     pub fn wait_for_any(terminals: &[Option<Arc<Self>>; FINGERS], timeout: Duration) -> bool {
         // The system ignores negative numbers.
         let number = |terminal: &Option<Arc<Self>>| terminal.as_ref().map_or(-1, |own| own.board_end.number());

@@ -122,7 +122,7 @@ fn handshake_waits_for_the_watchdog_to_end_a_dead_host() {
     let mut link = link(&[1]);
     link.shake_hands(1, &terms(EndState::Release), 500 * MS).unwrap();
     cycle(&mut link, 0, pull(3000));
-    // A new host that starts at once is refused as running until the watchdog has tripped.
+    // The finger still runs for the old host. The board refuses a new host until the watchdog has tripped.
     let began = link.transport().now();
     link.shake_hands(1, &terms(EndState::Release), began + 500 * MS).unwrap();
     assert!(link.transport().now() - began >= 19 * MS);

@@ -1,4 +1,5 @@
-//! The memory that the servo locks: the pages of values that exist, each of them once; and the size of the records.
+//! The memory that the servo locks, and the size of the records. The servo locks only pages of values that exist. It
+//! locks each of these pages once.
 
 use crate::rig::Bench;
 use std::ops::Range;
@@ -41,8 +42,8 @@ fn every_range_to_lock_is_mapped_and_belongs_to_one_value() {
     }
 }
 
-/// The sizes are those of a 64-bit machine, on which the page was written. The size of the state depends on the
-/// compiler, so it is rounded.
+/// The sizes in docs/architecture.md are those of a 64-bit machine. The size of the state depends on the compiler, so
+/// it is rounded.
 #[test]
 #[cfg(target_pointer_width = "64")]
 fn the_sizes_of_records_are_those_of_the_page() {

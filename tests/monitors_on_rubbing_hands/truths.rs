@@ -13,7 +13,7 @@ pub struct Truth {
 const ARMS: [[f64; 4]; 3] = [[1.05, 0.95, 1.05, 0.95], [0.95, 1.05, 1.05, 0.95], [1.05, 1.05, 0.95, 0.95]];
 const OTHER_ARMS: [[f64; 4]; 3] = [[0.95, 0.95, 1.05, 1.05], [1.05, 0.95, 1.05, 0.95], [0.95, 1.05, 0.95, 1.05]];
 
-/// The hand with the friction that the faults are injected into.
+/// A hand whose tendons rub in their conduits. The tests inject faults into this hand.
 pub const RUBBING: Truth = Truth { what: "conduit 20 %", make: |finger| finger.simulation.conduit_friction = 0.2 };
 
 pub fn truths() -> Vec<Truth> {

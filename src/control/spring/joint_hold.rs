@@ -3,8 +3,8 @@
 use crate::model::Links;
 use nalgebra::Vector3;
 
-/// Stiffness of each joint, N cm/rad. It is lower than the joint stiffness of a bent finger with the softest spring for
-/// which the tendon controllers are tuned.
+/// Stiffness of each joint, N cm/rad. The tendon controllers are tuned for springs down to a softest one. In a bent
+/// finger even the softest one makes the joints stiffer than this.
 pub(crate) const HOLDING_STIFFNESS: f64 = 30.0;
 
 /// Damping of a joint, N cm s/rad for each cm of finger between the joint and the tip. It keeps the inertia of the

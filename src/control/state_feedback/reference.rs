@@ -1,5 +1,5 @@
-//! The reference of the joints: a set point at rest, filtered so that its derivatives can be fed forward, or a set
-//! point with its own derivatives.
+//! The reference of the joints, with its derivatives, which the controller feeds forward. A set point in motion has its
+//! own derivatives. A set point at rest has none, so it is filtered.
 
 use crate::control::motion::Motion;
 use crate::control::spring::slew::Slew;
@@ -19,8 +19,8 @@ pub(crate) struct Reference {
     gain: f64,
     /// Time constant of a stage, s.
     time: f64,
-    /// Difference of input and output of a stage, divided by the slope of its output from the last cycle to this one,
-    /// s. It is a little smaller than `time`, because a stage advances in steps.
+    /// The equivalent of `time` for a filter that advances in steps, s. The input of a stage minus its output equals
+    /// `lag` times the slope of the output from the last cycle to this one. `lag` is a little smaller than `time`.
     lag: f64,
 }
 
@@ -31,8 +31,8 @@ pub(crate) struct ReferenceState([Vector3<f64>; ORDER]);
 impl ReferenceState {
     /// Returns the outputs of the stages of a filter whose last output has the given motion.
     fn of(joints: &Vector3<f64>, motion: &Motion, time: f64) -> Self {
-        // The input of a stage is its output plus `time` times the rate of its output. So stage 5 - n is the n-th power
-        // of (1 + time d/dt), applied to the joint angles.
+        // The input of a stage is its output plus `time` times the rate of its output. The last stage has the joint
+        // angles as its output. So the stage n places before it has (1 + time d/dt)^n applied to the joint angles.
         let Motion { rates, accelerations, jerk, snap } = motion;
         let (one, two, three, four) =
             (rates * time, accelerations * time.powi(2), jerk * time.powi(3), snap * time.powi(4));
@@ -82,12 +82,13 @@ impl Reference {
         derivatives(state, self.time)
     }
 
-    /// Advances the reference by one cycle with a set point that has its own motion: the reference is the set point. If
-    /// the reference has been elsewhere, the deviation from the set point runs through the filter to zero, so that the
-    /// reference stays continuous up to its snap. A large deviation first shrinks at the speed of `slew`.
+    /// Advances the reference by one cycle with a set point that has its own motion. The reference is the set point
+    /// plus a deviation. There is a deviation if the reference was elsewhere before. It runs through the filter to
+    /// zero, so that the reference stays continuous up to its snap. A large deviation first shrinks at the speed of
+    /// `slew`.
     ///
-    /// `anchor` is the input of the filter. `along` holds the stages that belong to the set point of the last cycle;
-    /// none if that set point was at rest.
+    /// `anchor` is the input of the filter. `along` has the outputs of the stages for a reference that equals the set
+    /// point of the last cycle. It is `None` if that set point was at rest.
     pub fn advance_along(
         &self,
         state: &mut ReferenceState,
@@ -155,7 +156,8 @@ mod tests {
         (wave(0), Motion { rates: wave(1), accelerations: wave(2), jerk: wave(3), snap: wave(4) })
     }
 
-    /// A set point at rest, then 0.3 s along the path from `offset` off it, then a set point at rest again.
+    /// A set point at rest, then 0.3 s along the path, then a set point at rest again. The first set point is `offset`,
+    /// rad, away from the beginning of the path.
     fn run(offset: f64) -> Vec<ReferenceMotion> {
         let (filter, slew) = (Reference::new(0.008, RATE), Slew::new(5.0, RATE));
         let (mut anchor, mut along) = (Vector3::x() * offset, None);

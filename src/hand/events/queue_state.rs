@@ -1,4 +1,4 @@
-//! The state of a queue, which the thread of its descriptor shares.
+//! The state of an event queue. The thread that makes the descriptor of the queue readable has access to it too.
 
 use super::merging::{MergedEvents, Next};
 use super::source::EventSource;
@@ -18,7 +18,7 @@ pub(super) struct QueueState {
 
 struct Merged {
     events: MergedEvents,
-    /// An event that was found by a thread that only waited.
+    /// An event that a waiting thread has found. The next [`QueueState::take`] returns it.
     found: Option<Event>,
 }
 

@@ -22,7 +22,8 @@ pub enum GaugeReference {
     /// The gauges: identification keeps the mean of their configured gains.
     #[default]
     Gauges,
-    /// The motors: on average over the four, a motor pulls with its commanded torque minus its friction.
+    /// The motors: identification assumes that each pulls with its commanded torque minus its friction. This must hold
+    /// only for the average of the four motors.
     Motors,
 }
 

@@ -16,14 +16,14 @@ use tokio::time::{Instant, Sleep, sleep};
 /// Largest number of connections. A browser opens up to six for a page, and keeps one of them.
 const CONNECTIONS: usize = 64;
 
-/// A connection that sends nothing for this time is closed. Browsers answer the pings of a WebSocket, which come more
-/// often.
+/// A connection that sends nothing for this time is closed. The server pings each WebSocket more often than this, and
+/// browsers answer every ping.
 pub const SILENCE: Duration = Duration::from_secs(30);
 
 /// Time after which the listener tries again if the system has no more files.
 const RETRY: Duration = Duration::from_millis(100);
 
-/// A listener whose connections are counted. Further ones wait until another is closed.
+/// A listener that limits the number of open connections. A further connection waits until another one is closed.
 pub struct Limited {
     listener: TcpListener,
     free: Arc<Semaphore>,
