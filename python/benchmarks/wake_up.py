@@ -1,20 +1,26 @@
-"""The wake-up of the servos with a planner that burns Python, against a planner that sleeps, in turns in one run.
-Prints the table of docs/python.md.
+"""The wake-up of the servos with a planner that burns Python, in turns in one run with two others: a planner that sleeps,
+and a planner that sleeps while another process burns Python. Prints the table of docs/python.md.
 
     python wake_up.py [--rounds 10] [--seconds 10]
 
 The planner burns in as many threads as there are cores, and another thread reads and sends 1000 times a second. The
-99.9 % of the wake-ups are those of all fingers and rounds. Run it on a quiet machine with real-time scheduling.
+other process burns in as many threads. It has no hand, so its interpreter lock cannot touch the servos: what it changes
+is the effect of cores that are in use. The figures are medians over all fingers and rounds. Run it on a quiet machine
+with real-time scheduling.
 """
 
 import argparse
 import os
 import statistics
+import subprocess
 import sys
 import threading
 import time
 
 import sun2xp
+
+# The planners, as they stand in the table.
+SLEEPS, OTHER, PLANNER = "sleeps", "sleeps, and another process burns Python", "burns Python"
 
 
 def burn(stop: threading.Event) -> None:
@@ -23,6 +29,11 @@ def burn(stop: threading.Event) -> None:
     while not stop.is_set():
         for _ in range(1000):
             number = number * 48271 % 2147483647
+
+
+def burners(stop: threading.Event) -> list:
+    """Returns one thread that burns for each core."""
+    return [threading.Thread(target=burn, args=(stop,)) for _ in range(os.cpu_count() or 1)]
 
 
 def plan(hand: sun2xp.Hand, stop: threading.Event, counts: list) -> None:
@@ -36,15 +47,15 @@ def plan(hand: sun2xp.Hand, stop: threading.Event, counts: list) -> None:
         time.sleep(max(0.0, due - time.monotonic()))
 
 
-def measure(hand: sun2xp.Hand, seconds: float, burning: bool) -> tuple:
+def measure(hand: sun2xp.Hand, seconds: float, load: str) -> tuple:
     """Returns the distributions of the wake-ups of all fingers, and the number of calls."""
     stop, counts = threading.Event(), []
     threads = []
-    if burning:
-        threads = [threading.Thread(target=burn, args=(stop,)) for _ in range(os.cpu_count() or 1)]
-        threads.append(threading.Thread(target=plan, args=(hand, stop, counts)))
+    if load == PLANNER:
+        threads = burners(stop) + [threading.Thread(target=plan, args=(hand, stop, counts))]
     for thread in threads:
         thread.start()
+    other = subprocess.Popen([sys.executable, __file__, "--burn"]) if load == OTHER else None
     time.sleep(0.5)
     for finger in (1, 2, 3):
         hand.reset_timing(finger)
@@ -53,6 +64,9 @@ def measure(hand: sun2xp.Hand, seconds: float, burning: bool) -> tuple:
     stop.set()
     for thread in threads:
         thread.join()
+    if other is not None:
+        other.kill()
+        other.wait()
     return found, len(counts)
 
 
@@ -60,32 +74,39 @@ def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--rounds", type=int, default=10)
     arguments.add_argument("--seconds", type=float, default=10.0)
+    arguments.add_argument("--burn", action="store_true", help=argparse.SUPPRESS)
     arguments = arguments.parse_args()
-    names = {False: "sleeps", True: "burns Python"}
     # With the default of 5 ms, each burning thread keeps the interpreter lock for 5 ms, and the planning thread cannot
     # run 1000 times a second.
     sys.setswitchinterval(0.0001)
-    found = {False: [], True: []}
+    if arguments.burn:
+        for thread in burners(threading.Event()):
+            thread.start()
+        return
+    loads = [SLEEPS, OTHER, PLANNER]
+    found = {load: [] for load in loads}
     planned = 0
     with sun2xp.simulated() as hand:
         status = hand.status(1)
         for round in range(arguments.rounds):
             # The order changes, so that a slow change of the machine does not look like an effect.
-            for burning in (round % 2 == 0, round % 2 == 1):
-                distributions, count = measure(hand, arguments.seconds, burning)
-                found[burning].extend(distributions)
+            for load in loads[round % 3 :] + loads[: round % 3]:
+                distributions, count = measure(hand, arguments.seconds, load)
+                found[load].extend(distributions)
                 planned += count
     print(f"Real-time scheduling: {status.realtime}. {arguments.rounds} rounds of {arguments.seconds:g} s.\n")
     print("| planner | cycles | median, us | 99 %, us | 99.9 %, us | longest, us |\n|---|---|---|---|---|---|")
-    for burning, name in names.items():
-        rounds = found[burning]
+    for load in loads:
+        rounds = found[load]
         median = [statistics.median(getattr(one, part) for one in rounds) for part in ("median", "p99", "p999")]
         cycles, longest = sum(one.count for one in rounds), max(one.maximum for one in rounds)
-        print(f"| {name} | {cycles} | {median[0]:.1f} | {median[1]:.1f} | {median[2]:.1f} | {longest:.1f} |")
-    burning, sleeping = (statistics.median(one.p999 for one in found[name]) for name in (True, False))
-    ratio = burning / sleeping
+        print(f"| {load} | {cycles} | {median[0]:.1f} | {median[1]:.1f} | {median[2]:.1f} | {longest:.1f} |")
+    late = {load: statistics.median(one.p999 for one in found[load]) for load in loads}
     rate = planned / arguments.rounds / (arguments.seconds + 0.5)
-    print(f"\nThe 99.9 % with the burning planner are {ratio:.2f} times those without.")
+    print(
+        f"\nThe 99.9 % with the burning planner are {late[PLANNER] / late[SLEEPS]:.2f} times those of the planner that "
+        f"sleeps, and {late[PLANNER] / late[OTHER]:.2f} times those with another process that burns."
+    )
     print(f"It sent {rate:.0f} times a second.")
 
 
