@@ -63,7 +63,8 @@
        EIO        the finger is faulted: it has stopped by itself. CloseHand and OpenHand start it again,
                   and sun2xp_recover of sun2xp.h does
        ESHUTDOWN  the process is exiting, and the hand is closed (chapter 6)
-       others     errno of the system, or the nearest: configuration file, port, enforced real time
+       others     the errno of the system, or the errno that describes the reason best: configuration
+                  file, port, enforced real time
 
    If several reasons apply, a call reports the one that its entry lists first. A call that succeeds
    changes neither errno nor the text of HandError(). Arrays are read and written only during the call. An
@@ -294,11 +295,12 @@ int CloseHand(void);
 
  All three angles take effect together. From the next cycle on the anchor of the fingertip's spring
  moves to Pos, along a straight line in joint angles and at a bounded speed. The stiffness is the one
- sent last. When the anchor is at Pos, Tip is the position that the fingertip has there, and p its
- present position, the force is Kx (Tip - p) at any distance. With controller.law = "report" the
- finger follows the law of the report, which holds for small distances. The call does not wait until
- the finger arrives; GetPos reads where it is. The limits are the configured joint limits, by default
- -1.0472 to 1.0472 for joint 0, -0.5236 to 1.7453 for joint 1 and 0.0873 to 2.0944 for joint 2.
+ sent last. When the anchor is at Pos, the force of the fingertip is Kx (Tip - p) at any distance: Tip
+ is the position of the fingertip at the angles Pos, and p is its present position. With
+ controller.law = "report" the finger follows the law of the report, which holds for small distances.
+ The call does not wait until the finger arrives; GetPos reads where it is. The limits are the
+ configured joint limits, by default -1.0472 to 1.0472 for joint 0, -0.5236 to 1.7453 for joint 1 and
+ 0.0873 to 2.0944 for joint 2.
 
  Returns 0, or -1 with
    EPERM    forked child

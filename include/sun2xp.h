@@ -62,11 +62,11 @@
        ERANGE     SUN2XP_ERROR_LIMIT           outside the limits of the finger
        EDOM       SUN2XP_ERROR_LIMIT           a matrix that is not symmetric, or has a negative eigenvalue
        EIO        SUN2XP_ERROR_FAULTED         the finger has stopped by itself
-       EBUSY      SUN2XP_ERROR_BUSY            opened, closed, calibrated or recovered by another call
+       EBUSY      SUN2XP_ERROR_BUSY            hand or finger is being opened, closed, calibrated or recovered
        ETIMEDOUT  SUN2XP_ERROR_TIMED_OUT       a time limit is over
-       ENOTSUP    SUN2XP_ERROR_NOT_SUPPORTED   only for simulated fingers or objects
+       ENOTSUP    SUN2XP_ERROR_NOT_SUPPORTED   the call works only with simulated fingers or objects
        ESHUTDOWN  SUN2XP_ERROR_EXITING         the process is exiting (chapter 5)
-       others     errno of the system, or the nearest
+       others     the errno of the system, or the errno that describes the reason best
 
    Arrays, structs and texts are read and written only during the call. An output is written only if the
    call succeeds, and by sun2xp_next_event and sun2xp_wait_event only if they return 1.
@@ -126,8 +126,8 @@
    sun2xp_adjust, sun2xp_write_black_box, sun2xp_wait, sun2xp_on_event,
    sun2xp_event_descriptor and sun2xp_wait_event (while there is no event) run in a thread of the library,
    and the program's thread waits for it. A signal handler may jump out of that wait (siglongjmp). The call
-   then continues to its end. A sun2xp_wait_event that is left takes no event, and a call that opens a hand
-   and is left writes no handle: the hand stays open until exit.
+   then continues to its end. If a handler jumps out of sun2xp_wait_event, that call takes no event. If it
+   jumps out of a call that opens a hand, that call writes no handle, and the hand stays open until exit.
 
    Undefined behaviour: the behaviour is undefined if a signal handler jumps out of any other call
    (longjmp, siglongjmp). The same holds if a handler that interrupted a call calls pthread_exit or, in
@@ -225,8 +225,7 @@ typedef struct sun2xp_hand sun2xp_hand;
 #define SUN2XP_VERSION_PATCH 0
 #define SUN2XP_VERSION_NUMBER 100
 
-#define SUN2XP_ALL_FINGERS 0                /* Takes all fingers of a hand, where the entry of a call says so. Every
-                                               other call refuses it. */
+#define SUN2XP_ALL_FINGERS 0                /* All fingers of a hand. Only calls whose entries say so accept it. */
 #define SUN2XP_ERROR_DEFECT 1               /* The library has a defect. Please report it. */
 #define SUN2XP_ERROR_FORKED 2               /* The process is a forked child, which has no servo threads. */
 #define SUN2XP_ERROR_EXITING 3              /* The process is exiting, and its hands are closed. */
@@ -245,7 +244,7 @@ typedef struct sun2xp_hand sun2xp_hand;
 #define SUN2XP_ERROR_NO_MEMORY 13           /* There is not enough memory. */
 #define SUN2XP_ERROR_TIMED_OUT 14           /* The time limit is over. */
 #define SUN2XP_ERROR_CALIBRATION 15         /* A calibration failed. */
-#define SUN2XP_ERROR_NOT_SUPPORTED 16       /* The hand has not what the call needs, such as a simulated finger or
+#define SUN2XP_ERROR_NOT_SUPPORTED 16       /* The hand lacks what the call needs, such as a simulated finger or
                                                object. */
 #define SUN2XP_ERROR_NOT_FOUND 17           /* There is no such record or reflex. */
 #define SUN2XP_ERROR_REAL_TIME 18           /* hand.real_time is "enforce", and real time is not available. */
@@ -256,7 +255,7 @@ typedef struct sun2xp_hand sun2xp_hand;
 /*
  A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread.
 
- remedy is empty if the text has another remedy than calls.
+ remedy names calls only. It is empty if no call helps. The text then contains the remedy.
  */
 struct sun2xp_error {
     size_t size;                            /* sizeof (struct sun2xp_error), set before the call. */
@@ -274,8 +273,8 @@ struct sun2xp_error {
    error   result; set error->size before the call
 
  Every thread has its own refusals. It remembers the last one of each of the four hands that have
- refused a call of this thread most recently. Refusals without a usable handle count for no hand. A
- call that succeeds does not change the refusals.
+ refused a call of this thread most recently. The refusal of a call without a usable handle belongs to no
+ hand, and only hand = null returns it. A call that succeeds does not change the refusals.
 
  Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
 
@@ -487,10 +486,10 @@ sun2xp_hand *sun2xp_default_hand(void);
 
  All three angles take effect together. From the next cycle on the anchor of the fingertip's spring moves
  to position, along a straight line in joint angles and at a bounded speed. The stiffness is the one sent
- last. When the anchor is at position, tip is the place that the fingertip has there, and p its present
- place, the force is Kx (tip - p) at any distance. With controller.law = "report" the finger follows the
- law of the report, which holds for small distances. The call does not wait until the finger arrives.
- sun2xp_limits reads the joint limits.
+ last. When the anchor is at position, the force of the fingertip is Kx (tip - p) at any distance: tip is
+ the place of the fingertip at the angles position, and p is its present place. With controller.law =
+ "report" the finger follows the law of the report, which holds for small distances. The call does not
+ wait until the finger arrives. sun2xp_limits reads the joint limits.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -576,12 +575,12 @@ int sun2xp_position(sun2xp_hand *hand, int finger, double *position);
  Result of sun2xp_tip. Vectors are in the finger's frame.
 
  force is computed from the measured tensions, so it includes friction, weight and inertia of the finger.
- It is never NaN, and is zero along directions that the joints cannot measure, of which there are some
- near singular poses. contact_force is also without constant errors of the gauges, and is zero while the
- finger is not running. stiffness is the fraction of Kx that is in force, plus what joint limits,
- nearness to the axis of joint 0 and the rotational stiffness of a contact add. It is zero along
- directions that the joints cannot measure, and while the finger is not running. slide_speed is that of a
- tip that slides on the object, or moves it, while touching is 1.
+ It is never NaN. Near singular poses there are directions that the joints cannot measure. Along these,
+ force and stiffness are zero. contact_force does not contain constant errors of the gauges. It is zero
+ while the finger is not running. stiffness is a sum: the part of Kx that is in force, and what the joint
+ limits, a tip near the axis of joint 0 and the rotational stiffness of a contact add. It is zero while
+ the finger is not running. slide_speed is 0 while touching is 0. While touching is 1, the tip slides on
+ the object with this speed, or moves the object with it.
  */
 struct sun2xp_tip {
     size_t size;                            /* sizeof (struct sun2xp_tip), set before the call. */
@@ -780,8 +779,8 @@ int sun2xp_send_joint_stiffness(sun2xp_hand *hand, int finger, const double *sti
  The torque acts in addition to the spring of Kx, of a contact or of sun2xp_send_joint_stiffness, until
  the next call replaces it; zero ends it. It takes effect like Kx, without a jump. If the stiffness is
  zero, the finger is controlled by torque alone: a free finger then moves to its joint limits, at a speed
- that only damping and friction limit. A fault, a calibration, the reactions of reflexes that hold,
- retract or soften the finger, and a set point that expires end the torque.
+ that only damping and friction limit. The torque also ends at a fault, at a calibration, when a set point
+ expires, and when a reflex holds, retracts or softens the finger.
 
  A torque is refused if it needs more tension than a tendon and its motor permit. If the spring, the
  compensation of gravity and the torque together need more, the servo scales their sum down.
@@ -808,15 +807,17 @@ int sun2xp_send_joint_torque(sun2xp_hand *hand, int finger, const double *torque
 
 #define SUN2XP_WAIT_ARRIVED 1               /* Every joint has been within finger.events.arrived_degrees of the set
                                                point sent last. */
-#define SUN2XP_WAIT_SETTLED 2               /* Since the set point sent last took effect, no joint has moved by more
-                                               than finger.events.settled_degrees for finger.events.settled_ms. */
+#define SUN2XP_WAIT_SETTLED 2               /* Since the set point sent last took effect, there was a time of
+                                               finger.events.settled_ms in which no joint moved by more than
+                                               finger.events.settled_degrees. */
 
 /* Command to one finger of a group (sun2xp_send_group). */
 struct sun2xp_set_point {
     size_t size;                            /* sizeof (struct sun2xp_set_point), the same in every set point. */
     int finger;                             /* Finger, 1 to 3. */
-    const double *position;                 /* Angles of sun2xp_send_position. Null: those in force, or tip. */
-    const double *tip;                      /* Position of sun2xp_send_tip. Null: that in force, or position. */
+    const double *position;                 /* Angles of sun2xp_send_position. Null: tip decides, or the pose stays. */
+    const double *tip;                      /* Position of sun2xp_send_tip. Null: position decides, or the pose
+                                               stays. */
     const double *stiffness;                /* Matrix of sun2xp_send_stiffness. Null: the stiffness stays. */
     double damping;                         /* Ratio of sun2xp_send_damping. 0: the damping stays. */
 };
@@ -835,8 +836,8 @@ struct sun2xp_set_point {
  gets its command.
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
- "board" the periods of the threads follow different clocks. Then a finger may follow one period later,
- about once in the time in which two of the clocks differ by a period.
+ "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
+ This happens about once whenever two of the clocks have drifted apart by another period.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -873,9 +874,9 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
    seconds   longest time to wait
 
  Returns at once if the condition holds already. For all fingers it must hold at the same time. A finger
- that an object blocks settles without arriving. With a set point of sun2xp_send_tip or a group, the joint
- angles are those that the call has computed. Other calls work meanwhile. sun2xp_close works too, and this
- call is then refused.
+ that an object blocks settles without arriving. If the set point is a position of the tip, the finger
+ arrives at the joint angles that were computed for it. Other calls work meanwhile. sun2xp_close works
+ too, and this call is then refused.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -922,7 +923,8 @@ struct sun2xp_path_pose {
  every pose at its time and rests at the last one. Between poses the joint angles, or the tip, follow a
  spline. From rest to a single position of the tip, the tip moves along a straight line. Speed,
  acceleration and jerk are continuous. Because they are fed forward, the finger follows without the lag
- of sun2xp_send_position. Kx changes linearly from the last pose that has a Kx, or from the beginning.
+ of sun2xp_send_position. Between two poses that have a Kx, Kx changes linearly. Before the first of them,
+ it changes linearly from the Kx in force at the beginning.
 
  The whole path is checked before anything moves: against the joint limits, and against speed,
  acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -969,7 +971,7 @@ int sun2xp_send_path(sun2xp_hand *hand, int finger, int count, const struct sun2
    seconds    how long the angles are valid, s; 0 for finger.motion.valid_ms
 
  Has the effect of sun2xp_send_position. If no other command of the planner arrives within seconds, the
- finger no longer follows the angles: by default it holds the pose in which it then is with the soft
+ finger no longer follows the angles. By default it then holds its present pose, with the soft stiffness
  finger.motion.expired_stiffness. With finger.motion.on_expiry = "end state" it faults.
 
  Returns 0, or a negative number with
@@ -1107,7 +1109,7 @@ int sun2xp_joint_torques(sun2xp_hand *hand, int finger, struct sun2xp_joint_torq
    finger   1 to 3
    pose     result, from the last cycle of the servo; set pose->size before the call
 
- Base and Rotation follow from the configuration, finger.base and finger.turn_degrees. By default two
+ base and rotation follow from the configuration, finger.base and finger.turn_degrees. By default two
  fingers are side by side, and the thumb is opposite to them.
 
  Returns 0, or a negative number with
@@ -1365,7 +1367,7 @@ int sun2xp_adjust(sun2xp_hand *hand, int finger, const char *keys);
 #define SUN2XP_STATE_FAULTED 2              /* The finger has stopped because of a fault. Its motors are in the
                                                configured end state. Calls for the finger are refused with EIO until
                                                sun2xp_recover, or sun2xp_close and sun2xp_open. */
-#define SUN2XP_STATE_LIMP 3                 /* The motors are off after a refused calibration. Set points have no
+#define SUN2XP_STATE_LIMP 3                 /* The motors are off after a failed calibration. Set points have no
                                                effect. The finger becomes a spring again after another calibration,
                                                or after sun2xp_close and sun2xp_open. */
 #define SUN2XP_STATE_CALIBRATING 4          /* sun2xp_zero or sun2xp_identify moves the finger. Set points have no
@@ -1380,10 +1382,11 @@ int sun2xp_adjust(sun2xp_hand *hand, int finger, const char *keys);
  Result of sun2xp_status.
 
  measured_rate is the cycles divided by the time up to this call: it falls while the servo does not run.
- The delays count since sun2xp_open or sun2xp_reset_timing. torque_scale keeps the direction of the
- torque. stiffness_scale is below 1 in poses in which the tendons cannot provide the whole Kx, for
- example near the straight pose. A joint beyond its limit can reduce it too, because the spring of the
- limit needs a part of what the tendons provide. sun2xp_tip gives the stiffness that results.
+ The delays count since sun2xp_open or sun2xp_reset_timing. torque_scale applies to all joints alike,
+ so the torque keeps its direction. stiffness_scale is below 1 in poses in which the tendons cannot provide
+ the whole Kx, for example near the straight pose. A joint beyond its limit can reduce it too, because the
+ spring of the limit needs a part of what the tendons provide. sun2xp_tip gives the stiffness that
+ results.
  */
 struct sun2xp_status {
     size_t size;                            /* sizeof (struct sun2xp_status), set before the call. */
@@ -1420,7 +1423,7 @@ struct sun2xp_status {
    status   result; set status->size before the call
 
  Works on a faulted finger too. A servo thread does not run while a thread with a higher priority
- occupies its core, or while a debugger stops it. Then State stays that of the last cycle, and Cycles
+ occupies its core, or while a debugger stops it. Then state stays that of the last cycle, and cycles
  does not grow. skipped_periods grows with every period, so a planner can compare it with an earlier
  value to compute how old the pose of sun2xp_position is.
 
@@ -1957,22 +1960,23 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 
 /* ---- REFLEXES ---------------------------------------------------------------------------------------------------- */
 
-#define SUN2XP_WHEN_EVENT 1                 /* An event of the finger: Event. */
-#define SUN2XP_WHEN_OTHER_FINGER 2          /* An event of another finger: Event and Finger. */
-#define SUN2XP_WHEN_FORCE_ABOVE 3           /* The force of the surroundings on the tip is above Bound, N. */
-#define SUN2XP_WHEN_TENSION_ABOVE 4         /* The tension of any tendon is above Bound, N. */
-#define SUN2XP_WHEN_TENSION_BELOW 5         /* The tension of any tendon is below Bound, N. */
-#define SUN2XP_WHEN_JOINT_ABOVE 6           /* The angle of Joint is above Bound, rad. */
-#define SUN2XP_WHEN_JOINT_BELOW 7           /* The angle of Joint is below Bound, rad. */
-#define SUN2XP_WHEN_LINK_LOST 8             /* The board has not replied for Bound s. */
-#define SUN2XP_WHEN_PLANNER_SILENT 9        /* The planner has sent no set point for Bound s. */
+#define SUN2XP_WHEN_EVENT 1                 /* An event of the finger occurs. The member event is its kind. */
+#define SUN2XP_WHEN_OTHER_FINGER 2          /* An event of another finger occurs. The members event and finger are
+                                               its kind and that finger. */
+#define SUN2XP_WHEN_FORCE_ABOVE 3           /* The force of the surroundings on the tip is above bound, N. */
+#define SUN2XP_WHEN_TENSION_ABOVE 4         /* The tension of any tendon is above bound, N. */
+#define SUN2XP_WHEN_TENSION_BELOW 5         /* The tension of any tendon is below bound, N. */
+#define SUN2XP_WHEN_JOINT_ABOVE 6           /* The angle of joint is above bound, rad. */
+#define SUN2XP_WHEN_JOINT_BELOW 7           /* The angle of joint is below bound, rad. */
+#define SUN2XP_WHEN_LINK_LOST 8             /* The board has not replied for the time bound, s. */
+#define SUN2XP_WHEN_PLANNER_SILENT 9        /* The planner has sent no set point for the time bound, s. */
 #define SUN2XP_THEN_STOP 1                  /* The finger stops with a fault. */
 #define SUN2XP_THEN_HOLD 2                  /* The finger stays where it is. */
-#define SUN2XP_THEN_SOFTEN 3                /* The tip gets the stiffness Kx. */
-#define SUN2XP_THEN_RETRACT 4               /* The finger goes to Pos. */
-#define SUN2XP_THEN_GRIP 5                  /* The tip presses harder by Value, N, but not harder than Most, N. It
+#define SUN2XP_THEN_SOFTEN 3                /* The tip gets the member stiffness. */
+#define SUN2XP_THEN_RETRACT 4               /* The finger goes to position. */
+#define SUN2XP_THEN_GRIP 5                  /* The tip presses harder by value, N, but with at most largest, N. This
                                                needs a Kx without an eigenvalue of 0. */
-#define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio Value. */
+#define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio value. */
 
 /*
  A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.

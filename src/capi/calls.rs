@@ -78,11 +78,12 @@ pub extern "C" fn CloseHand() -> c_int {
 ///
 /// All three angles take effect together. From the next cycle on the anchor of the fingertip's spring
 /// moves to Pos, along a straight line in joint angles and at a bounded speed. The stiffness is the one
-/// sent last. When the anchor is at Pos, Tip is the position that the fingertip has there, and p its
-/// present position, the force is Kx (Tip - p) at any distance. With controller.law = "report" the
-/// finger follows the law of the report, which holds for small distances. The call does not wait until
-/// the finger arrives; GetPos reads where it is. The limits are the configured joint limits, by default
-/// -1.0472 to 1.0472 for joint 0, -0.5236 to 1.7453 for joint 1 and 0.0873 to 2.0944 for joint 2.
+/// sent last. When the anchor is at Pos, the force of the fingertip is Kx (Tip - p) at any distance: Tip
+/// is the position of the fingertip at the angles Pos, and p is its present position. With
+/// controller.law = "report" the finger follows the law of the report, which holds for small distances.
+/// The call does not wait until the finger arrives; GetPos reads where it is. The limits are the
+/// configured joint limits, by default -1.0472 to 1.0472 for joint 0, -0.5236 to 1.7453 for joint 1 and
+/// 0.0873 to 2.0944 for joint 2.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child

@@ -12,7 +12,7 @@ use std::ffi::{c_char, c_int};
 
 /// A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread.
 ///
-/// remedy is empty if the text has another remedy than calls.
+/// remedy names calls only. It is empty if no call helps. The text then contains the remedy.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_error {
@@ -36,8 +36,8 @@ pub struct sun2xp_error {
 ///   error   result; set error->size before the call
 ///
 /// Every thread has its own refusals. It remembers the last one of each of the four hands that have
-/// refused a call of this thread most recently. Refusals without a usable handle count for no hand. A
-/// call that succeeds does not change the refusals.
+/// refused a call of this thread most recently. The refusal of a call without a usable handle belongs to no
+/// hand, and only hand = null returns it. A call that succeeds does not change the refusals.
 ///
 /// Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
 ///

@@ -49,7 +49,7 @@ pub const SUN2XP_ERROR_TIMED_OUT: c_int = 14;
 /// A calibration failed.
 pub const SUN2XP_ERROR_CALIBRATION: c_int = 15;
 
-/// The hand has not what the call needs, such as a simulated finger or object.
+/// The hand lacks what the call needs, such as a simulated finger or object.
 pub const SUN2XP_ERROR_NOT_SUPPORTED: c_int = 16;
 
 /// There is no such record or reflex.

@@ -4,7 +4,7 @@ use crate::model::configuration::FINGERS;
 use std::ffi::c_int;
 use std::ops::RangeInclusive;
 
-/// Takes all fingers of a hand, where the entry of a call says so. Every other call refuses it.
+/// All fingers of a hand. Only calls whose entries say so accept it.
 pub const SUN2XP_ALL_FINGERS: c_int = 0;
 
 /// The fingers of a number that may be SUN2XP_ALL_FINGERS. The hand refuses numbers that do not exist.

@@ -17,12 +17,12 @@ use std::ffi::c_int;
 /// Result of sun2xp_tip. Vectors are in the finger's frame.
 ///
 /// force is computed from the measured tensions, so it includes friction, weight and inertia of the finger.
-/// It is never NaN, and is zero along directions that the joints cannot measure, of which there are some
-/// near singular poses. contact_force is also without constant errors of the gauges, and is zero while the
-/// finger is not running. stiffness is the fraction of Kx that is in force, plus what joint limits,
-/// nearness to the axis of joint 0 and the rotational stiffness of a contact add. It is zero along
-/// directions that the joints cannot measure, and while the finger is not running. slide_speed is that of a
-/// tip that slides on the object, or moves it, while touching is 1.
+/// It is never NaN. Near singular poses there are directions that the joints cannot measure. Along these,
+/// force and stiffness are zero. contact_force does not contain constant errors of the gauges. It is zero
+/// while the finger is not running. stiffness is a sum: the part of Kx that is in force, and what the joint
+/// limits, a tip near the axis of joint 0 and the rotational stiffness of a contact add. It is zero while
+/// the finger is not running. slide_speed is 0 while touching is 0. While touching is 1, the tip slides on
+/// the object with this speed, or moves the object with it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_tip {

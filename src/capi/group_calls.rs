@@ -19,8 +19,8 @@ use std::time::Duration;
 /// Every joint has been within finger.events.arrived_degrees of the set point sent last.
 pub const SUN2XP_WAIT_ARRIVED: c_int = 1;
 
-/// Since the set point sent last took effect, no joint has moved by more than finger.events.settled_degrees
-/// for finger.events.settled_ms.
+/// Since the set point sent last took effect, there was a time of finger.events.settled_ms in which no joint
+/// moved by more than finger.events.settled_degrees.
 pub const SUN2XP_WAIT_SETTLED: c_int = 2;
 
 /// Command to one finger of a group (sun2xp_send_group).
@@ -31,9 +31,9 @@ pub struct sun2xp_set_point {
     pub size: usize,
     /// Finger, 1 to 3.
     pub finger: c_int,
-    /// Angles of sun2xp_send_position. Null: those in force, or tip.
+    /// Angles of sun2xp_send_position. Null: tip decides, or the pose stays.
     pub position: *const f64,
-    /// Position of sun2xp_send_tip. Null: that in force, or position.
+    /// Position of sun2xp_send_tip. Null: position decides, or the pose stays.
     pub tip: *const f64,
     /// Matrix of sun2xp_send_stiffness. Null: the stiffness stays.
     pub stiffness: *const f64,
@@ -54,8 +54,8 @@ pub struct sun2xp_set_point {
 /// gets its command.
 ///
 /// If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
-/// "board" the periods of the threads follow different clocks. Then a finger may follow one period later,
-/// about once in the time in which two of the clocks differ by a period.
+/// "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
+/// This happens about once whenever two of the clocks have drifted apart by another period.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -108,9 +108,9 @@ pub unsafe extern "C" fn sun2xp_send_group(
 ///   seconds   longest time to wait
 ///
 /// Returns at once if the condition holds already. For all fingers it must hold at the same time. A finger
-/// that an object blocks settles without arriving. With a set point of sun2xp_send_tip or a group, the joint
-/// angles are those that the call has computed. Other calls work meanwhile. sun2xp_close works too, and this
-/// call is then refused.
+/// that an object blocks settles without arriving. If the set point is a position of the tip, the finger
+/// arrives at the joint angles that were computed for it. Other calls work meanwhile. sun2xp_close works
+/// too, and this call is then refused.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

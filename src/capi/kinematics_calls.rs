@@ -189,7 +189,7 @@ pub unsafe extern "C" fn sun2xp_joint_torques(
 ///   finger   1 to 3
 ///   pose     result, from the last cycle of the servo; set pose->size before the call
 ///
-/// Base and Rotation follow from the configuration, finger.base and finger.turn_degrees. By default two
+/// base and rotation follow from the configuration, finger.base and finger.turn_degrees. By default two
 /// fingers are side by side, and the thumb is opposite to them.
 ///
 /// Returns 0, or a negative number with

@@ -47,7 +47,8 @@ pub struct sun2xp_path_pose {
 /// every pose at its time and rests at the last one. Between poses the joint angles, or the tip, follow a
 /// spline. From rest to a single position of the tip, the tip moves along a straight line. Speed,
 /// acceleration and jerk are continuous. Because they are fed forward, the finger follows without the lag
-/// of sun2xp_send_position. Kx changes linearly from the last pose that has a Kx, or from the beginning.
+/// of sun2xp_send_position. Between two poses that have a Kx, Kx changes linearly. Before the first of them,
+/// it changes linearly from the Kx in force at the beginning.
 ///
 /// The whole path is checked before anything moves: against the joint limits, and against speed,
 /// acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -113,7 +114,7 @@ pub unsafe extern "C" fn sun2xp_send_path(
 ///   seconds    how long the angles are valid, s; 0 for finger.motion.valid_ms
 ///
 /// Has the effect of sun2xp_send_position. If no other command of the planner arrives within seconds, the
-/// finger no longer follows the angles: by default it holds the pose in which it then is with the soft
+/// finger no longer follows the angles. By default it then holds its present pose, with the soft stiffness
 /// finger.motion.expired_stiffness. With finger.motion.on_expiry = "end state" it faults.
 ///
 /// Returns 0, or a negative number with

@@ -13,10 +13,10 @@ use std::ffi::c_int;
 ///
 /// All three angles take effect together. From the next cycle on the anchor of the fingertip's spring moves
 /// to position, along a straight line in joint angles and at a bounded speed. The stiffness is the one sent
-/// last. When the anchor is at position, tip is the place that the fingertip has there, and p its present
-/// place, the force is Kx (tip - p) at any distance. With controller.law = "report" the finger follows the
-/// law of the report, which holds for small distances. The call does not wait until the finger arrives.
-/// sun2xp_limits reads the joint limits.
+/// last. When the anchor is at position, the force of the fingertip is Kx (tip - p) at any distance: tip is
+/// the place of the fingertip at the angles position, and p is its present place. With controller.law =
+/// "report" the finger follows the law of the report, which holds for small distances. The call does not
+/// wait until the finger arrives. sun2xp_limits reads the joint limits.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -15,31 +15,31 @@ use crate::model::FingerNumber;
 use nalgebra::{Matrix3, Vector3};
 use std::ffi::{c_double, c_int};
 
-/// An event of the finger: Event.
+/// An event of the finger occurs. The member event is its kind.
 pub const SUN2XP_WHEN_EVENT: c_int = 1;
 
-/// An event of another finger: Event and Finger.
+/// An event of another finger occurs. The members event and finger are its kind and that finger.
 pub const SUN2XP_WHEN_OTHER_FINGER: c_int = 2;
 
-/// The force of the surroundings on the tip is above Bound, N.
+/// The force of the surroundings on the tip is above bound, N.
 pub const SUN2XP_WHEN_FORCE_ABOVE: c_int = 3;
 
-/// The tension of any tendon is above Bound, N.
+/// The tension of any tendon is above bound, N.
 pub const SUN2XP_WHEN_TENSION_ABOVE: c_int = 4;
 
-/// The tension of any tendon is below Bound, N.
+/// The tension of any tendon is below bound, N.
 pub const SUN2XP_WHEN_TENSION_BELOW: c_int = 5;
 
-/// The angle of Joint is above Bound, rad.
+/// The angle of joint is above bound, rad.
 pub const SUN2XP_WHEN_JOINT_ABOVE: c_int = 6;
 
-/// The angle of Joint is below Bound, rad.
+/// The angle of joint is below bound, rad.
 pub const SUN2XP_WHEN_JOINT_BELOW: c_int = 7;
 
-/// The board has not replied for Bound s.
+/// The board has not replied for the time bound, s.
 pub const SUN2XP_WHEN_LINK_LOST: c_int = 8;
 
-/// The planner has sent no set point for Bound s.
+/// The planner has sent no set point for the time bound, s.
 pub const SUN2XP_WHEN_PLANNER_SILENT: c_int = 9;
 
 /// The finger stops with a fault.
@@ -48,17 +48,17 @@ pub const SUN2XP_THEN_STOP: c_int = 1;
 /// The finger stays where it is.
 pub const SUN2XP_THEN_HOLD: c_int = 2;
 
-/// The tip gets the stiffness Kx.
+/// The tip gets the member stiffness.
 pub const SUN2XP_THEN_SOFTEN: c_int = 3;
 
-/// The finger goes to Pos.
+/// The finger goes to position.
 pub const SUN2XP_THEN_RETRACT: c_int = 4;
 
-/// The tip presses harder by Value, N, but not harder than Most, N. It needs a Kx without an eigenvalue of
-/// 0.
+/// The tip presses harder by value, N, but with at most largest, N. This needs a Kx without an eigenvalue
+/// of 0.
 pub const SUN2XP_THEN_GRIP: c_int = 5;
 
-/// The tip gets the damping ratio Value.
+/// The tip gets the damping ratio value.
 pub const SUN2XP_THEN_DAMP: c_int = 6;
 
 /// A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.

@@ -66,8 +66,8 @@ pub unsafe extern "C" fn sun2xp_send_joint_stiffness(
 /// The torque acts in addition to the spring of Kx, of a contact or of sun2xp_send_joint_stiffness, until
 /// the next call replaces it; zero ends it. It takes effect like Kx, without a jump. If the stiffness is
 /// zero, the finger is controlled by torque alone: a free finger then moves to its joint limits, at a speed
-/// that only damping and friction limit. A fault, a calibration, the reactions of reflexes that hold,
-/// retract or soften the finger, and a set point that expires end the torque.
+/// that only damping and friction limit. The torque also ends at a fault, at a calibration, when a set point
+/// expires, and when a reflex holds, retracts or softens the finger.
 ///
 /// A torque is refused if it needs more tension than a tendon and its motor permit. If the spring, the
 /// compensation of gravity and the torque together need more, the servo scales their sum down.

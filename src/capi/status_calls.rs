@@ -17,7 +17,7 @@ pub const SUN2XP_STATE_RUNNING: c_int = 1;
 /// finger are refused with EIO until sun2xp_recover, or sun2xp_close and sun2xp_open.
 pub const SUN2XP_STATE_FAULTED: c_int = 2;
 
-/// The motors are off after a refused calibration. Set points have no effect. The finger becomes a spring
+/// The motors are off after a failed calibration. Set points have no effect. The finger becomes a spring
 /// again after another calibration, or after sun2xp_close and sun2xp_open.
 pub const SUN2XP_STATE_LIMP: c_int = 3;
 
@@ -34,10 +34,11 @@ pub const SUN2XP_STATE_CLOSED: c_int = 6;
 /// Result of sun2xp_status.
 ///
 /// measured_rate is the cycles divided by the time up to this call: it falls while the servo does not run.
-/// The delays count since sun2xp_open or sun2xp_reset_timing. torque_scale keeps the direction of the
-/// torque. stiffness_scale is below 1 in poses in which the tendons cannot provide the whole Kx, for
-/// example near the straight pose. A joint beyond its limit can reduce it too, because the spring of the
-/// limit needs a part of what the tendons provide. sun2xp_tip gives the stiffness that results.
+/// The delays count since sun2xp_open or sun2xp_reset_timing. torque_scale applies to all joints alike,
+/// so the torque keeps its direction. stiffness_scale is below 1 in poses in which the tendons cannot provide
+/// the whole Kx, for example near the straight pose. A joint beyond its limit can reduce it too, because the
+/// spring of the limit needs a part of what the tendons provide. sun2xp_tip gives the stiffness that
+/// results.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_status {
@@ -87,7 +88,7 @@ pub struct sun2xp_status {
 ///   status   result; set status->size before the call
 ///
 /// Works on a faulted finger too. A servo thread does not run while a thread with a higher priority
-/// occupies its core, or while a debugger stops it. Then State stays that of the last cycle, and Cycles
+/// occupies its core, or while a debugger stops it. Then state stays that of the last cycle, and cycles
 /// does not grow. skipped_periods grows with every period, so a planner can compare it with an earlier
 /// value to compute how old the pose of sun2xp_position is.
 ///

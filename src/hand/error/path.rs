@@ -21,8 +21,9 @@ pub enum PathError {
     Valid(f64),
     /// A time is not later than the one before.
     #[error(
-        "the time of pose {pose} of the path of finger {finger} is {time} s after {before} s: times count from the \
-         beginning of the path, and each must be at least {least} s later than the one before and at most {most} s"
+        "the time of pose {pose} of the path of finger {finger} is {time} s, and the time before it is {before} s: \
+         times count from the beginning of the path. Each must be at least {least} s later than the one before, and at \
+         most {most} s"
     )]
     Time {
         /// The finger.
@@ -82,7 +83,7 @@ pub enum PathError {
     #[error(
         "on the way to pose {pose}, the {quantity} of joint {joint} of finger {finger} would reach {value:.1} {unit}, \
          above `finger.motion.{quantity}` = {limit}: multiply all times by {factor:.2}, begin and end more gently, or \
-         set `hand.out_of_range = \"clamp\"`, which does so"
+         set `hand.out_of_range = \"clamp\"`, which multiplies the times"
     )]
     TooFast {
         /// The finger.
@@ -105,7 +106,7 @@ pub enum PathError {
     /// A tip path cannot be followed exactly.
     #[error(
         "on the way to pose {pose}, the tip of finger {finger} would leave the path by {deviation:.3} cm, because the \
-         path is long for a table of {pieces} pieces: send it in two parts"
+         path is too long for a table of {pieces} pieces: send it in two parts"
     )]
     Coarse {
         /// The finger.

@@ -142,7 +142,7 @@ pub enum SetPointError {
     #[error("there is no condition {0} to wait for: pass SUN2XP_WAIT_ARRIVED or SUN2XP_WAIT_SETTLED")]
     NoSuchCondition(i32),
     /// A time limit is negative or NaN.
-    #[error("the time limit {0} s is not zero or positive")]
+    #[error("the time limit of {0} s is negative or not a number: pass zero or a positive time")]
     NoSuchLimit(f64),
     /// A command of a group has joint angles and a position of the tip.
     #[error("the command for finger {0} has joint angles and a position of the tip: leave one of them out")]
