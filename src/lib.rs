@@ -90,6 +90,11 @@ pub use model::configuration::{
 pub use model::{Contact, ContactError, FingerNumber, Part};
 pub use realtime::Distribution;
 
+/// Boards that a configuration names by their unique numbers.
+pub mod boards {
+    pub use crate::model::configuration::BoardNumber;
+}
+
 /// Contact without touch sensors: the thresholds of `[finger.contact]`.
 pub mod contact {
     pub use crate::model::configuration::ConfiguredContact;

@@ -1,11 +1,12 @@
 //! A hand that opens only some fingers: the ports of the others are not touched.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use sun2xp::board::Port;
 use sun2xp::finger::Stage;
-use sun2xp::hand::{Fingers, Hand, HandError, Recovering};
+use sun2xp::hand::{FingerCommand, Fingers, FoundFinger, Hand, HandError, Recovering, Until, search_boards};
 use sun2xp::model::FingerNumber;
-use sun2xp::model::configuration::Configuration;
+use sun2xp::model::configuration::{BoardNumber, Configuration};
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
@@ -77,4 +78,88 @@ fn one_of_three_fingers_on_a_port() {
     // Nothing was found for finger 2, and nothing can be found for a finger that is not open.
     assert!(!hand.store_calibration(2).expect("nothing to store"));
     assert!(matches!(hand.store_calibration(1), Err(HandError::NotOpened(FingerNumber::ONE))));
+}
+
+#[test]
+fn a_hand_of_one_finger_is_a_hand() {
+    let mut configuration = slow();
+    configuration.hand.fingers = fingers(&[2]);
+    // Tables of fingers that the hand does not have are for later. Their threads and ports disturb nothing.
+    for absent in [0, 2] {
+        (configuration.fingers[absent].port, configuration.fingers[absent].thread) = (NOWHERE.into(), 2);
+        configuration.fingers[absent].priority = 1;
+    }
+    let hand = Hand::open(configuration.clone()).expect("open");
+    assert_eq!(hand.fingers(), fingers(&[2]));
+    hand.send_group(&[FingerCommand::new(2).joints([0.1, 0.5, 1.0])]).expect("sent");
+    hand.wait(&[2], Until::Settled, Duration::from_secs(20)).expect("settled");
+    for refused in [
+        hand.send_position(1, [0.0, 0.5, 1.0]).err(),
+        hand.send_group(&[FingerCommand::new(2), FingerCommand::new(3)]).err(),
+        hand.wait(&[1, 2], Until::Settled, Duration::ZERO).err(),
+        hand.status(3).err(),
+        hand.stop(1).err(),
+        Recovering::begin(&hand, 3).err(),
+    ] {
+        let refused = refused.expect("refused");
+        assert!(matches!(refused, HandError::NotInHand { .. }), "{refused}");
+        assert!(refused.to_string().contains("hand.fingers = [2]"), "{refused}");
+        assert_eq!(refused.errno(), libc::ENODEV);
+    }
+    hand.close();
+    let other = Hand::open_limp(configuration, None, fingers(&[1, 2])).err().expect("refused");
+    assert!(matches!(other, HandError::NotInHand { finger: FingerNumber::ONE, .. }), "{other}");
+}
+
+/// A simulated board, with a link to its port in a folder.
+fn board(link: &Path, members: &[FingerNumber], number: u32) -> SimulatedPort {
+    let board = SimulatedBoard::new(&slow(), members).expect("a board").numbered(number);
+    let port = SimulatedPort::start(board, Pace::patient(500.0), Priority::default()).expect("a port");
+    std::os::unix::fs::symlink(port.path(), link).expect("a link");
+    port
+}
+
+#[test]
+fn a_board_is_found_by_its_unique_number() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [left, right, used] = ["left", "right", "used"].map(|name| folder.path().join(name));
+    let _left = board(&left, &[FingerNumber::ONE, FingerNumber::TWO], 7);
+    let _right = board(&right, &[FingerNumber::THREE], 8);
+    let _used = board(&used, &[FingerNumber::THREE], 9);
+    let _user = Port::open(&used, 1_000_000).expect("free");
+    let patterns = [folder.path().join("*").display().to_string()];
+    let found = search_boards(&patterns, &[1_000_000]);
+    let numbers: Vec<Vec<(u8, BoardNumber)>> = found
+        .iter()
+        .map(|port| {
+            let number = |found: &FoundFinger| (found.address, BoardNumber(found.identity.unique_number));
+            port.answer.iter().flatten().map(number).collect()
+        })
+        .collect();
+    let addresses: Vec<Vec<u8>> = numbers.iter().map(|port| port.iter().map(|found| found.0).collect()).collect();
+    assert_eq!(addresses, [vec![1, 2], vec![3], vec![]], "{found:?}");
+
+    let mut configuration = slow();
+    configuration.hand.search_ports = patterns.into();
+    let places = [numbers[0][0].1, numbers[0][1].1, numbers[1][0].1];
+    for (finger, number) in configuration.fingers.iter_mut().zip(places) {
+        (finger.board, finger.baud) = (Some(number), 2_000_000);
+    }
+    let threads = Hand::open_limp(configuration.clone(), None, Fingers::ALL).err().expect("two threads on a port");
+    assert!(threads.to_string().contains("set thread = 1"), "{threads}");
+    configuration.fingers[1].thread = 1;
+    let hand = Hand::open_limp(configuration.clone(), None, Fingers::ALL).expect("open");
+    for (finger, path) in (1..).zip([&left, &left, &right]) {
+        assert_eq!(hand.calibrated(finger).expect("open").port, path.display().to_string());
+    }
+    hand.close();
+
+    configuration.fingers[2].board = Some(BoardNumber([0xAB; 12]));
+    let begun = Instant::now();
+    let missing = Hand::open_limp(configuration, None, Fingers::ALL).err().expect("no such board");
+    assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
+    let text = missing.to_string();
+    let right_has = format!("{} has {}", right.display(), places[2]);
+    let used = format!("{} is in use", used.display());
+    assert!(text.contains("finger.3.board") && text.contains(&right_has) && text.contains(&used), "{text}");
 }

@@ -60,6 +60,7 @@ impl Refusal {
                 HandError::NotThereInTime(_) => "TimedOut",
                 HandError::NoSuchFinger(_)
                 | HandError::NotOpened(_)
+                | HandError::NotInHand { .. }
                 | HandError::NoSuchElement { .. }
                 | HandError::SetPoint(_)
                 | HandError::Path(_)

@@ -85,6 +85,12 @@ impl Hand {
         Ok(Self(shared))
     }
 
+    /// The numbers of the fingers that the hand has.
+    #[getter]
+    fn fingers(&self, py: Python<'_>) -> PyResult<Vec<i32>> {
+        self.quick(py, |hand| Ok(hand.fingers().numbers().collect()))
+    }
+
     /// Whether the hand is closed.
     #[getter]
     fn closed(&self) -> bool {

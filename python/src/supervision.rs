@@ -48,10 +48,7 @@ impl Hand {
     fn stop(&self, py: Python<'_>, finger: Option<i32>) -> PyResult<()> {
         self.quick(py, |hand| match finger {
             Some(finger) => hand.stop(finger),
-            None => (1..=3).try_for_each(|finger| match hand.stop(finger) {
-                Err(sun2xp::HandError::NotOpened(_)) => Ok(()),
-                stopped => stopped,
-            }),
+            None => hand.fingers().numbers().try_for_each(|finger| hand.stop(finger)),
         })
     }
 

@@ -79,12 +79,15 @@ pub fn of_hand(error: &HandError) -> c_int {
         HandError::NoSuchFinger(_) | HandError::NoSuchStage(_) | HandError::NoSuchElement { .. } => {
             SUN2XP_ERROR_ARGUMENT
         }
-        HandError::NotOpened(_) => SUN2XP_ERROR_NOT_SUPPORTED,
+        HandError::NotOpened(_) | HandError::NotInHand { .. } => SUN2XP_ERROR_NOT_SUPPORTED,
         HandError::SetPoint(_) | HandError::Path(_) | HandError::Reflex(_) => by_errno(error.errno()),
         HandError::Configuration(_) if error.errno() == libc::ERANGE => SUN2XP_ERROR_LIMIT,
         HandError::Configuration(_) | HandError::NotStored { .. } => SUN2XP_ERROR_CONFIGURATION,
         HandError::Recovery(_) if error.errno() == libc::EIO => SUN2XP_ERROR_FAULTED,
-        HandError::Recovery(_) | HandError::Link { .. } | HandError::SameNumber { .. } => SUN2XP_ERROR_PORT,
+        HandError::Recovery(_)
+        | HandError::Link { .. }
+        | HandError::SameNumber { .. }
+        | HandError::NoSuchBoard { .. } => SUN2XP_ERROR_PORT,
         HandError::Faulted { .. } | HandError::FaultedAtOpening { .. } => SUN2XP_ERROR_FAULTED,
         HandError::SimulatedPort(_) | HandError::System { .. } | HandError::BlackBox { .. } => SUN2XP_ERROR_SYSTEM,
         HandError::NotRealTime { .. } => SUN2XP_ERROR_REAL_TIME,

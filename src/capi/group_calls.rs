@@ -131,7 +131,8 @@ pub extern "C" fn sun2xp_wait(hand: *mut sun2xp_hand, finger: c_int, until: c_in
     let hand = Handle::of(hand);
     delegated("sun2xp_wait", hand, MEMORY_OF_THREAD, || {
         Ok(move || {
-            let all: Vec<c_int> = fingers(finger).collect();
+            let all: Vec<c_int> =
+                hand_table::with(hand, |hand| Ok::<_, hand::HandError>(fingers(hand, finger).collect()))?;
             let exists = |&finger: &c_int| hand_table::with(hand, |hand| hand.report(finger).map(drop));
             all.iter().try_for_each(exists)?;
             let until = match until {

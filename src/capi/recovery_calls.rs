@@ -65,7 +65,7 @@ pub extern "C" fn sun2xp_stop_all() -> c_int {
 pub extern "C" fn sun2xp_stop(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_stop", hand, || {
-        hand_table::with(hand, |hand| fingers(finger).try_for_each(|finger| hand.stop(finger)))
+        hand_table::with(hand, |hand| fingers(hand, finger).try_for_each(|finger| hand.stop(finger)))
     })
 }
 
@@ -106,6 +106,9 @@ pub extern "C" fn sun2xp_stop(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
 pub extern "C" fn sun2xp_recover(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
     let hand = Handle::of(hand);
     delegated("sun2xp_recover", hand, MEMORY_OF_CALL, || {
-        Ok(move || fingers(finger).try_for_each(|finger| long_operations::recover(hand, finger)))
+        Ok(move || {
+            let mut all = hand_table::with(hand, |hand| Ok::<_, hand::HandError>(fingers(hand, finger)))?;
+            all.try_for_each(|finger| long_operations::recover(hand, finger))
+        })
     })
 }

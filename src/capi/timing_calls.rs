@@ -141,7 +141,7 @@ pub unsafe extern "C" fn sun2xp_timing(
 pub extern "C" fn sun2xp_reset_timing(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_reset_timing", hand, || {
-        hand_table::with(hand, |hand| fingers(finger).try_for_each(|finger| hand.reset_timing(finger)))
+        hand_table::with(hand, |hand| fingers(hand, finger).try_for_each(|finger| hand.reset_timing(finger)))
     })
 }
 

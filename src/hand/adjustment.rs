@@ -18,6 +18,7 @@ use toml_edit::{Document, Item, Table};
 /// that define the units of the servo's state, and those of the simulated finger.
 const PERMANENT: &[&str] = &[
     "port",
+    "board",
     "baud",
     "reconnect",
     "address",

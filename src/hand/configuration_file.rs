@@ -7,10 +7,10 @@ mod values;
 mod wrong;
 
 use crate::files::{raised_privileges, read_regular_file};
+use crate::hand::ConfigurationError;
 use crate::hand::notice::print_notice;
-use crate::hand::{ConfigurationError, Fingers};
-use crate::model::ShownPath;
 use crate::model::configuration::{Configuration, FINGERS};
+use crate::model::{Fingers, ShownPath};
 use std::path::{Path, PathBuf};
 pub(super) use text::overlay;
 pub use values::deserialize;
@@ -130,7 +130,7 @@ impl Configured {
         };
         let unnamed: Vec<String> = fingers
             .members()
-            .filter(|number| !self.ports_named[number.index()])
+            .filter(|&number| self.configuration.hand.fingers.contains(number) && !self.ports_named[number.index()])
             .map(|number| number.to_string())
             .collect();
         let fingers = match unnamed.len() {
@@ -156,8 +156,10 @@ mod tests {
                 "[hand]\nrate = 500\n[finger.2.tendon]\nminimum = 6\n",
                 Some("for any finger: the whole hand is simulated"),
             ),
-            ("[finger.1]\nport = '/dev/a'\n", Some("for fingers 2 and 3: they are simulated")),
-            ("[finger]\n1.port = '/dev/a'\n3.port = '/dev/b'\n", Some("for finger 2: it is simulated")),
+            ("[finger.1]\nport = 'simulated'\n", Some("for fingers 2 and 3: they are simulated")),
+            ("[finger]\n1.port = 'simulated'\n3.port = 'simulated'\n", Some("for finger 2: it is simulated")),
+            ("[hand]\nfingers = [2]\n", Some("for finger 2: it is simulated")),
+            ("[hand]\nfingers = [1]\n[finger.1]\nport = '/dev/a'\n", None),
             ("[finger]\nport = 'simulated'\n", None),
             ("[finger]\nport = 'simulated'\n[finger.1]\nport = '/dev/a'\n", None),
             ("finger = { 1 = { port = 'simulated' }, 2.port = '/dev/b', 3.port = '/dev/c' }\n", None),
@@ -184,7 +186,7 @@ mod tests {
 
     #[test]
     fn fingers_that_are_not_opened_are_not_announced() {
-        let text = "[finger.1]\nport = '/dev/a'\n";
+        let text = "[finger.1]\nport = 'simulated'\n";
         let (configuration, ports_named) = text::parse(text).expect("usable");
         let configured = Configured { configuration, file: Some("the/file".into()), ports_named };
         assert_eq!(configured.announcement(Fingers::only(1).expect("finger 1")), None);

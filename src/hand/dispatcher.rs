@@ -15,8 +15,8 @@ use crate::hand::dispatcher::collecting::collect;
 use crate::hand::dispatcher::publishing::Publishing;
 use crate::hand::events::EventSource;
 use crate::hand::opening::Reached;
-use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredFinger};
+use crate::model::{FingerNumber, Fingers};
 use crate::realtime::{CycleStage, Distribution, Histograms, Priority, spawn};
 use crate::simulated::ObjectView;
 use crossbeam_channel::{Sender, bounded};
@@ -30,6 +30,8 @@ use std::thread::JoinHandle;
 /// Passes commands to the fingers, and collects their timings and black boxes.
 pub(super) struct Dispatcher {
     members: Arc<Vec<Member>>,
+    /// The fingers that the hand has. Not all of them need to be open.
+    fingers: Fingers,
     /// Lets the fingers of a group change in the same period.
     pub gate: GroupGate,
     collected: Arc<Vec<Mutex<Collected>>>,
@@ -37,10 +39,11 @@ pub(super) struct Dispatcher {
 }
 
 impl Dispatcher {
-    /// `fingers` are all opened fingers, in the order of their numbers. Their servos have this gate.
-    pub fn new(fingers: Vec<Reached>, gate: GroupGate) -> Self {
+    /// `opened` are all opened fingers, in the order of their numbers. Their servos have this gate. `fingers` are those
+    /// that the hand has.
+    pub fn new(opened: Vec<Reached>, fingers: Fingers, gate: GroupGate) -> Self {
         let (mut members, mut collected) = (Vec::new(), Vec::new());
-        for finger in fingers {
+        for finger in opened {
             members.push(Member {
                 number: finger.number,
                 admission: RwLock::new(finger.admission),
@@ -56,7 +59,7 @@ impl Dispatcher {
                 black_box: finger.black_box,
             }));
         }
-        Self { members: Arc::new(members), gate, collected: Arc::new(collected), collector: None }
+        Self { members: Arc::new(members), fingers, gate, collected: Arc::new(collected), collector: None }
     }
 
     /// Starts the thread that collects timings and black boxes, so that none is lost while no planner calls. The thread
@@ -211,7 +214,10 @@ impl Dispatcher {
 
     fn place(&self, finger: FingerNumber) -> Result<usize, HandError> {
         let place = self.members.iter().position(|member| member.number == finger);
-        place.ok_or(HandError::NotOpened(finger))
+        place.ok_or(match self.fingers.contains(finger) {
+            true => HandError::NotOpened(finger),
+            false => HandError::NotInHand { finger, fingers: self.fingers },
+        })
     }
 }
 

@@ -20,7 +20,8 @@ use crate::board::LinkError;
 use crate::calibration::Obstacle;
 use crate::finger::{Fault, FaultKind};
 use crate::hand::missing_permissions::MissingPermission;
-use crate::model::FingerNumber;
+use crate::model::configuration::BoardNumber;
+use crate::model::{FingerNumber, Fingers};
 use crate::model::{ShownPath, UnusableConfiguration};
 use crate::realtime::{with_remedy, with_terminal_remedy};
 use std::path::PathBuf;
@@ -36,6 +37,17 @@ pub enum HandError {
     /// The hand was opened without this finger.
     #[error("the hand was opened without finger {0}: open it with this finger")]
     NotOpened(FingerNumber),
+    /// The hand does not have this finger.
+    #[error(
+        "this hand has no finger {finger}, because its configuration has hand.fingers = {fingers}: add {finger} to \
+         hand.fingers if the finger exists"
+    )]
+    NotInHand {
+        /// The finger.
+        finger: FingerNumber,
+        /// The fingers that the hand has.
+        fingers: Fingers,
+    },
     /// The servo cycle has no stage with this number.
     #[error("there is no stage {0}: the stages of a cycle are 0 to 7")]
     NoSuchStage(i32),
@@ -94,6 +106,24 @@ pub enum HandError {
         finger: FingerNumber,
         /// What is wrong with the port or the board.
         source: LinkError,
+    },
+    /// The board that the configuration names by its unique number was not found.
+    #[error(
+        "finger {finger}: no board at {patterns} reports the number {number} of finger.{finger}.board{twice}. Found: \
+         {found}. Connect the board and switch it on, correct finger.{finger}.board, or add its port to \
+         hand.search_ports"
+    )]
+    NoSuchBoard {
+        /// The finger.
+        finger: FingerNumber,
+        /// The unique number of its board.
+        number: BoardNumber,
+        /// The patterns of the ports that were searched.
+        patterns: String,
+        /// What answered at each port.
+        found: String,
+        /// Empty, or the reason why boards with the number cannot be used.
+        twice: &'static str,
     },
     /// The boards at two ports report the same unique number.
     #[error(

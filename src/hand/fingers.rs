@@ -1,34 +1,24 @@
-//! Selects which fingers of a hand are opened.
+//! Selects which fingers of a hand are opened, by the numbers that planners use.
 
 use crate::hand::HandError;
-use crate::model::FingerNumber;
-use crate::model::configuration::FINGERS;
-
-/// A selection of at least one finger. The ports of other fingers are not opened, and calls for other fingers are
-/// refused with [`HandError::NotOpened`]. The configuration still describes the whole hand, and all of it is checked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[must_use]
-pub struct Fingers([bool; FINGERS]);
+use crate::model::configuration::ConfiguredHand;
+use crate::model::{FingerNumber, Fingers};
 
 impl Fingers {
-    /// Every finger.
-    pub const ALL: Self = Self([true; FINGERS]);
-
     /// Selects only this finger: 1, 2 or 3.
     ///
     /// # Errors
     /// There is no such finger.
     pub fn only(finger: i32) -> Result<Self, HandError> {
-        Self([false; FINGERS]).and(finger)
+        FingerNumber::try_from(finger).map(Self::one)
     }
 
     /// Adds this finger to the selection: 1, 2 or 3.
     ///
     /// # Errors
     /// There is no such finger.
-    pub fn and(mut self, finger: i32) -> Result<Self, HandError> {
-        self.0[FingerNumber::try_from(finger)?.index()] = true;
-        Ok(self)
+    pub fn and(self, finger: i32) -> Result<Self, HandError> {
+        FingerNumber::try_from(finger).map(|finger| self.with(finger))
     }
 
     /// Selects the fingers with these numbers, 1 to 3. An empty list selects every finger.
@@ -42,14 +32,18 @@ impl Fingers {
         }
     }
 
-    /// The numbers of the fingers, 1 to 3, in rising order.
-    pub fn numbers(self) -> impl Iterator<Item = i32> {
-        self.members().map(FingerNumber::get)
-    }
-
-    /// Returns the fingers, in the order of their numbers.
-    pub(super) fn members(self) -> impl Iterator<Item = FingerNumber> {
-        FingerNumber::ALL.into_iter().filter(move |finger| self.0[finger.index()])
+    /// Returns the selected fingers of a hand. [`Fingers::ALL`] selects those that the hand has.
+    ///
+    /// # Errors
+    /// Returns an error if the hand does not have a selected finger.
+    pub fn in_hand(self, hand: &ConfiguredHand) -> Result<Self, HandError> {
+        if self == Self::ALL {
+            return Ok(hand.fingers);
+        }
+        match self.members().find(|&finger| !hand.fingers.contains(finger)) {
+            None => Ok(self),
+            Some(finger) => Err(HandError::NotInHand { finger, fingers: hand.fingers }),
+        }
     }
 }
 
@@ -69,7 +63,9 @@ mod tests {
     #[test]
     fn fingers_are_counted_once_and_in_order() {
         let fingers = Fingers::only(3).and_then(|fingers| fingers.and(1)).and_then(|fingers| fingers.and(3));
-        assert_eq!(fingers.expect("fingers 1 and 3").numbers().collect::<Vec<_>>(), [1, 3]);
+        let fingers = fingers.expect("fingers 1 and 3");
+        assert_eq!(fingers.numbers().collect::<Vec<_>>(), [1, 3]);
+        assert_eq!(fingers.to_string(), "[1, 3]");
         assert_eq!(Fingers::of(&[2, 1, 2]).expect("fingers 1 and 2").numbers().collect::<Vec<_>>(), [1, 2]);
         assert_eq!(Fingers::of(&[]).expect("every finger"), Fingers::ALL);
         assert_eq!(Fingers::ALL.members().collect::<Vec<_>>(), FingerNumber::ALL);
@@ -81,5 +77,16 @@ mod tests {
             assert!(matches!(Fingers::only(number), Err(HandError::NoSuchFinger(refused)) if refused == number));
             assert!(matches!(Fingers::ALL.and(number), Err(HandError::NoSuchFinger(_))));
         }
+    }
+
+    #[test]
+    fn a_hand_opens_only_fingers_that_it_has() {
+        let fingers = Fingers::of(&[2, 3]).expect("fingers 2 and 3");
+        let hand = ConfiguredHand { fingers, ..Default::default() };
+        assert_eq!(Fingers::ALL.in_hand(&hand).expect("all of the hand"), fingers);
+        let second = Fingers::only(2).expect("finger 2");
+        assert_eq!(second.in_hand(&hand).expect("a finger of the hand"), second);
+        let refusal = Fingers::of(&[1, 2]).and_then(|fingers| fingers.in_hand(&hand)).expect_err("finger 1");
+        assert!(refusal.to_string().contains("hand.fingers = [2, 3]"), "{refusal}");
     }
 }

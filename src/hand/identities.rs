@@ -4,6 +4,7 @@
 use crate::board::protocol::Identity;
 use crate::hand::HandError;
 use crate::model::FingerNumber;
+use crate::model::configuration::BoardNumber;
 use std::path::{Path, PathBuf};
 
 /// The boards found so far.
@@ -28,7 +29,7 @@ impl Identities {
             Some(known) => Err(HandError::SameNumber {
                 fingers: [known.finger, finger],
                 ports: [known.port.clone(), port.to_owned()],
-                number: number.map(|byte| format!("{byte:02X}")).join(" "),
+                number: BoardNumber(number).to_string(),
             }),
             None => {
                 self.0.push(KnownNumber { finger, port: port.to_owned(), number });

@@ -5,6 +5,7 @@ mod adjustment;
 mod admission;
 mod black_box;
 mod black_box_file;
+mod board_search;
 mod calibrating;
 mod calibration_file;
 mod configuration_file;
@@ -39,7 +40,9 @@ mod touch;
 mod waiting;
 
 pub use crate::finger::stop_all;
+pub use crate::model::Fingers;
 pub use black_box_file::save_recording;
+pub use board_search::{FoundFinger, SearchedPort, find_boards, search_boards};
 pub use calibrating::{Calibrating, CalibrationState};
 pub use calibration_file::store_findings;
 pub use configuration_file::{
@@ -49,7 +52,6 @@ pub(crate) use error::ErrorKind;
 pub use error::{ConfigurationError, HandError, PathError, RecoveryError, ReflexError, SetPointError};
 pub use events::{EventListener, EventQueue};
 pub use faults::FingerFault;
-pub use fingers::Fingers;
 pub use fingertip::FingerTip;
 pub use found::Found;
 pub use groups::{FingerCommand, Pose};

@@ -11,15 +11,14 @@ use crate::finger::{
 };
 use crate::hand::admission::{Admission, DampingAdmission};
 use crate::hand::events::EventSource;
-use crate::hand::fingers::Fingers;
 use crate::hand::identities::Identities;
 use crate::hand::notice::print_notice;
 use crate::hand::port_repair::{KnownBoard, PortRepair};
 use crate::hand::simulated_hand::SimulatedHand;
 use crate::hand::{ConfigurationError, HandError, MotionLimits, SetPointError};
-use crate::model::FingerNumber;
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Configuration, OnFault, Unusable};
+use crate::model::{FingerNumber, Fingers};
 use crate::model::{Section, Shown, ShownPath, UnusableConfiguration};
 use crate::realtime::{Consumer, CycleTiming, EventCount, Pages, SharedPages, now, ring};
 use nalgebra::Matrix3;
@@ -75,7 +74,9 @@ pub fn check(configuration: &Configuration) -> Result<(), UnusableConfiguration>
     for number in FingerNumber::ALL {
         let refused = |unusable| UnusableConfiguration { section: Section::Finger(number), unusable };
         initial_stiffness(configuration, number).map_err(refused)?;
-        carries(configuration, number).map_err(refused)?;
+        if configuration.hand.fingers.contains(number) {
+            carries(configuration, number).map_err(refused)?;
+        }
     }
     Ok(())
 }
@@ -151,14 +152,14 @@ pub(super) fn reach(
     Ok(Connected { lines, reached, gate, repairs, events })
 }
 
-/// Returns the ports of these fingers, each with its fingers.
+/// Returns the ports of these fingers, as far as the hand has them, each with its fingers.
 pub fn ports(
     configuration: &Configuration,
     fingers: Fingers,
     simulated: &SimulatedHand,
 ) -> Vec<(PathBuf, Vec<FingerNumber>)> {
     let mut ports: Vec<(PathBuf, Vec<FingerNumber>)> = Vec::new();
-    for number in fingers.members() {
+    for number in fingers.members().filter(|&number| configuration.hand.fingers.contains(number)) {
         let named = || PathBuf::from(&configuration.fingers[number.index()].port);
         let path = simulated.path(number).unwrap_or_else(named);
         match ports.iter_mut().find(|(known, _)| *known == path) {
@@ -261,7 +262,8 @@ fn carries(configuration: &Configuration, number: FingerNumber) -> Result<(), Un
         // A pseudo-terminal has no bit rate.
         return Ok(());
     }
-    let sharing = configuration.fingers.iter().filter(|other| other.port == finger.port).count();
+    let others = configuration.hand.fingers.members().filter(|&other| other != number);
+    let sharing = 1 + others.filter(|other| configuration.fingers[other.index()].shares_port(finger)).count();
     match capacity(finger.baud, sharing, configuration.hand.rate) {
         Ok(_) => Ok(()),
         Err(too_fast) => Err(Unusable { key: "baud", reason: too_fast.to_string() }),

@@ -57,6 +57,7 @@ impl Recovering {
         // Requests to stop that are made after this point stop the recovered finger.
         let calls = stop_calls();
         let with_finger = |port: &&Arc<RepairablePort>| port.fingers.contains(&finger);
+        hand.dispatcher.member(finger)?;
         let port = hand.recovery.ports.iter().find(with_finger).ok_or(HandError::NotOpened(finger))?.clone();
         let mut task = Task {
             finger,

@@ -1,15 +1,16 @@
 //! Root: opens and closes a hand, and owns its threads and ports.
 
 use crate::finger::{FingerReport, Losses, Stage};
+use crate::hand::board_search::find_boards;
 use crate::hand::dispatcher::Dispatcher;
 use crate::hand::events::EventSource;
 use crate::hand::opening::{Connected, black_box_folder, check, from_here, reach};
 use crate::hand::reconnection::Recovery;
 use crate::hand::servo_threads::{PortServo, RealtimeState, start};
 use crate::hand::simulated_hand::SimulatedHand;
-use crate::hand::{Configured, Fingers, Found, HandError, find_configuration};
-use crate::model::FingerNumber;
+use crate::hand::{Configured, Found, HandError, find_configuration};
 use crate::model::configuration::Configuration;
+use crate::model::{FingerNumber, Fingers};
 use crate::realtime::{self, Distribution, MonotonicClock, now};
 use crate::simulated::SimulatedFinger;
 use nalgebra::Vector3;
@@ -42,6 +43,8 @@ pub struct Hand {
     servos: Vec<JoinHandle<PortServo>>,
     pub(super) recovery: Recovery,
     pub(super) simulated: SimulatedHand,
+    /// The fingers that were opened.
+    opened: Fingers,
     /// The configuration in force. Planners can adjust it, and a calibration puts its results into it.
     pub(super) configuration: RwLock<Configuration>,
     /// The configuration file, in which calibration results are stored.
@@ -74,7 +77,7 @@ impl Hand {
         Self::open_from(configured.configuration, configured.file, Fingers::ALL, false)
     }
 
-    /// Opens the hand: shakes hands with its boards, takes up the slack of its tendons, and returns when every finger
+    /// Opens the hand, with the fingers of `hand.fingers`: shakes hands with its boards, takes up the slack of its tendons, and returns when every finger
     /// holds its pose at its initial stiffness.
     ///
     /// # Errors
@@ -95,20 +98,22 @@ impl Hand {
     }
 
     fn open_from(
-        configuration: Configuration,
+        mut configuration: Configuration,
         file: Option<PathBuf>,
         fingers: Fingers,
         limp: bool,
     ) -> Result<Self, HandError> {
         check(&configuration)?;
+        let opened = fingers.in_hand(&configuration.hand)?;
+        find_boards(&mut configuration, opened)?;
         // A sandbox may forbid clock_nanosleep. Then servo threads would not wait, and other threads would panic.
         let waiting = MonotonicClock::check_sleep();
         waiting.map_err(|source| HandError::System { doing: "sleep until a given time (clock_nanosleep)", source })?;
         let (folder, file) = (black_box_folder(&configuration)?, file.map(from_here));
-        let simulated = SimulatedHand::start(&configuration, fingers)?;
-        let Connected { lines, reached, gate, repairs, events } = reach(&configuration, fingers, &simulated, limp)?;
+        let simulated = SimulatedHand::start(&configuration, opened)?;
+        let Connected { lines, reached, gate, repairs, events } = reach(&configuration, opened, &simulated, limp)?;
         let recovery = Recovery::new(repairs);
-        let dispatcher = Dispatcher::new(reached, gate);
+        let dispatcher = Dispatcher::new(reached, configuration.hand.fingers, gate);
         let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOP_CONFIRMATION;
         let configuration = RwLock::new(configuration);
         let servos = Vec::new();
@@ -120,6 +125,7 @@ impl Hand {
             servos,
             recovery,
             simulated,
+            opened,
             configuration,
             file,
             found,
@@ -138,6 +144,11 @@ impl Hand {
         let reconnecting = hand.recovery.start();
         reconnecting.map_err(|source| HandError::System { doing: "start the thread that reopens ports", source })?;
         Ok(hand)
+    }
+
+    /// Returns the fingers that were opened. Calls for all fingers mean these.
+    pub fn fingers(&self) -> Fingers {
+        self.opened
     }
 
     /// Measured joint angles of finger 1, 2 or 3, rad, at most one cycle old.

@@ -6,7 +6,6 @@ use crate::hand::HandError;
 use crate::hand::missing_permissions::{MissingPermission, missing_permissions};
 use crate::hand::notice::print_notice;
 use crate::hand::opening::Line;
-use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, PeriodClock, RealTime};
 use crate::realtime::{LockedStack, MonotonicClock, Priority, RealtimeRefusals, Schedule, now, spawn, touch_stack};
 use crossbeam_channel::{Receiver, Sender, bounded};
@@ -125,7 +124,8 @@ impl RealtimeState {
             refused,
             memory: tried && !lacks(|missing| matches!(missing, MissingPermission::Memory(_))),
             core: !lacks(|missing| matches!(missing, MissingPermission::Core(_)))
-                && (tried || configuration.fingers.iter().all(|finger| finger.core.is_none())),
+                && (tried
+                    || configuration.hand.fingers.members().all(|n| configuration.fingers[n.index()].core.is_none())),
         }
     }
 }
@@ -148,7 +148,7 @@ pub fn priority(configuration: &Configuration, thread: u8) -> Priority {
     if configuration.hand.real_time == RealTime::Ignore {
         return Priority::default();
     }
-    let own = FingerNumber::ALL.into_iter().find(|&number| configuration.thread(number) == thread);
+    let own = configuration.hand.fingers.members().find(|&number| configuration.thread(number) == thread);
     // Fingers on one thread have the same priority and core, because the configuration was checked.
     let finger = own.map(|number| &configuration.fingers[number.index()]);
     finger.map_or_else(Priority::default, |finger| Priority { fifo: finger.priority, core: finger.core })

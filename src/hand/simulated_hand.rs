@@ -25,9 +25,12 @@ pub struct SimulatedHand {
 }
 
 impl SimulatedHand {
-    /// Starts a simulated board at a pseudo-terminal for each of these fingers whose port is `simulated`.
+    /// Starts a simulated board at a pseudo-terminal for each of these fingers that the hand has and whose port is
+    /// `simulated`.
     pub fn start(configuration: &Configuration, fingers: Fingers) -> Result<Self, HandError> {
-        let simulated = |number: &FingerNumber| configuration.fingers[number.index()].simulated();
+        let simulated = |number: &FingerNumber| {
+            configuration.hand.fingers.contains(*number) && configuration.fingers[number.index()].simulated()
+        };
         let members = || fingers.members().filter(simulated);
         let mut hand = Self { separate: [const { None }; FINGERS], coupled: None };
         if let (Some(scene), Some(_)) = (Scene::new(configuration), members().next()) {

@@ -58,13 +58,15 @@ impl Configuration {
         for (number, finger) in FingerNumber::ALL.into_iter().zip(&self.fingers) {
             let section = Section::Finger(number);
             finger.check().map_err(|unusable| UnusableConfiguration { section, unusable })?;
-            if finger.priority == 0 && self.hand.real_time == RealTime::Enforce {
+            let present = self.hand.fingers.contains(number);
+            if present && finger.priority == 0 && self.hand.real_time == RealTime::Enforce {
                 let reason = "0 is not a real-time priority, but hand.real_time is \"enforce\": set 1 to 99".into();
                 return Err(UnusableConfiguration { section, unusable: Unusable { key: "priority", reason } });
             }
         }
-        for (position, &second) in FingerNumber::ALL.iter().enumerate() {
-            for &first in &FingerNumber::ALL[..position] {
+        // A finger that the hand does not have may have any port and thread.
+        for second in self.hand.fingers.members() {
+            for first in self.hand.fingers.members().take_while(|&first| first < second) {
                 let between = self.check_sharing(first, second);
                 let section = Section::Finger(second);
                 between.map_err(|unusable| UnusableConfiguration { section, unusable })?;
@@ -103,6 +105,7 @@ impl ConfiguredHand {
             return unusable("watchdog_ms", reason);
         }
         path("black_box", self.black_box.as_deref().unwrap_or_default())?;
+        self.search_ports.iter().try_for_each(|pattern| path("search_ports", pattern))?;
         self.check_gravity()?;
         self.check_simulated_object()
     }

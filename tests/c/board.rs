@@ -24,7 +24,10 @@ impl Board {
         let orders = process.stdin.take().expect("standard input is a pipe");
         let answers = BufReader::new(process.stdout.take().expect("standard output is a pipe"));
         let mut board = Self { process, orders, answers };
-        let configuration = format!("[hand]\nwatchdog_ms = 500\n[finger.1]\nport = \"{}\"\n", board.answer());
+        let configuration = format!(
+            "[hand]\nwatchdog_ms = 500\n[finger]\nport = \"simulated\"\n[finger.1]\nport = \"{}\"\n",
+            board.answer()
+        );
         fs::write(bench.path().join("named.toml"), configuration).expect("a configuration file");
         board
     }

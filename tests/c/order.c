@@ -186,7 +186,7 @@ static void configurations_of_a_closed_hand(void)
     REFUSED("OpenHand", OpenHand(), "missing.toml");
     configure("[hand]\nrat = 1\n[finger.1]\nport = \"no/such/port\"\n");
     REFUSED("OpenHand", OpenHand(), "rat");
-    configure("[finger.1]\nport = \"no/such/port\"\n");
+    configure("[hand]\nfingers = [1]\n[finger.1]\nport = \"no/such/port\"\n");
     REFUSED("OpenHand", OpenHand(), "no/such/port");
 }
 

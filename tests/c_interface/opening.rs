@@ -105,7 +105,7 @@ fn a_named_configuration_must_exist() {
 
 #[test]
 fn a_port_that_does_not_exist_is_reported() {
-    let (status, output, _) = opened_with("[finger.1]\nport = \"no/such/port\"\n");
+    let (status, output, _) = opened_with("[hand]\nfingers = [1]\n[finger.1]\nport = \"no/such/port\"\n");
     assert_eq!(status, Some(2), "{output}");
     assert!(output.starts_with("No such file or directory: OpenHand: ") && output.contains("no/such/port"), "{output}");
 }

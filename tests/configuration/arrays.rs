@@ -39,6 +39,10 @@ fn every_array_has_exactly_as_many_entries_as_its_key_has_places() {
     let mut tried = 0;
     for key in keys(&with_optional_keys()) {
         let value: Value = key.value.parse().expect("a value");
+        // The fingers of a hand and the ports to search are lists of any length.
+        if matches!(&*key.name, "fingers" | "search_ports") {
+            continue;
+        }
         // A list of tables may have any length. The arrays in its tables are tested below.
         if value.as_array().is_some_and(|array| array.get(0).is_some_and(Value::is_inline_table)) {
             continue;

@@ -128,7 +128,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     configuration.hand.rate = arguments.rate.unwrap_or(configuration.hand.rate);
     let rate = configuration.hand.rate;
-    let numbers = Fingers::of(&arguments.fingers).map_err(|error| wrong_usage(error.to_string()))?.numbers();
+    let numbers = Fingers::of(&arguments.fingers).and_then(|fingers| fingers.in_hand(&configuration.hand));
+    let numbers = numbers.map_err(|error| wrong_usage(error.to_string()))?.numbers();
     let numbers = numbers.map(FingerNumber::try_from).collect::<Result<Vec<_>, _>>()?;
     // Equal fingers have equal bounds. Each is searched once.
     let first_like = |number: FingerNumber| {

@@ -59,7 +59,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let configured = Configured::read(&arguments.config)?;
-    let fingers = Fingers::of(&arguments.fingers)?;
+    let fingers = Fingers::of(&arguments.fingers)?.in_hand(&configured.configuration.hand)?;
     configured.announce(fingers);
     let tasks = arguments.tasks();
     let hand = Hand::open_limp(configured.configuration, Some(arguments.config.clone()), fingers)?;

@@ -64,7 +64,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     // The picture comes from the hand's telemetry.
     configuration.telemetry.enabled = true;
-    let real = configuration.fingers.iter().any(|finger| !finger.simulated());
+    let mut of_hand = configuration.hand.fingers.members().map(|number| &configuration.fingers[number.index()]);
+    let real = of_hand.any(|finger| !finger.simulated());
     if real && !arguments.yes {
         confirm(&configuration)?;
     }
@@ -95,12 +96,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn confirm(configuration: &Configuration) -> Result<(), Failure> {
     let mut output = io::stdout().lock();
     writeln!(output, "This moves a real hand:")?;
-    for (number, finger) in (1..).zip(&configuration.fingers) {
-        writeln!(
-            output,
-            "    finger {number}: {}",
-            if finger.simulated() { "simulated" } else { finger.port.as_str() }
-        )?;
+    for number in configuration.hand.fingers.members() {
+        let finger = &configuration.fingers[number.index()];
+        let port = match finger.board {
+            Some(board) => format!("the board {board}"),
+            None => finger.port.clone(),
+        };
+        writeln!(output, "    finger {number}: {port}")?;
     }
     writeln!(output, "The tendons are tightened now. Steps are at most 3 degrees or 0.3 cm. Space stops all fingers.")?;
     write!(output, "Keep hands and cables clear. Type yes to continue: ")?;

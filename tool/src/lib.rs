@@ -4,6 +4,7 @@
 #![deny(unsafe_code)]
 
 mod board;
+mod boards;
 mod bound;
 mod calibrate;
 mod completions;
@@ -45,6 +46,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Tool {
     Board(board::Arguments),
+    Boards(boards::Arguments),
     Bound(bound::Arguments),
     Calibrate(calibrate::Arguments),
     Completions(completions::Arguments),
@@ -77,6 +79,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     };
     let result = match arguments.tool {
         Tool::Board(arguments) => board::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Boards(arguments) => boards::run(&arguments).map(|()| ExitStatus::SUCCESS),
         Tool::Bound(arguments) => bound::run(&arguments).map(|()| ExitStatus::SUCCESS),
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitStatus::SUCCESS),
         Tool::Completions(arguments) => completions::run(&arguments, command()).map(|()| ExitStatus::SUCCESS),

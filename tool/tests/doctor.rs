@@ -66,7 +66,7 @@ fn the_simulated_hand_is_examined_whole() {
 
 #[test]
 fn an_unusable_port_fails_with_its_remedy() {
-    let findings = examined("[finger.2]\nport = '/dev/there-is-no-such-port'\n");
+    let findings = examined("[finger]\nport = 'simulated'\n[finger.2]\nport = '/dev/there-is-no-such-port'\n");
     let missing = find(&findings, "port /dev/there-is-no-such-port");
     assert_eq!(missing["verdict"], "failure");
     assert!(missing["advice"].as_str().is_some_and(|advice| advice.contains("/dev/serial/by-id")), "{missing}");
@@ -74,7 +74,7 @@ fn an_unusable_port_fails_with_its_remedy() {
     let board = SimulatedBoard::new(&Configuration::default(), &[FingerNumber::THREE]).expect("a board");
     let board = SimulatedPort::start(board, Pace::patient(500.0), Priority::default()).expect("a pseudo-terminal");
     let taken = Port::open(&board.path(), 1_000_000).expect("the port");
-    let configuration = format!("[finger.3]\nport = '{}'\n", board.path().display());
+    let configuration = format!("[finger]\nport = 'simulated'\n[finger.3]\nport = '{}'\n", board.path().display());
     let findings = examined(&configuration);
     let busy = find(&findings, &format!("port {}", board.path().display()));
     assert!(busy["advice"].as_str().is_some_and(|advice| advice.contains("in use")), "{busy}");

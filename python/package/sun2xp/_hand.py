@@ -40,14 +40,14 @@ class Hand(_sun2xp.Hand):
 
     def wait(
         self,
-        fingers: Union[int, Iterable[int]] = (1, 2, 3),
+        fingers: Union[int, Iterable[int], None] = None,
         condition: str = "arrived",
         timeout: Optional[float] = None,
     ) -> None:
         """Waits until the condition holds for these fingers at the same time, for the set points that were sent last.
 
         Args:
-            fingers: a finger, or several.
+            fingers: a finger, or several. The default is all fingers of the hand.
             condition: "arrived": every joint is at the set point. "settled": every joint is at rest.
             timeout: time limit, s.
 
@@ -55,6 +55,8 @@ class Hand(_sun2xp.Hand):
             TimedOut: the time limit is over.
             Fault: a finger is faulted.
         """
+        if fingers is None:
+            fingers = self.fingers
         self._wait([fingers] if isinstance(fingers, int) else list(fingers), condition, timeout)
 
     def configuration(self, finger: int) -> Dict[str, Any]:

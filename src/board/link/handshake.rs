@@ -4,8 +4,8 @@
 use super::{Allowance, Link};
 use crate::board::link_error::LinkError;
 use crate::board::protocol::{
-    ANY_ADDRESS, Configure, Configured, Frame, Hello, Identity, Kind, MAX_WIRE, Message, Reason, Refused, Stop,
-    VERSION, WireFrame,
+    ANY_ADDRESS, Configure, Configured, Frame, HIGHEST_ADDRESS, Hello, Identity, Kind, MAX_WIRE, Message, Reason,
+    Refused, Stop, VERSION, WireFrame,
 };
 use crate::board::terms::Terms;
 use crate::board::transport::Transport;
@@ -32,6 +32,46 @@ impl<T: Transport> Link<T> {
         let configure = terms.configure(&identity)?;
         let configured = self.configure(address, configure, deadline)?;
         Ok((identity, configured))
+    }
+
+    /// Asks every finger at the port for its identity, and returns the fingers by their addresses. Sends only Hello,
+    /// which changes nothing on a board. Waits until `deadline` (ns on the transport's clock) for the first answer.
+    pub fn identities(&mut self, deadline: u64) -> Result<Vec<(u8, Identity)>, LinkError> {
+        let (first, identity) = self.first_identity(deadline)?;
+        let mut found = vec![(first, identity)];
+        for address in (1..=HIGHEST_ADDRESS).filter(|&address| address != first) {
+            if identity.addresses & 1 << address != 0 {
+                let deadline = self.transport.now() + 2 * PATIENCE;
+                found.push((address, self.identify(address, deadline)?));
+            }
+        }
+        found.sort_by_key(|&(address, _)| address);
+        Ok(found)
+    }
+
+    /// Asks whichever finger answers for its identity.
+    fn first_identity(&mut self, deadline: u64) -> Result<(u8, Identity), LinkError> {
+        let before = self.counters();
+        let began = self.transport.now();
+        let hello = Frame::Hello(Hello { lowest_version: VERSION, highest_version: VERSION });
+        while self.transport.now() < deadline {
+            let Some(answer) = self.exchange(ANY_ADDRESS, hello, deadline)? else { continue };
+            match answer.frame {
+                Frame::Identity(identity) if identity.version == VERSION => return Ok((answer.address, identity)),
+                Frame::Identity(Identity { version, .. }) => {
+                    return Err(LinkError::WrongVersion { lowest: version, highest: version });
+                }
+                Frame::Refused(refused) => return Err(LinkError::Refused { address: answer.address, refused }),
+                _ => {}
+            }
+        }
+        let after = self.counters();
+        Err(match after.bytes == before.bytes {
+            true => LinkError::Silent { milliseconds: self.transport.now().saturating_sub(began) / 1_000_000 },
+            false => {
+                LinkError::Unintelligible { bytes: after.bytes - before.bytes, damaged: after.damaged - before.damaged }
+            }
+        })
     }
 
     fn identify(&mut self, address: u8, deadline: u64) -> Result<Identity, LinkError> {

@@ -5,7 +5,7 @@ use super::values::deserialize;
 use super::wrong::Wrong;
 use crate::hand::opening::check;
 use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, FINGERS};
-use crate::model::{Section, Shown, UnusableConfiguration};
+use crate::model::{FingerNumber, Section, Shown, UnusableConfiguration};
 use std::ops::Range;
 use toml_edit::{Document, Item, Table, Value};
 
@@ -34,16 +34,55 @@ pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wron
     for ((number, finger), port_named) in numbers().zip(&mut fingers).zip(&mut ports_named) {
         let section = format!("finger.{number}");
         let own = table(&all, &number).map_err(|wrong| wrong.in_key("finger"))?;
-        let mut merged = common.clone();
-        overlay(&mut merged, &own);
-        *port_named = merged.contains_key("port");
-        add_named_values(&mut merged).map_err(|wrong| wrong.in_key(&section))?;
-        *finger = deserialize(&merged).map_err(|wrong| wrong.in_key(&section))?;
+        (*finger, *port_named) = finger_of(&common, &own).map_err(|wrong| wrong.in_key(&section))?;
     }
 
     let configuration = Configuration { hand, telemetry, fingers };
     check(&configuration).map_err(|refusal| unusable(root, &refusal))?;
+    refuse_simulated_beside_real(root, &configuration, ports_named)?;
     Ok((configuration, ports_named))
+}
+
+/// Reads a finger from the table of all fingers and its own table. Also returns whether they name its port or its board.
+fn finger_of(common: &Table, own: &Table) -> Result<(ConfiguredFinger, bool), Wrong> {
+    let mut merged = common.clone();
+    // The finger's own key replaces the other one of all fingers, because both say where the finger is.
+    for (key, other) in [("board", "port"), ("port", "board")] {
+        if own.contains_key(key) && !own.contains_key(other) {
+            merged.remove(other);
+        }
+    }
+    overlay(&mut merged, own);
+    let (port, board) = (merged.contains_key("port"), merged.contains_key("board"));
+    if port && board {
+        let reason = "the table has `port` too, and the board is at one port only: keep one of the two keys";
+        return Err(Wrong::at(span_of_key(&merged, "board"), reason.into()).in_key("board"));
+    }
+    add_named_values(&mut merged)?;
+    Ok((deserialize(&merged)?, port || board))
+}
+
+/// Refuses a hand of which some fingers have a port and others nothing: those would be simulated beside real fingers,
+/// although nobody has said so.
+fn refuse_simulated_beside_real(
+    root: &Table,
+    configuration: &Configuration,
+    ports_named: [bool; FINGERS],
+) -> Result<(), Wrong> {
+    let (named, unnamed): (Vec<_>, Vec<_>) =
+        configuration.hand.fingers.members().partition(|number| ports_named[number.index()]);
+    let real = named.iter().find(|number| !configuration.fingers[number.index()].simulated());
+    let (Some(real), Some(missing)) = (real, unnamed.first()) else { return Ok(()) };
+    let own = root.get("finger").and_then(|all| all.get(real.to_string()));
+    let span = span_of(own, "port").or_else(|| span_of(own, "board"));
+    let fingers: Vec<String> = named.iter().map(FingerNumber::to_string).collect();
+    let reason = format!(
+        "is missing, and finger {real} has a real port: a finger is not simulated beside real ones unless the file says \
+         so. If the hand does not have finger {missing}, set hand.fingers = [{}]. Otherwise name its port or its board, \
+         or set port = \"simulated\" in [finger.{missing}]",
+        fingers.join(", ")
+    );
+    Err(Wrong::at(span, reason).in_key("port").in_key(&format!("finger.{missing}")))
 }
 
 /// An error for a value that the checks refuse, with its position in the file.
@@ -142,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_finger_overrides_what_all_fingers_share() {
-        let text = "[finger]\nbaud = 2000000\n[finger.tendon]\nminimum = 4\nmaximum = 50\n\
+        let text = "[finger]\nport = 'simulated'\nbaud = 2000000\n[finger.tendon]\nminimum = 4\nmaximum = 50\n\
                     [finger.2]\nport = '/dev/ttyUSB1'\n[finger.2.tendon]\nminimum = 6\n";
         let (hand, _) = parse(text).expect("usable");
         assert_eq!(hand.fingers.each_ref().map(|f| f.baud), [2_000_000; 3]);
@@ -164,6 +203,43 @@ mod tests {
             let (found, reason) = refusal(text);
             assert_eq!(found, Some(line), "{text:?}: {reason}");
             assert!(reason.contains(word), "{text:?}: {reason}");
+        }
+    }
+
+    #[test]
+    fn a_finger_without_a_port_is_not_simulated_beside_real_ones() {
+        let text = "[finger.2]\nport = '/dev/a'\n[finger.3]\nboard = '00 01 02 03 04 05 06 07 08 09 0a 0b'\n";
+        let (line, reason) = refusal(text);
+        assert_eq!(line, Some(2), "{reason}");
+        assert!(
+            reason.starts_with("finger.1.port: is missing") && reason.contains("hand.fingers = [2, 3]"),
+            "{reason}"
+        );
+        for beside in ["[finger.1]\nport = 'simulated'\n", "[hand]\nfingers = [2, 3]\n"] {
+            let (hand, _) = parse(&format!("{text}{beside}")).expect("usable");
+            assert!(hand.fingers[2].board.is_some() && !hand.fingers[2].simulated(), "{beside}");
+        }
+    }
+
+    #[test]
+    fn a_port_of_a_finger_replaces_the_board_of_all_and_the_reverse() {
+        let board = "board = '00 01 02 03 04 05 06 07 08 09 0a 0b'\n";
+        let (hand, _) = parse(&format!("[finger]\nport = 'simulated'\n[finger.1]\n{board}")).expect("usable");
+        assert_eq!(hand.fingers.each_ref().map(ConfiguredFinger::simulated), [false, true, true]);
+        let of_all = format!("[finger]\nthread = 1\nbaud = 2000000\n{board}");
+        let (hand, _) = parse(&format!("{of_all}[finger.2]\nport = 'simulated'\n")).expect("usable");
+        assert_eq!(hand.fingers.each_ref().map(ConfiguredFinger::simulated), [false, true, false]);
+        let (line, reason) = refusal(&format!("[finger.1]\nport = '/dev/a'\n{board}"));
+        assert!(line == Some(3) && reason.contains("keep one of the two keys"), "{reason}");
+    }
+
+    #[test]
+    fn a_hand_has_the_listed_fingers() {
+        let (hand, _) = parse("[hand]\nfingers = [3, 1]\n[finger.2]\nport = '/dev/later'\n").expect("usable");
+        assert_eq!(hand.hand.fingers.numbers().collect::<Vec<_>>(), [1, 3]);
+        for (list, word) in [("[]", "at least one"), ("[4]", "no finger 4"), ("[2, 2]", "twice"), ("2", "must be")] {
+            let (line, reason) = refusal(&format!("[hand]\nfingers = {list}\n"));
+            assert!(line == Some(2) && reason.contains(word), "{list}: {reason}");
         }
     }
 

@@ -25,7 +25,7 @@ impl HandError {
             | Self::NotThereInTime(_) => libc::ETIMEDOUT,
             Self::Calibration { .. } | Self::Interrupted(_) => libc::ECANCELED,
             Self::SameNumber { .. } => libc::ENOTUNIQ,
-            Self::NotOpened(_) => libc::ENODEV,
+            Self::NotOpened(_) | Self::NotInHand { .. } | Self::NoSuchBoard { .. } => libc::ENODEV,
             Self::Busy(_) => libc::EBUSY,
             Self::BlackBox { source, .. } => errno(source),
             Self::NotStored { source, .. } => source.errno(),

@@ -1,6 +1,7 @@
 //! `[hand]`: values that all fingers share.
 
 use super::object::ConfiguredObject;
+use crate::model::fingers::Fingers;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
@@ -73,6 +74,11 @@ pub enum PeriodClock {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredHand {
+    /// The fingers that the hand has: one, two or three. Calls for another finger are refused.
+    pub fingers: Fingers,
+    /// The ports among which the library looks for the boards of `finger.board`. A * in the last part of a path stands
+    /// for any text.
+    pub search_ports: Vec<String>,
     /// Rate of every finger servo, Hz: 500 to 5000. No gains are known that keep a finger stable at a much lower rate.
     pub rate: f64,
     /// The clock that determines the rate.
@@ -117,6 +123,8 @@ impl ConfiguredHand {
 impl Default for ConfiguredHand {
     fn default() -> Self {
         Self {
+            fingers: Fingers::ALL,
+            search_ports: ["/dev/serial/by-id/*", "/dev/ttyACM*", "/dev/ttyUSB*"].map(String::from).into(),
             rate: 1000.0,
             clock: PeriodClock::Host,
             real_time: RealTime::Try,

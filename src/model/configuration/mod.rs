@@ -3,6 +3,7 @@
 //! the table's type. `[finger]` itself is in this file. The layer `hand` reads the values from a file.
 //! `model/validation.rs` checks them.
 
+mod board_number;
 mod contact;
 mod controller;
 mod encoder;
@@ -26,6 +27,7 @@ mod tendon;
 mod touch;
 mod zeroing;
 
+pub use board_number::BoardNumber;
 pub use contact::ConfiguredContact;
 pub use controller::{ConfiguredController, Law, Scheme};
 pub use encoder::ConfiguredEncoder;
@@ -75,6 +77,8 @@ pub struct Unusable {
 pub struct ConfiguredFinger {
     /// Path of the serial port, or `simulated`.
     pub port: String,
+    /// Unique number of the finger's board, instead of a port: the hand opens the port at which a board reports it.
+    pub board: Option<BoardNumber>,
     /// Bit rate of the port, bit/s.
     pub baud: u32,
     /// Whether the library searches for a port that has failed, and opens it again. The finger continues only after a
@@ -184,6 +188,7 @@ impl Default for ConfiguredFinger {
     fn default() -> Self {
         Self {
             port: "simulated".into(),
+            board: None,
             baud: 1_000_000,
             reconnect: false,
             address: 0,
@@ -217,7 +222,18 @@ impl ConfiguredFinger {
     /// Returns whether the finger has a simulated board instead of a port.
     #[must_use]
     pub fn simulated(&self) -> bool {
-        self.port == "simulated"
+        self.board.is_none() && self.port == "simulated"
+    }
+
+    /// Gives the finger a simulated board instead of its port.
+    pub fn simulate(&mut self) {
+        (self.port, self.board) = ("simulated".into(), None);
+    }
+
+    /// Returns whether two fingers are on one port: by its path, or because one board has both.
+    pub fn shares_port(&self, other: &Self) -> bool {
+        let named = |finger: &Self| finger.port != "simulated";
+        self.board.is_some() && self.board == other.board || named(self) && named(other) && self.port == other.port
     }
 
     /// Returns the link lengths.

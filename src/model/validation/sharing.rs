@@ -19,10 +19,12 @@ impl Configuration {
                 ),
             );
         }
-        if one.simulated() || one.port != other.port {
+        if !one.shares_port(other) {
             return Ok(());
         }
-        let port = Shown(&one.port);
+        let board = one.board.map(|number| format!("of the board {number}"));
+        let board = board.filter(|_| one.port == "simulated");
+        let port = board.unwrap_or_else(|| Shown(&one.port).to_string());
         if !same_thread {
             let thread = self.thread(first);
             let reason = format!(

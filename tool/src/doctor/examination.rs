@@ -4,7 +4,7 @@ use super::finding::Finding;
 use super::{machine, measured, ports};
 use std::path::Path;
 use std::time::Duration;
-use sun2xp::hand::{Fingers, HandError, SimulatedHand, check};
+use sun2xp::hand::{Fingers, HandError, SimulatedHand, check, find_boards};
 use sun2xp::model::configuration::Configuration;
 
 /// Checks the machine, whose files are below `root` (`/`, except in tests), and the ports of a hand. No program may
@@ -15,6 +15,9 @@ use sun2xp::model::configuration::Configuration;
 /// pseudo-terminal.
 pub fn examine(configuration: &Configuration, root: &Path, duration: Duration) -> Result<Vec<Finding>, HandError> {
     check(configuration)?;
+    let mut found = configuration.clone();
+    find_boards(&mut found, configuration.hand.fingers)?;
+    let configuration = &found;
     let mut findings = machine::findings(configuration, root);
     findings.extend(measured::wake_ups(configuration, duration / 2)?);
     let simulated = SimulatedHand::start(configuration, Fingers::ALL)?;

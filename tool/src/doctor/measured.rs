@@ -5,7 +5,6 @@ use std::time::Duration;
 use sun2xp::hand::HandError;
 use sun2xp::hand::missing_permissions;
 use sun2xp::hand::priority;
-use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Schedule, WakeUp, measure_wake_up, now};
 
@@ -28,7 +27,8 @@ const SLACK: u64 = 1000;
 pub(super) fn wake_ups(configuration: &Configuration, duration: Duration) -> Result<Vec<Finding>, HandError> {
     let period = (1e9 / configuration.hand.rate).round() as u64;
     let cycles = (duration.as_nanos() as u64 / period).max(1);
-    let mut threads: Vec<u8> = FingerNumber::ALL.map(|finger| configuration.thread(finger)).into();
+    let mut threads: Vec<u8> =
+        configuration.hand.fingers.members().map(|finger| configuration.thread(finger)).collect();
     threads.sort_unstable();
     threads.dedup();
     let first = now() + HEAD_START;

@@ -7,21 +7,21 @@ use std::thread::sleep;
 use std::time::Duration;
 use sun2xp::hand::Hand;
 use sun2xp::model::FingerNumber;
-use sun2xp::model::configuration::Configuration;
+use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use sun2xp::realtime::{CycleStage, Distribution};
 use sun2xp::reflexes::{Condition, MOST_RULES, Reaction, Reflex};
 
 /// Runs a simulated hand for `duration`, and returns the maximum of every time, or with `p999` its 99.9 % value.
 pub fn measure(configuration: &Configuration, duration: Duration, p999: bool) -> Result<Costs, Failure> {
     let mut simulated = configuration.clone();
-    simulated.fingers.iter_mut().for_each(|finger| finger.port = "simulated".into());
+    simulated.fingers.iter_mut().for_each(ConfiguredFinger::simulate);
     let hand = Hand::open(simulated)?;
-    FingerNumber::ALL.into_iter().try_for_each(|finger| busy_with_reflexes(&hand, finger))?;
-    (1..=3).try_for_each(|finger| hand.reset_timing(finger))?;
+    hand.fingers().members().try_for_each(|finger| busy_with_reflexes(&hand, finger))?;
+    hand.fingers().numbers().try_for_each(|finger| hand.reset_timing(finger))?;
     Progress::during("measuring the simulated hand", duration, || sleep(duration));
     let worst = |stage| -> Result<f64, Failure> {
         let part = |timing: Distribution| if p999 { timing.p999 } else { timing.maximum };
-        let timings = (1..=3).map(|finger| hand.timing(finger, stage).map(part));
+        let timings = hand.fingers().numbers().map(|finger| hand.timing(finger, stage).map(part));
         Ok(timings.collect::<Result<Vec<f64>, _>>()?.into_iter().fold(0.0, f64::max))
     };
     Ok(Costs {

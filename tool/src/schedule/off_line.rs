@@ -100,9 +100,9 @@ fn numbers<S: Serializer>(fingers: &[FingerNumber], serializer: S) -> Result<S::
 /// line of the configured baud rate.
 pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor: &Sensor) -> Vec<Scheduled> {
     let numbers =
-        (1..=FINGERS as u8).filter(|&number| FingerNumber::ALL.iter().any(|&finger| hand.thread(finger) == number));
+        (1..=FINGERS as u8).filter(|&number| hand.hand.fingers.members().any(|finger| hand.thread(finger) == number));
     let threads: Vec<(u8, Vec<FingerNumber>)> = numbers
-        .map(|number| (number, FingerNumber::ALL.into_iter().filter(|&finger| hand.thread(finger) == number).collect()))
+        .map(|number| (number, hand.hand.fingers.members().filter(|&finger| hand.thread(finger) == number).collect()))
         .collect();
     let period = 1e6 / rate;
     let tasks: Vec<PeriodicThread> =
@@ -160,9 +160,7 @@ fn touches_on_line(
     rate: f64,
 ) -> usize {
     let configured = &hand.fingers[finger.index()];
-    let on_port = |other: &&FingerNumber| {
-        **other == finger || (!configured.simulated() && hand.fingers[other.index()].port == configured.port)
-    };
+    let on_port = |other: &&FingerNumber| **other == finger || hand.fingers[other.index()].shares_port(configured);
     let with_elements = fingers.iter().filter(on_port);
     let with_elements = with_elements.filter(|other| !hand.fingers[other.index()].touch.elements.is_empty()).count();
     tactile_requests(configured.baud, sharing, rate).min(with_elements)
@@ -173,7 +171,7 @@ fn touches_on_line(
 fn lines<'a>(hand: &'a Configuration, fingers: &'a [FingerNumber]) -> impl Iterator<Item = (FingerNumber, usize)> + 'a {
     let shares = |a: FingerNumber, b: FingerNumber| {
         let (one, other) = (&hand.fingers[a.index()], &hand.fingers[b.index()]);
-        a == b || (!one.simulated() && one.port == other.port)
+        a == b || one.shares_port(other)
     };
     fingers
         .iter()

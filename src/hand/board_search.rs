@@ -1,0 +1,212 @@
+//! Finds boards at serial ports by their unique numbers.
+
+use crate::board::protocol::Identity;
+use crate::board::{Link, LinkError, PortError};
+use crate::hand::HandError;
+use crate::hand::opening::check;
+use crate::model::configuration::{BoardNumber, Configuration};
+use crate::model::{FingerNumber, Fingers, ShownPath};
+use crate::realtime::now;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Time that a board has to answer at one port, ns. A board answers within 50 ms, and a Hello may be lost.
+const ANSWER: u64 = 160_000_000;
+
+/// Time for which the ports are searched again if a board is missing. Some boards restart when their port is opened.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// A finger that answers at a port.
+#[derive(Clone, Debug)]
+pub struct FoundFinger {
+    /// Its address on the board, 1 to 15.
+    pub address: u8,
+    /// Its identity.
+    pub identity: Identity,
+}
+
+/// A port that was searched.
+#[derive(Debug)]
+pub struct SearchedPort {
+    /// Path of the port.
+    pub path: PathBuf,
+    /// The fingers that answer at the port, or the reason why there are none.
+    pub answer: Result<Vec<FoundFinger>, LinkError>,
+}
+
+/// Asks for the identity of every finger at every port that the patterns name. Only a Hello is sent, which changes
+/// nothing on a board. Ports that another program has open are not touched. Takes at most 160 ms for a port and a rate.
+///
+/// `baud` are the bit rates to try at each port, bit/s. A * in the last part of a pattern stands for any text.
+pub fn search_boards(patterns: &[String], baud: &[u32]) -> Vec<SearchedPort> {
+    let used = used_terminals();
+    let search = |path: PathBuf| SearchedPort {
+        answer: match std::fs::canonicalize(&path) {
+            Ok(device) if used.contains(&device) => Err(PortError::Busy(path.clone()).into()),
+            _ => ask(&path, baud),
+        },
+        path,
+    };
+    candidates(patterns).into_iter().map(search).collect()
+}
+
+/// Sets the port of each of these fingers whose board is configured by its unique number.
+pub fn find_boards(configuration: &mut Configuration, fingers: Fingers) -> Result<(), HandError> {
+    let missing: Vec<(FingerNumber, BoardNumber)> =
+        fingers.members().filter_map(|finger| Some((finger, configuration.fingers[finger.index()].board?))).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let rates: BTreeSet<u32> = missing.iter().map(|(finger, _)| configuration.fingers[finger.index()].baud).collect();
+    let rates: Vec<u32> = rates.into_iter().collect();
+    let begun = Instant::now();
+    loop {
+        let searched = search_boards(&configuration.hand.search_ports, &rates);
+        let found: Result<Vec<PathBuf>, HandError> =
+            missing.iter().map(|&(finger, number)| port_of(finger, number, configuration, &searched)).collect();
+        match found {
+            Ok(paths) => {
+                for ((finger, _), path) in missing.iter().zip(paths) {
+                    // A path that is not UTF-8 cannot be configured. Paths below /dev are ASCII.
+                    configuration.fingers[finger.index()].port = path.to_string_lossy().into_owned();
+                }
+                // Fingers whose boards are at one port need one thread and one bit rate.
+                return Ok(check(configuration)?);
+            }
+            Err(error) if begun.elapsed() > PATIENCE => return Err(error),
+            Err(_) => {}
+        }
+    }
+}
+
+/// The port at which a finger with this number answers.
+fn port_of(
+    finger: FingerNumber,
+    number: BoardNumber,
+    configuration: &Configuration,
+    searched: &[SearchedPort],
+) -> Result<PathBuf, HandError> {
+    let is_wanted = |found: &FoundFinger| found.identity.unique_number == number.0;
+    let mut ports = searched.iter().filter(|port| port.answer.iter().flatten().any(is_wanted));
+    let twice = match (ports.next(), ports.next()) {
+        (Some(port), None) => return Ok(port.path.clone()),
+        (Some(_), Some(_)) => " alone, because boards at two ports do",
+        (None, _) => "",
+    };
+    let patterns = configuration.hand.search_ports.join(", ");
+    Err(HandError::NoSuchBoard { finger, number, patterns, found: listed(searched), twice })
+}
+
+/// What the search has found at each port, in one line.
+fn listed(searched: &[SearchedPort]) -> String {
+    let at_port = |port: &SearchedPort| {
+        let path = ShownPath(&port.path);
+        match &port.answer {
+            Ok(fingers) => {
+                let numbers = fingers.iter().map(|found| BoardNumber(found.identity.unique_number).to_string());
+                format!("{path} has {}", numbers.collect::<Vec<_>>().join(" and "))
+            }
+            Err(LinkError::Silent { .. }) => format!("{path} is silent"),
+            Err(LinkError::Port(PortError::Busy(_))) => format!("{path} is in use"),
+            Err(LinkError::Port(_)) => format!("{path} cannot be opened"),
+            Err(_) => format!("{path} has no board of this protocol"),
+        }
+    };
+    match searched {
+        [] => "no port".into(),
+        _ => searched.iter().map(at_port).collect::<Vec<_>>().join("; "),
+    }
+}
+
+fn ask(path: &Path, rates: &[u32]) -> Result<Vec<FoundFinger>, LinkError> {
+    let mut refusal = LinkError::Silent { milliseconds: 0 };
+    for &baud in rates {
+        let identities = Link::open(path, baud).and_then(|mut link| link.identities(now() + ANSWER));
+        match identities {
+            Ok(fingers) => {
+                let found = |(address, identity)| FoundFinger { address, identity };
+                return Ok(fingers.into_iter().map(found).collect());
+            }
+            Err(error) => refusal = error,
+        }
+    }
+    Err(refusal)
+}
+
+/// The serial devices that processes have open, as far as this user may see it. Such a port is not opened, even if it
+/// is not locked: settings and bytes would disturb its user. Pseudo-terminals are not among them, because the board behind
+/// a pseudo-terminal may hold both ends.
+fn used_terminals() -> BTreeSet<PathBuf> {
+    let entries = |folder: PathBuf| std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let descriptors = entries("/proc".into()).flat_map(|process| entries(process.path().join("fd")));
+    let files = descriptors.filter_map(|descriptor| std::fs::read_link(descriptor.path()).ok());
+    files.filter(|file| file.to_string_lossy().starts_with("/dev/tty")).collect()
+}
+
+/// The files that the patterns name, each once, though several links may lead to it.
+fn candidates(patterns: &[String]) -> Vec<PathBuf> {
+    let mut devices = BTreeSet::new();
+    let mut paths = Vec::new();
+    for path in patterns.iter().flat_map(|pattern| matching(Path::new(pattern))) {
+        // A dangling link leads to no device.
+        if let Ok(device) = std::fs::canonicalize(&path)
+            && devices.insert(device)
+        {
+            paths.push(path);
+        }
+    }
+    paths
+}
+
+/// The paths that a pattern names, in the order of their names.
+fn matching(pattern: &Path) -> Vec<PathBuf> {
+    let name = pattern.file_name().unwrap_or_default().to_string_lossy();
+    if !name.contains('*') {
+        return vec![pattern.to_owned()];
+    }
+    let folder = pattern.parent().unwrap_or(Path::new("."));
+    // A folder that does not exist has no ports. udev removes /dev/serial with the last adapter.
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let fitting = entries.filter(|entry| fits(&entry.file_name().to_string_lossy(), &name));
+    let mut paths: Vec<PathBuf> = fitting.map(|entry| entry.path()).collect();
+    paths.sort();
+    paths
+}
+
+/// Returns whether a name fits a pattern in which each * stands for any text.
+fn fits(name: &str, pattern: &str) -> bool {
+    match pattern.split_once('*') {
+        None => name == pattern,
+        Some((start, rest)) => name.strip_prefix(start).is_some_and(|end| {
+            let places = end.char_indices().map(|(place, _)| place).chain([end.len()]);
+            places.map(|place| &end[place..]).any(|end| fits(end, rest))
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_star_stands_for_any_text() {
+        for (name, pattern) in [("ttyUSB0", "ttyUSB*"), ("a-b-c", "a*c"), ("a-b-c", "*-b-*"), ("", "*"), ("x", "x")] {
+            assert!(fits(name, pattern), "{name} {pattern}");
+        }
+        for (name, pattern) in [("ttyACM0", "ttyUSB*"), ("a-b-d", "a*c"), ("x", "y"), ("abc", "a*bb*")] {
+            assert!(!fits(name, pattern), "{name} {pattern}");
+        }
+    }
+
+    #[test]
+    fn a_device_with_several_names_is_a_candidate_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("tty0"), "").expect("a file");
+        std::os::unix::fs::symlink(at("tty0"), at("id-left")).expect("a link");
+        std::os::unix::fs::symlink(at("none"), at("id-dangling")).expect("a link");
+        let patterns = ["id-*", "tty*", "none*"].map(|name| at(name).display().to_string());
+        assert_eq!(candidates(&patterns), [at("id-left")]);
+    }
+}

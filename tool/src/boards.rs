@@ -1,0 +1,132 @@
+//! `sun2xp boards`: lists the boards at serial ports with their unique numbers.
+
+use crate::failure::Failure;
+use crate::print::{self, Cell, Look, Screen, Table};
+use serde::Serialize;
+use std::collections::BTreeSet;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use sun2xp::board::{LinkError, PortError};
+use sun2xp::hand::{self, SearchedPort, search_boards};
+use sun2xp::model::ShownPath;
+use sun2xp::model::configuration::{BoardNumber, Configuration};
+
+/// Lists the boards at the serial ports, with the unique numbers of their fingers for `finger.board` of a
+/// configuration. Ports that another program uses are not opened. Boards only get a Hello, which changes nothing.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The configuration file whose `hand.search_ports` and `finger.baud` are used. Without it, the defaults are used.
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// Search these ports instead. A * in the last part of the path stands for any text. May be repeated.
+    #[arg(long = "port", value_name = "PATH")]
+    ports: Vec<String>,
+    /// Try this bit rate, bit/s. May be repeated. The default is finger.baud.
+    #[arg(long = "baud", value_name = "B", value_parser = clap::value_parser!(u32).range(9600..=12_000_000))]
+    rates: Vec<u32>,
+    /// Print one JSON object with `ports`, for other programs.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report {
+    ports: Vec<Port>,
+}
+
+/// What was found at a port.
+#[derive(Serialize)]
+struct Port {
+    port: PathBuf,
+    fingers: Vec<Finger>,
+    /// Why no finger was found.
+    error: Option<String>,
+    /// The error in a few words, for the table.
+    #[serde(skip)]
+    why: &'static str,
+}
+
+/// A finger that answers at a port.
+#[derive(Serialize)]
+struct Finger {
+    address: u8,
+    /// As `finger.board` takes it.
+    unique_number: BoardNumber,
+    firmware: String,
+    board_kind: u16,
+}
+
+impl Port {
+    fn new(searched: SearchedPort) -> Self {
+        let port = searched.path;
+        match searched.answer {
+            Ok(found) => {
+                let fingers = found.into_iter().map(|found| Finger {
+                    address: found.address,
+                    unique_number: BoardNumber(found.identity.unique_number),
+                    firmware: found.identity.firmware.0.map(|part| part.to_string()).join("."),
+                    board_kind: found.identity.board_kind,
+                });
+                Self { port, fingers: fingers.collect(), error: None, why: "" }
+            }
+            Err(error) => {
+                let why = match error {
+                    LinkError::Port(PortError::Busy(_)) => "in use by another program",
+                    LinkError::Port(_) => "cannot be opened",
+                    LinkError::Silent { .. } => "nothing answers",
+                    _ => "no board of this protocol",
+                };
+                Self { port, fingers: Vec::new(), error: Some(error.to_string()), why }
+            }
+        }
+    }
+
+    fn add_to(&self, table: &mut Table) {
+        let path = ShownPath(&self.port).to_string();
+        if self.fingers.is_empty() {
+            table.row([path.clone().into(), Cell::new(Look::Dim, self.why), "".into(), "".into(), "".into()]);
+        }
+        for finger in &self.fingers {
+            table.row([
+                path.clone().into(),
+                finger.unique_number.to_string().into(),
+                finger.address.to_string().into(),
+                finger.firmware.clone().into(),
+                kind(finger.board_kind).into(),
+            ]);
+        }
+    }
+}
+
+fn kind(number: u16) -> String {
+    match number {
+        0 => "unspecified".into(),
+        1 => "simulated".into(),
+        2 => "reference firmware".into(),
+        other => format!("{other:#06x}"),
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let configuration = match &arguments.config {
+        Some(path) => hand::read_configuration(path)?,
+        None => Configuration::default(),
+    };
+    let patterns = if arguments.ports.is_empty() { &configuration.hand.search_ports } else { &arguments.ports };
+    let configured: BTreeSet<u32> = configuration.fingers.iter().map(|finger| finger.baud).collect();
+    let rates = if arguments.rates.is_empty() { configured.into_iter().collect() } else { arguments.rates.clone() };
+    let report = Report { ports: search_boards(patterns, &rates).into_iter().map(Port::new).collect() };
+    if arguments.json {
+        print::json(&report)?;
+        return Ok(());
+    }
+    let mut output = io::stdout();
+    if report.ports.is_empty() {
+        writeln!(output, "no serial port at {}: connect a board, or name a port with --port", patterns.join(", "))?;
+        return Ok(());
+    }
+    let mut table = Table::new(["port", "unique number", "address", "firmware", "kind"]).numeric(2..3);
+    report.ports.iter().for_each(|port| port.add_to(&mut table));
+    write!(output, "{}", table.text(&Screen::stdout()))?;
+    Ok(())
+}
