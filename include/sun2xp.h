@@ -272,9 +272,10 @@ struct sun2xp_error {
    hand    a hand, open or closed; null: any hand
    error   result; set error->size before the call
 
- Every thread has its own refusals. It remembers the last one of each of the four hands that have
- refused a call of this thread most recently. The refusal of a call without a usable handle belongs to no
- hand, and only hand = null returns it. A call that succeeds does not change the refusals.
+ Every thread has its own refusals. For each hand, the thread remembers only the last refusal. It does so
+ for the four hands that have refused its calls most recently. The refusal of a call without a usable
+ handle belongs to no hand, and only hand = null returns it. A call that succeeds does not change the
+ refusals.
 
  Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
 
@@ -2069,8 +2070,8 @@ int sun2xp_remove_reflex(sun2xp_hand *hand, int finger, int number);
 /*
  Result of sun2xp_record: one cycle of a finger, from the black box.
 
- All cycles from oldest to newest are stored. computed is 0, and the members below are 0, if the finger
- was already faulted or a simulated finger had not answered.
+ All cycles from oldest to newest are stored. If the finger was already faulted, or if a simulated finger
+ had not answered, computed is 0, and so are all members after it.
  */
 struct sun2xp_record {
     size_t size;                            /* sizeof (struct sun2xp_record), set before the call. */

@@ -1,4 +1,5 @@
-"""The time of calls from Python, and of the same call in Rust, in turns in one run. Prints the table of docs/python.md.
+"""Measures the time of calls from Python, and of the same call in Rust. One run measures all of them in turns. Prints
+the table of docs/python.md.
 
     python calls.py [--rounds 20] [--calls 20000]
 """

@@ -1,12 +1,12 @@
-"""The wake-up of the servos with a planner that burns Python, in turns in one run with two others: a planner that sleeps,
-and a planner that sleeps while another process burns Python. Prints the table of docs/python.md.
+"""Measures the wake-up of the servos with three planners: one burns Python, one sleeps, and one sleeps while another
+process burns Python. One run measures the three in turns. Prints the table of docs/python.md.
 
     python wake_up.py [--rounds 10] [--seconds 10]
 
 The planner burns in as many threads as there are cores, and another thread reads and sends 1000 times a second. The
-other process burns in as many threads. It has no hand, so its interpreter lock cannot touch the servos: what it changes
-is the effect of cores that are in use. The figures are medians over all fingers and rounds. Run it on a quiet machine
-with real-time scheduling.
+other process burns in as many threads. It has no hand, so its interpreter lock cannot affect the servos. It shows
+the effect of cores that are in use. The figures are medians over all fingers and rounds. Run it on a quiet machine with
+real-time scheduling.
 """
 
 import argparse
@@ -32,7 +32,7 @@ def burn(stop: threading.Event) -> None:
 
 
 def burners(stop: threading.Event) -> list:
-    """Returns one thread that burns for each core."""
+    """Returns as many burning threads as there are cores."""
     return [threading.Thread(target=burn, args=(stop,)) for _ in range(os.cpu_count() or 1)]
 
 

@@ -139,7 +139,7 @@ impl Hand {
     }
 }
 
-/// Returns the contact with this stiffness. The inner error is for the library to report with the finger.
+/// Returns the contact with this stiffness. The inner error lacks the finger: the caller adds it.
 fn contact(
     py: Python<'_>,
     stiffness: &Bound<'_, PyAny>,

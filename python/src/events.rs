@@ -17,7 +17,7 @@ use sun2xp::model::Part;
 #[pyclass(frozen, subclass, module = "sun2xp._sun2xp")]
 pub struct Queue {
     queue: EventQueue,
-    /// The process that has opened the hand.
+    /// The generation of the process that has opened the hand.
     generation: u32,
 }
 
@@ -61,7 +61,7 @@ impl Queue {
         self.queue.is_closed()
     }
 
-    /// The number of events that this queue has lost, the oldest first, because they were not taken in time.
+    /// The number of events that this queue has lost because they were not taken in time. The oldest are lost first.
     #[getter]
     fn lost(&self) -> u64 {
         self.queue.lost()

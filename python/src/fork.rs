@@ -1,5 +1,5 @@
-//! Detects forked children. A child has the memory of the hand, but not its threads, and a thread of the parent may
-//! hold its locks.
+//! Detects forked children. A child has the memory of the hand, but not its threads. If a thread of the parent held a
+//! lock of the hand at the fork, nothing releases this lock in the child.
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -7,14 +7,14 @@ use parking_lot::{Mutex, RwLock};
 use pyo3::prelude::*;
 use std::sync::{Arc, Weak};
 
-/// All hands that may be open, for the end of the interpreter.
+/// All hands that may be open. The end of the interpreter closes them.
 static HANDS: Mutex<Vec<Weak<Shared>>> = Mutex::new(Vec::new());
 
 /// A hand, as the Python object and the threads of its slow calls share it.
 pub struct Shared {
     /// None: closed. Locked for writing only to take the hand out.
     hand: RwLock<Option<sun2xp::Hand>>,
-    /// The process that has opened the hand.
+    /// The generation of the process that has opened the hand.
     generation: u32,
 }
 
@@ -52,7 +52,7 @@ impl Shared {
 pub struct Hand(pub Arc<Shared>);
 
 impl Hand {
-    /// Makes a quick call. It holds the interpreter lock, because it takes less time than its release.
+    /// Makes a quick call. It keeps the interpreter lock, because releasing the lock would take longer than the call.
     pub fn quick<R>(
         &self,
         py: Python<'_>,
@@ -73,7 +73,7 @@ impl Hand {
 
 #[pymethods]
 impl Hand {
-    /// Takes over the hand of another object, for subclasses.
+    /// Takes the hand out of an `Opened`. Subclasses are constructed in this way.
     #[new]
     fn new(opened: &Bound<'_, Opened>) -> PyResult<Self> {
         let hand = opened.get().0.lock().take();

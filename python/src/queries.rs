@@ -131,7 +131,7 @@ impl Hand {
         records::record(py, "Limits", &fields)
     }
 
-    /// The configuration of a finger in force, in the text of JSON.
+    /// The finger's configuration in force, as JSON text.
     fn _configuration(&self, py: Python<'_>, finger: i32) -> PyResult<String> {
         let configured = self.quick(py, |hand| hand.calibrated(finger))?;
         serde_json::to_string(&configured).map_err(|error| Refusal::Argument(error.to_string()).raise(py))

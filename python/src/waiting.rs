@@ -22,7 +22,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(1);
 pub fn in_thread<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
     let (sender, mut receiver) = channel();
     let doing = "start a thread for the call";
-    // The thread inherits the mask: signals belong to the threads of the program.
+    // The thread inherits this mask, so that the threads of the program receive all signals.
     let blocked = SignalsBlocked::all();
     let started = Builder::new().name("sun2xp call".into()).stack_size(STACK_BYTES).spawn(move || {
         // If nobody waits any more, the result is dropped here. A hand is closed by that.

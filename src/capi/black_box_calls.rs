@@ -19,8 +19,8 @@ use std::path::PathBuf;
 
 /// Result of sun2xp_record: one cycle of a finger, from the black box.
 ///
-/// All cycles from oldest to newest are stored. computed is 0, and the members below are 0, if the finger
-/// was already faulted or a simulated finger had not answered.
+/// All cycles from oldest to newest are stored. If the finger was already faulted, or if a simulated finger
+/// had not answered, computed is 0, and so are all members after it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_record {

@@ -100,7 +100,7 @@ pub fn of_hand(error: &HandError) -> c_int {
     }
 }
 
-/// The number for the reasons whose kinds only their errnos distinguish.
+/// The number of a reason that is distinguished from the other reasons of its type only by its errno.
 fn by_errno(errno: c_int) -> c_int {
     match errno {
         libc::ERANGE | libc::EDOM => SUN2XP_ERROR_LIMIT,

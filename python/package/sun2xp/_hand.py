@@ -60,7 +60,7 @@ class Hand(_sun2xp.Hand):
         self._wait([fingers] if isinstance(fingers, int) else list(fingers), condition, timeout)
 
     def configuration(self, finger: int) -> Dict[str, Any]:
-        """The configuration of a finger in force, with calibrations and adjustments: the keys of `[finger]`."""
+        """The finger's configuration in force, with calibrations and adjustments: the keys of `[finger]`."""
         return json.loads(self._configuration(finger))
 
     def black_box(self, finger: int) -> Recording:

@@ -53,7 +53,7 @@ class Distribution:
 
 @_frozen
 class Losses:
-    """Numbers of the cycles of a finger and of their errors."""
+    """Counts of a finger's cycles, and of the errors in them."""
 
     #: Number of cycles.
     cycles: int

@@ -49,7 +49,7 @@ impl<T: Transport> Link<T> {
         Ok(found)
     }
 
-    /// Asks whichever finger answers for its identity.
+    /// Asks any finger at the port for its identity, and returns the answer.
     fn first_identity(&mut self, deadline: u64) -> Result<(u8, Identity), LinkError> {
         let before = self.counters();
         let began = self.transport.now();

@@ -1,4 +1,4 @@
-//! A request of a handshake that the servo sends behind its Commands, for another thread.
+//! A handshake request of another thread, which the servo sends behind its Commands.
 
 use crate::board::protocol::MAX_WIRE;
 

@@ -49,6 +49,6 @@ pub enum Arrival {
         /// The content of the answer.
         event: TactileEvent,
     },
-    /// Another answer while the answer to a relayed request is awaited.
+    /// Any other answer that arrives while the answer to a relayed request is awaited.
     Relayed(Message),
 }

@@ -32,7 +32,7 @@ impl Identification {
             let encoder_zero = self.encoder_zero(&arms, elasticity, instruments, &corrected.pretension);
             moment_arms = Some(IdentifiedArms { r: arms.r, encoder_zero });
         }
-        // The tendons were stretched with the tensions of the first evaluation.
+        // The stiffness of the tendons was found with the gauge gains of the first evaluation.
         let ratio = free.gains.component_div(&self.free.gains);
         let found = Identified {
             tendon_stiffness: elasticity.stiffness.component_mul(&ratio),
@@ -85,8 +85,9 @@ impl Identification {
         Ok(corrected)
     }
 
-    /// Returns `encoder.zero` with which the joint angles are right with the moment arms `arms` and their pretension,
-    /// N: at the stops if their angles are known, and otherwise in the pose in which the encoders were zeroed.
+    /// Returns the `encoder.zero` that corrects the joint angles for the moment arms `arms` and for their pretension
+    /// `pretension`, N. The angles are then right at the stops, if the angles of the stops are known. Otherwise they
+    /// are right in the pose in which the encoders were zeroed.
     fn encoder_zero(
         &self,
         arms: &MomentArmsFound,
@@ -96,8 +97,8 @@ impl Identification {
     ) -> [i32; 4] {
         let stretched = |tensions: &Vector4<f64>| elasticity.stretch(tensions, &Vector4::zeros());
         let too_far = if self.stops_known {
-            // The travel at zero is from the configured zero. A finger at its zero has its pretension. A counter rounds
-            // down to whole counts, so its count is half a count too low on average.
+            // `at_zero` counts from the configured zero. A finger at its zero has its pretension. A counter rounds down
+            // to whole counts, so its count is half a count too low on average.
             let cm_per_count = instruments.radius.component_mul(&instruments.radians_per_count);
             arms.at_zero + stretched(pretension) + cm_per_count * 0.5
         } else {
