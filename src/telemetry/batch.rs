@@ -28,7 +28,7 @@ impl Batch {
         Self { bytes: vec![0; BLOCK + LARGEST_MESSAGE], used: 0, before: [0; MARKS], after: [0; MARKS] }
     }
 
-    /// Counts cycles of a finger, from 0, which are in the next message or lost.
+    /// Counts cycles of a finger that are in the next message or lost. Here the first finger has the number 0.
     pub fn count(&mut self, finger: usize, cycles: u64) {
         self.after[finger] += cycles;
     }

@@ -144,7 +144,7 @@ impl Publisher {
             self.last[finger.index()] = Some(LastCycle { number: record.cycle, ends });
             if let Some(ring) = &mut self.ring {
                 if missing > 0 {
-                    // The lost cycles are counted before a block, where a reader looks for them.
+                    // A reader takes the number of lost cycles from the beginning of a block. So a block ends here.
                     ring.batch.write(&mut ring.writer);
                     ring.batch.count(finger.index(), missing);
                     ring.batch.write(&mut ring.writer);

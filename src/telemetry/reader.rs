@@ -159,7 +159,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Takes the calls that announce batches. Returns whether the hand has been closed or its process has ended.
+    /// Takes the messages that announce batches. Returns whether the hand has been closed or its process has ended.
     fn has_ended(&self) -> bool {
         let mut bytes = [0; 16];
         loop {

@@ -119,7 +119,7 @@ impl Socket {
         if sent < 0 { Err(io::Error::last_os_error()) } else { Ok(()) }
     }
 
-    /// Receives a message, of which at most as much is kept as `bytes` has room for.
+    /// Receives a message into `bytes`. Bytes of the message for which there is no room are lost.
     ///
     /// # Errors
     /// Returns `WouldBlock` if there is no message.

@@ -10,7 +10,7 @@ use crate::realtime::CycleStage;
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, Vector3};
 use std::collections::BTreeMap;
 
-/// What samples of a hand's fingers are computed with.
+/// Converts the cycles of a hand's fingers to samples.
 pub struct View {
     rate: f64,
     fingers: [FingerView; FINGERS],

@@ -22,13 +22,14 @@ use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, RATES, Scheme};
 ///
 /// The search simulates the configured controller, links, tendons and motors, without friction, with exact measurements
 /// and one cycle of delay. It covers a set of plants that differ from the configuration: rotors, links, tendons and
-/// motors, amplifier lag, an extra cycle of delay, held masses, lost replies. Poses within the joint limits, axes of
-/// Kx, contact types, both laws, damping and loads are random, without and with walls of 30 to 1000 N/cm. Every motion
-/// must decay to 1/e within 10 s. In a pose whose tendons support less than the bound, the servo scales Kx down, and so
-/// does the search. The bound is low enough that no pose needs a scale below one half.
+/// motors, amplifier lag, an extra cycle of delay, held masses, lost replies. The samples are random: poses within the
+/// joint limits, axes of Kx, contact types, both laws, damping and loads. Each plant is searched without walls, and
+/// with walls of 30 to 1000 N/cm. Every motion must decay to 1/e within 10 s. In a pose whose tendons support less than
+/// the bound, the servo scales Kx down, and so does the search. The bound is low enough that no pose needs a scale
+/// below one half.
 ///
 /// The bound of the finger is the least bound of all plants. The number in brackets counts the samples that are
-/// unstable with a spring of 1 N/cm too. A plant with such samples is reported, but does not limit the bound, because
+/// unstable even with a spring of 1 N/cm. A plant with such samples is reported, but does not limit the bound, because
 /// no bound makes it stable. With the default number of samples, the search takes one to two minutes on two cores for
 /// each kind of finger.
 #[derive(clap::Args)]

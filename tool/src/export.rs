@@ -88,7 +88,7 @@ impl Files<'_> {
         }
     }
 
-    /// Time since the first cycle, s. An event may be a little older.
+    /// Time since the first cycle, s. It is negative for an event that is a little older than the first cycle.
     fn seconds(&mut self, time: u64) -> f64 {
         let start = *self.start.get_or_insert(time);
         time.wrapping_sub(start).cast_signed() as f64 * 1e-9

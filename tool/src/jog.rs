@@ -20,8 +20,8 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::{Hand, hand};
 use worker::Worker;
 
-/// Opens a hand and moves it by keys: joints or fingertips, stiffness, and pushes on the simulated hand, which gives.
-/// Shows the hand as `sun2xp monitor` does.
+/// Opens a hand and moves it by keys. The keys move joints or fingertips, change the stiffness, and push the fingertips
+/// of the simulated hand, which give. Shows the hand as `sun2xp monitor` does.
 ///
 /// Without --config the hand is simulated. Before a real hand moves, the command asks, and its steps are limited. The
 /// space bar stops all fingers. ? shows all keys.

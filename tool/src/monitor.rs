@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !Screen::available() {
         return Err("the monitor needs a terminal: use `sun2xp status` for a file, a pipe or a script".into());
     }
-    // A person who has to choose needs the names and the shell.
+    // If the person has to choose a hand, the shell shows the names. So this comes before the view takes the terminal.
     let names = telemetry::hands()?;
     if arguments.name.is_none() && names.len() > 1 {
         return Err(Box::new(AttachError::Several(names)));

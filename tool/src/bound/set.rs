@@ -14,8 +14,8 @@ const SAMPLES_OF_SET: usize = 400;
 /// Samples for the nominal plant alone.
 const SAMPLES_OF_NOMINAL: usize = 2000;
 
-/// Fraction of the samples of the nominal plant without walls. If more are unstable at any stiffness, the controller is
-/// useless. A few almost straight poses with a very slow motion do not make it so.
+/// A controller is useless if more than this fraction of the samples are unstable at every stiffness. The samples are
+/// those of the nominal plant without walls. A few almost straight poses with a very slow motion are permitted.
 const USELESS: f64 = 0.1;
 
 /// The bounds of all plants.
@@ -37,7 +37,7 @@ struct Member {
     limit: LimitFound,
     /// Number of samples clear of the axis of joint 0.
     samples: usize,
-    /// Number of samples that are unstable at any stiffness. The bound does not cover them.
+    /// Number of samples that are unstable at every stiffness. The bound does not cover them.
     uncovered: usize,
     uncovered_example: Option<Sample>,
     /// The softest wall of an uncovered sample, N/cm. `None` without walls or uncovered samples.
@@ -81,10 +81,10 @@ fn places(arguments: &Arguments) -> &'static [bool] {
 }
 
 /// Searches the bounds of all plants, and returns the least one, N/cm. Except for the nominal plant without walls, a
-/// plant with samples that are unstable at any stiffness does not count: no bound makes it stable.
+/// plant with samples that are unstable at every stiffness does not count: no bound makes it stable.
 ///
 /// # Errors
-/// If the nominal plant without walls is often unstable at any stiffness, there is no bound.
+/// If the nominal plant without walls is often unstable at every stiffness, there is no bound.
 pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -> Result<(f64, SetBound), Failure> {
     let Searched { number, finger, rate } = *searched;
     let usual = if arguments.nominal { SAMPLES_OF_NOMINAL } else { SAMPLES_OF_SET };
@@ -104,7 +104,7 @@ pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -
     let nominal = plants.first().ok_or("the set of plants is empty")?;
     if nominal.uncovered as f64 > USELESS * nominal.samples as f64 {
         return Err(format!(
-            "finger {number}: controller leaves the finger unstable at any stiffness in {} of {} poses: remove the \
+            "finger {number}: controller leaves the finger unstable at every stiffness in {} of {} poses: remove the \
              gains from this table, or choose another scheme",
             nominal.uncovered, nominal.samples
         )
@@ -166,7 +166,7 @@ impl Member {
 impl SetBound {
     pub fn write(&self, out: &mut impl Write, screen: &Screen, searched: &Searched) -> io::Result<()> {
         let Searched { number, rate, .. } = searched;
-        writeln!(out, "finger {number}, bounds in N/cm (samples that are unstable at any stiffness):\n")?;
+        writeln!(out, "finger {number}, bounds in N/cm (samples that are unstable at every stiffness):\n")?;
         write!(out, "{}", self.table().text(screen))?;
         let least = &self.plants[self.limited_by];
         writeln!(

@@ -59,7 +59,7 @@ pub enum Refused {
         asked: String,
         most: String,
     },
-    /// No finger runs that could be opened or closed.
+    /// No finger runs, so none can be opened or closed.
     NoneRuns,
 }
 

@@ -12,7 +12,7 @@ use sun2xp::model::configuration::Configuration;
 /// Largest number of commands that wait.
 const MOST_WAITING: usize = 4;
 
-/// The end of the keys.
+/// The thread, as the code that handles the keys sees it.
 pub struct Worker {
     commands: Option<Sender<(u64, Command)>>,
     results: Receiver<(String, bool)>,

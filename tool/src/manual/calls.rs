@@ -8,7 +8,8 @@ use clap_mangen::roff::{Roff, roman};
 struct Comment<'a> {
     name: &'a str,
     purpose: &'a str,
-    /// The declaration below the comment. A comment may begin with the declaration, with other names of parameters.
+    /// The declaration below the comment. A comment may begin with a declaration of its own, in which the parameters
+    /// have other names. The page then shows that one instead.
     declaration: &'a str,
     /// The lines after the first, without the space with which they begin.
     lines: Vec<&'a str>,

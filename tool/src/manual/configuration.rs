@@ -27,7 +27,7 @@ pub fn page(file: &str) -> Page {
         } else if let Some(line) = trimmed.strip_prefix('#') {
             comment.push(line.strip_prefix(' ').unwrap_or(line));
         } else if tables {
-            // An empty line ends the comment of a key, and further lines of a value need no comment.
+            // This line is empty, or it continues a value. In both cases the comment before it is no longer needed.
             comment.clear();
         }
     }

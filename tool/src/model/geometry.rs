@@ -183,7 +183,8 @@ fn body(finger: &ConfiguredFinger, index: usize) -> Body {
     let transverse = axial / 2.0 + mass * length * length / 12.0;
     let tip = if index == 2 { simulation.masses[3] + simulation.held_mass } else { 0.0 };
     let total = mass + tip;
-    // Two masses at a distance of half the length: the parallel-axis terms add to the reduced mass times its square.
+    // The centres of the two masses are half the length apart. Their parallel-axis terms add up to the reduced mass
+    // times the square of this distance.
     let spread = mass * tip / total * (length / 2.0).powi(2);
     Body { mass: total, centre: (mass * length / 2.0 + tip * length) / total, transverse: transverse + spread, axial }
 }

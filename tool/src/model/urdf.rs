@@ -12,7 +12,7 @@ use sun2xp::nalgebra::Vector3;
 pub fn urdf(geometry: &Geometry, configuration: &Configuration) -> String {
     let mut xml = Xml::new("Written by sun2xp model --urdf. Lengths are in m, masses in kg, angles in rad.");
     xml.open("robot", &[("name", &"sun2xp")]);
-    // MuJoCo would otherwise merge the fingertips, which do not move in the last links, with these links.
+    // Otherwise MuJoCo would merge each fingertip with the last link, because the tip does not move in that link.
     xml.open("mujoco", &[]);
     xml.empty("compiler", &[("fusestatic", &"false"), ("discardvisual", &"false"), ("balanceinertia", &"false")]);
     xml.close();
@@ -84,7 +84,8 @@ fn joint(
         "limit",
         &[("lower", &stops[0]), ("upper", &stops[1]), ("effort", &effort), ("velocity", &configured.motion.speed)],
     );
-    // The soft limits of the controller. No position gain of a planner is known.
+    // The soft limits of the controller. The gains of a planner are not known: `k_velocity` is 0, and `k_position` is
+    // left out.
     let soft = [("soft_lower_limit", limits[0]), ("soft_upper_limit", limits[1]), ("k_velocity", 0.0)];
     let soft: Vec<Attribute> = soft.iter().map(|(key, value)| (*key, value as _)).collect();
     xml.empty("safety_controller", &soft);

@@ -100,7 +100,7 @@ fn draw_hand(frame: &mut Frame, area: Rect, view: &View, palette: &Palette, hand
 /// Divides the height: fingers, faults, and events with timing.
 fn split(area: Rect, view: &View, faults: u16) -> [Rect; 3] {
     let room = area.height - faults;
-    // The names of the fingers have a line where not all fingers are shown.
+    // A narrow terminal may not show all fingers. Then one more line has their names.
     let compact = FRAME + finger::COMPACT + u16::from(area.width < SIDE_BY_SIDE);
     // The panel with the detail is below the fingers where there is room for both, and otherwise in their place.
     let (least, complete) = match view.selected {

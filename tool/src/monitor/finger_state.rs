@@ -64,7 +64,7 @@ pub struct FingerState {
     /// Largest force at the tip in each tenth of a second, N, the newest last, with the number of the tenth.
     #[serde(skip)]
     pub force_history: VecDeque<(u64, f64)>,
-    /// The fault of `fault`.
+    /// The fault that `fault` describes.
     #[serde(skip)]
     stopped: Option<Fault>,
     #[serde(skip)]

@@ -30,7 +30,7 @@ const TEXT: f64 = 880.0;
 const LINES_OF_FAULT: usize = 4;
 const LINES_OF_WARNING: usize = 3;
 
-/// A time of a finger, from its first cycle to the end of its last one, s, and its name.
+/// A span of time, with its name. It lasts from the beginning of its first cycle to the end of its last cycle, s.
 struct Span {
     from: f64,
     to: f64,
@@ -128,7 +128,8 @@ impl Lane {
         ];
         for (index, (spans, state)) in self.rows.iter_mut().zip(states).enumerate() {
             let Some(name) = state else { continue };
-            // Only replies are lost one by one. Periods differ a little from their nominal length.
+            // A span of lost replies ends at the first reply that arrives. The tolerance of half a period is necessary,
+            // because periods differ a little from their nominal length. Other spans continue after short pauses.
             let near = if index < LOST { LONGEST_PAUSE } else { 0.5 * period };
             match spans.last_mut().filter(|last| last.name == name && seconds - last.to < near) {
                 Some(last) => last.to = seconds + period,

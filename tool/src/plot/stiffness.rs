@@ -101,8 +101,9 @@ impl Plot for Stiffness {
     }
 }
 
-/// The outline, in the plane of two axes, of the forces K u for all deflections u of 1 cm. They form an ellipsoid. Its
-/// projection is the ellipse with the matrix of the two rows of K times their transpose.
+/// The outline, in the plane of two axes, of the forces K u for all deflections u of 1 cm. The forces form an
+/// ellipsoid, and its projection onto the plane is an ellipse. If A is the two rows of K, the ellipse has the matrix
+/// A A^T.
 fn ellipse(stiffness: &Matrix3<f64>, i: usize, j: usize) -> Vec<[f64; 2]> {
     let (one, other) = (stiffness.row(i), stiffness.row(j));
     let (a, b, c) = (one.dot(&one), one.dot(&other), other.dot(&other));
@@ -127,7 +128,7 @@ mod tests {
     use super::*;
     use sun2xp::nalgebra::Vector3;
 
-    /// Every deflection of 1 cm has a force within the outline, and the largest one in a direction is on it.
+    /// The forces of all deflections of 1 cm are within the outline. The largest force in each direction is on it.
     #[test]
     fn the_outline_is_the_largest_force_in_every_direction() {
         let stiffness = Matrix3::new(4.0, 1.0, -0.5, 1.0, 2.0, 0.3, -0.5, 0.3, 3.0);

@@ -31,8 +31,9 @@ struct Lines {
     done: u64,
     total: u64,
     now: String,
-    /// Whether every new value of `now` is due at once, and whether the present one is.
+    /// Whether every new value of `now` gets a line at once.
     named: bool,
+    /// Whether `now` has a new value that must get a line at once.
     renamed: bool,
 }
 
@@ -44,7 +45,7 @@ impl Progress {
         Self { what, bar, lines: Mutex::new(Lines::new(total)) }
     }
 
-    /// Prints a line for everything that is done, where standard error is not a terminal.
+    /// Prints a line at once for each new name of [`Self::now`], where standard error is not a terminal.
     pub fn with_every_name(self) -> Self {
         self.change(|lines| lines.named = true);
         self

@@ -73,7 +73,7 @@ impl Table {
         let mut table = comfy_table::Table::new();
         let rule = LineStyle::none().fill('─').junction('─');
         table.load_style(if screen.lines { NOTHING.header_separator(rule) } else { NOTHING });
-        // This module finds out whether the output is a terminal, so that tests can choose.
+        // `screen` says what the output can show, so that tests can choose. The table must not find out by itself.
         table.force_no_tty();
         if screen.coloured {
             table.enforce_styling();

@@ -103,7 +103,7 @@ impl Recording {
         &self.description
     }
 
-    /// Returns whether the file ends as its recorder has ended it. It is false until the last entry has been read, and
+    /// Returns whether the recorder has finished the file. The result is false until the last entry has been read, and
     /// stays false if the recorder was killed.
     pub fn is_complete(&self) -> bool {
         self.complete

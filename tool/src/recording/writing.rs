@@ -68,7 +68,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
             .profile("ros2")
             .library(concat!("sun2xp ", env!("CARGO_PKG_VERSION")))
             .chunk_size(Some(CHUNK_BYTES))
-            // A chunk is written as a whole, so a recording that ends at any time has complete chunks.
+            // The writer then writes each chunk as a whole. Even a recording that is cut off has complete chunks.
             .disable_seeking(true)
             .compression_level(COMPRESSION)
             .compression_threads(0)

@@ -64,7 +64,7 @@ fn every_cycle_of_a_recording_is_a_row_and_lost_cycles_are_marked() {
     let of = |kind| marks.iter().filter(move |mark| mark.kind == kind);
     let gap = of(MarkKind::Gap).next().expect("a gap");
     assert_eq!((gap.finger, gap.text.as_str()), (Some(2), "12 cycles are not recorded"));
-    // Its time is that of the cycles before it, although the file has the time of day.
+    // The file has the time of day of the gap. The mark has a time of the monotonic clock, near those of the cycles.
     let nearest = rows.iter().map(|row| row.sample.began.abs_diff(gap.time)).min().expect("a row");
     assert!(nearest < 1_000_000_000, "{nearest} ns");
     let events = messages.iter().filter(|message| matches!(message, Message::Event(_))).count();

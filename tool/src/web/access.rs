@@ -53,7 +53,8 @@ impl Access {
             return Err(Refusal::Host);
         }
         if !headers.contains_key(ORIGIN) {
-            // Browsers send it with every request for data of another page, and with every WebSocket.
+            // This is no request of a foreign page. A browser sends `Origin` with every WebSocket, and whenever a page
+            // requests data of another page.
             return Ok(());
         }
         let own = only(headers, ORIGIN.as_str()).and_then(|origin| origin.strip_prefix("http://"));

@@ -44,7 +44,7 @@ pub fn run(source: &Source, control: bool, hub: &Hub) {
 
 /// Publishes a message.
 pub fn publish(hub: &Hub, kind: Kind, message: &ToPage) {
-    // All keys of these messages are texts, and JSON has null for numbers that are not finite.
+    // This always succeeds: all keys are texts, and a number that is not finite becomes null.
     if let Ok(text) = serde_json::to_string(message) {
         hub.publish(kind, text);
     }

@@ -20,11 +20,11 @@ pub enum Kind {
     Gone,
     /// Samples. A new page gets later ones only.
     Batch,
-    /// State of a finger, of which the newest counts.
+    /// State of a finger. A new page gets the newest one.
     State(i32),
-    /// Status of a finger, of which the newest counts.
+    /// Status of a finger. A new page gets the newest one.
     Status(i32),
-    /// Events, of which many count.
+    /// Events. A new page gets the last [`EVENTS`].
     Events,
 }
 
@@ -75,8 +75,8 @@ impl Hub {
                 }
             }
         }
-        // An error means that there is no page. The lock is still held, so that a page which connects now gets this
-        // message either here or with all others.
+        // An error means that there is no page. The lock is still held. So a page that connects now gets this message
+        // once: from this call, or from `subscribe` with all others.
         let _ = self.sender.send(Update { kind, text });
     }
 

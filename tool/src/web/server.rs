@@ -1,4 +1,5 @@
-//! The server: one thread, files for anybody of this address, and data for those who may have it.
+//! The server, which has one thread. It gives the files of the page to everybody who requests them at this address, and
+//! data to those who may have it.
 
 use super::access::{Access, Refusal};
 use super::control::Control;

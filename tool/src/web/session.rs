@@ -81,7 +81,7 @@ impl Session {
                 update = updates.recv() => match update {
                     Ok(update) => self.pass_on(update).await?,
                     Err(RecvError::Lagged(_)) => {
-                        // Batches are lost, which the page counts. All else is repeated.
+                        // The page has missed messages. It counts the lost batches. All other messages are repeated.
                         let (known, anew) = self.hub.subscribe();
                         updates = anew;
                         self.send_all(known).await?;
@@ -116,7 +116,8 @@ impl Session {
             Message::Close(_) => return Err(End),
         };
         match serde_json::from_str(&text) {
-            // Batches that were left out have numbers too, so acknowledgements are counted.
+            // The number of a batch also counts batches that this page did not get. So it is not used, and the
+            // acknowledgements are counted.
             Ok(Request::Received(Received { received: 1.. })) => self.received = self.sent.min(self.received + 1),
             Ok(Request::Received(_)) => return self.close("an acknowledgement of no batch").await,
             Ok(Request::Command(command)) => return self.order(command).await,

@@ -249,7 +249,7 @@ fn quantiles(distribution: &Distribution) -> Quantiles {
     Quantiles { median, p99, p999, most: maximum }
 }
 
-/// Returns a time in s after `beginning`. It may be before.
+/// Returns the time from `beginning` to `time`, s. It is negative if `time` is earlier.
 fn seconds(time: u64, beginning: u64) -> f64 {
     (time as i64).wrapping_sub(beginning as i64) as f64 * 1e-9
 }

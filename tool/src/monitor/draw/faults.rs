@@ -33,7 +33,8 @@ pub fn lines(palette: &Palette, hand: &HandState, width: usize) -> Vec<Line<'sta
     let mut lines = Vec::new();
     for (fingers, text, style) in texts {
         for (index, line) in wrap(&format!("{fingers}, {text}"), width.saturating_sub(3)).into_iter().enumerate() {
-            // The first line has the fault, the others cause and remedy, which are read and not only noticed.
+            // The first line has the fault, and its colour makes it noticed. The other lines have cause and remedy, and
+            // no colour, because they must be easy to read.
             let sign = if index == 0 { "! " } else { "  " };
             lines.push(Line::styled(format!(" {sign}{line}"), if index == 0 { style } else { Style::new() }));
         }
