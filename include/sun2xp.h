@@ -578,10 +578,10 @@ int sun2xp_position(sun2xp_hand *hand, int finger, double *position);
  force is computed from the measured tensions, so it includes friction, weight and inertia of the finger.
  It is never NaN. Near singular poses there are directions that the joints cannot measure. Along these,
  force and stiffness are zero. contact_force does not contain constant errors of the gauges. It is zero
- while the finger is not running. stiffness is a sum: the part of Kx that is in force, and what the joint
- limits, a tip near the axis of joint 0 and the rotational stiffness of a contact add. It is zero while
- the finger is not running. slide_speed is 0 while touching is 0. While touching is 1, the tip slides on
- the object with this speed, or moves the object with it.
+ while the finger is not running. stiffness contains the part of Kx that is in force. The joint limits, a
+ tip near the axis of joint 0 and the rotational stiffness of a contact add to it. It is zero while the
+ finger is not running. slide_speed is 0 while touching is 0. While touching is 1, the tip slides on the
+ object at this speed, or tip and object move together at this speed.
  */
 struct sun2xp_tip {
     size_t size;                            /* sizeof (struct sun2xp_tip), set before the call. */
@@ -742,9 +742,9 @@ int sun2xp_send_damping(sun2xp_hand *hand, int finger, double ratio);
 
  The torque of the joints is stiffness (d - p), with the desired angles d and the measured angles p of
  joints 0, 1 and 2. The stiffness takes effect like Kx, without a jump in torque: 95 % of the change has
- taken effect after 50 ms. It replaces the Kx or contact that was sent last, and a later
- sun2xp_send_stiffness, sun2xp_send_contact, or Kx of sun2xp_send_group or sun2xp_send_path replaces it.
- The torque of sun2xp_send_joint_torque stays. The stiffness must be symmetric and must have no negative eigenvalue,
+ taken effect after 50 ms. It replaces the Kx or contact that was sent last. A later sun2xp_send_stiffness
+ or sun2xp_send_contact replaces it, and so does a Kx of sun2xp_send_group or sun2xp_send_path. The torque
+ of sun2xp_send_joint_torque stays. The stiffness must be symmetric and must have no negative eigenvalue,
  as for sun2xp_send_stiffness. It may be zero.
 
  The largest eigenvalue may be at most the bound of Kx times l2 l2, where l2 is the length of the
@@ -791,7 +791,7 @@ int sun2xp_send_joint_stiffness(sun2xp_hand *hand, int finger, const double *sti
    EFAULT   torque is null
    ENODEV   no such hand
    EINVAL   no such finger; a torque is NaN or infinite
-   ERANGE   the tendons cannot make torque (hand.out_of_range = "clamp" scales it instead)
+   ERANGE   the tendons cannot produce this torque (hand.out_of_range = "clamp" scales it instead)
    EIO      the finger is faulted
 
  Threads: any. Never waits for a servo. Takes about 1 us.
@@ -838,7 +838,7 @@ struct sun2xp_set_point {
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
  "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
- This happens about once whenever two of the clocks have drifted apart by another period.
+ This happens about once each time that two of the clocks have drifted apart by one more period.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -922,10 +922,10 @@ struct sun2xp_path_pose {
 
  The path begins at once where the anchor of the fingertip's spring is, continues its motion, passes
  every pose at its time and rests at the last one. Between poses the joint angles, or the tip, follow a
- spline. From rest to a single position of the tip, the tip moves along a straight line. Speed,
- acceleration and jerk are continuous. Because they are fed forward, the finger follows without the lag
- of sun2xp_send_position. Between two poses that have a Kx, Kx changes linearly. Before the first of them,
- it changes linearly from the Kx in force at the beginning.
+ spline. If the path begins at rest and its only pose is a position of the tip, the tip moves along a
+ straight line. Speed, acceleration and jerk are continuous. Because they are fed forward, the finger
+ follows without the lag of sun2xp_send_position. Between two poses that have a Kx, Kx changes linearly.
+ Before the first of them, it changes linearly from the Kx in force at the beginning.
 
  The whole path is checked before anything moves: against the joint limits, and against speed,
  acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -1006,7 +1006,7 @@ struct sun2xp_joint_torques {
 struct sun2xp_palm_pose {
     size_t size;                            /* sizeof (struct sun2xp_palm_pose), set before the call. */
     double base[3];                         /* Origin of the finger's frame: x, y, z, cm. */
-    double rotation[3][3];                  /* Axes of the finger's frame as columns, row by row. */
+    double rotation[3][3];                  /* Matrix, row by row. Its columns are the axes of the finger's frame. */
     double tip[3];                          /* Position of the tip, from the measured joint angles: x, y, z, cm. */
     double tip_rotation[3][3];              /* Axes of the last link as columns; z points to the tip. */
 };
@@ -1472,7 +1472,7 @@ struct sun2xp_timing {
     unsigned long p99;                      /* 99 of 100 cycles took no longer. */
     unsigned long p999;                     /* 999 of 1000 cycles took no longer. */
     unsigned long maximum;                  /* Longest time of the stage. */
-    unsigned long cycles;                   /* All cycles of the finger. From here on independent of stage. */
+    unsigned long cycles;                   /* All cycles of the finger. From here on, no member depends on stage. */
     unsigned long overruns;                 /* Cycles that were not over when the next one was due. */
     unsigned long skipped_periods;          /* Whole periods in which no cycle began because the previous cycle was
                                                not over or the servo thread did not run, up to the last cycle. */
@@ -1935,8 +1935,8 @@ int sun2xp_on_event(sun2xp_hand *hand, void (*callback)(const struct sun2xp_even
  sun2xp_event_descriptor - a descriptor for poll and select
 
  The descriptor is readable while sun2xp_next_event would return an event, and when the hand is closed.
- sun2xp_next_event makes it unreadable when it returns 0, so call sun2xp_next_event until it returns 0
- after each poll. Do not read, write or close the descriptor. sun2xp_close closes it.
+ sun2xp_next_event makes it unreadable when it returns 0. So after each poll, call sun2xp_next_event until
+ it returns 0. Do not read, write or close the descriptor. sun2xp_close closes it.
 
  Returns the descriptor, the same one until sun2xp_close, or a negative number with
    EPERM    forked child
@@ -1998,7 +1998,7 @@ struct sun2xp_reflex {
     double value;                           /* SUN2XP_THEN_GRIP: increase of the force, N. SUN2XP_THEN_DAMP: ratio. */
     double largest;                         /* SUN2XP_THEN_GRIP: largest force, N. */
     double refractory;                      /* Time after a reaction in which it does not fire, s, 0 to 3600. */
-    double inhibition;                      /* Time after a reaction without set points, s, 0 to 3600. */
+    double inhibition;                      /* Time after a reaction in which set points are ignored, s, 0 to 3600. */
     double position[3];                     /* RETRACT: joint angles, rad. GRIP: direction of the force. */
     double stiffness[3][3];                 /* SUN2XP_THEN_SOFTEN: stiffness, N/cm, row by row. */
 };

@@ -187,8 +187,8 @@ pub extern "C" fn sun2xp_on_event(
 /// sun2xp_event_descriptor - a descriptor for poll and select
 ///
 /// The descriptor is readable while sun2xp_next_event would return an event, and when the hand is closed.
-/// sun2xp_next_event makes it unreadable when it returns 0, so call sun2xp_next_event until it returns 0
-/// after each poll. Do not read, write or close the descriptor. sun2xp_close closes it.
+/// sun2xp_next_event makes it unreadable when it returns 0. So after each poll, call sun2xp_next_event until
+/// it returns 0. Do not read, write or close the descriptor. sun2xp_close closes it.
 ///
 /// Returns the descriptor, the same one until sun2xp_close, or a negative number with
 ///   EPERM    forked child

@@ -19,10 +19,10 @@ use std::ffi::c_int;
 /// force is computed from the measured tensions, so it includes friction, weight and inertia of the finger.
 /// It is never NaN. Near singular poses there are directions that the joints cannot measure. Along these,
 /// force and stiffness are zero. contact_force does not contain constant errors of the gauges. It is zero
-/// while the finger is not running. stiffness is a sum: the part of Kx that is in force, and what the joint
-/// limits, a tip near the axis of joint 0 and the rotational stiffness of a contact add. It is zero while
-/// the finger is not running. slide_speed is 0 while touching is 0. While touching is 1, the tip slides on
-/// the object with this speed, or moves the object with it.
+/// while the finger is not running. stiffness contains the part of Kx that is in force. The joint limits, a
+/// tip near the axis of joint 0 and the rotational stiffness of a contact add to it. It is zero while the
+/// finger is not running. slide_speed is 0 while touching is 0. While touching is 1, the tip slides on the
+/// object at this speed, or tip and object move together at this speed.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_tip {

@@ -86,7 +86,7 @@ impl HandEvents {
         }
     }
 
-    /// Returns a function that makes a call of the planner's callback known to [`in_callback`] and [`end`].
+    /// Wraps the planner's callback in a function that lets [`in_callback`] and [`end`] know while the callback runs.
     fn guarded(&'static self, mut callback: impl FnMut(&Event, u64)) -> impl FnMut(&Event, u64) {
         move |event, lost| {
             let _calling = self.calling.lock();

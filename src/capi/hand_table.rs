@@ -164,7 +164,7 @@ impl Place {
         // Dropping the hand takes a long time. `hand` is already unlocked, so other calls are refused instead of
         // waiting.
         drop(opened);
-        // The callback may take longer than the hand.
+        // The callback comes last, because waiting for it may take longer than closing the hand.
         self.events.close(in_callback);
     }
 }

@@ -33,7 +33,7 @@ pub struct sun2xp_palm_pose {
     pub size: usize,
     /// Origin of the finger's frame: x, y, z, cm.
     pub base: [f64; 3],
-    /// Axes of the finger's frame as columns, row by row.
+    /// Matrix, row by row. Its columns are the axes of the finger's frame.
     pub rotation: [[f64; 3]; 3],
     /// Position of the tip, from the measured joint angles: x, y, z, cm.
     pub tip: [f64; 3],

@@ -91,7 +91,7 @@ pub struct sun2xp_reflex {
     pub largest: c_double,
     /// Time after a reaction in which it does not fire, s, 0 to 3600.
     pub refractory: c_double,
-    /// Time after a reaction without set points, s, 0 to 3600.
+    /// Time after a reaction in which set points are ignored, s, 0 to 3600.
     pub inhibition: c_double,
     /// RETRACT: joint angles, rad. GRIP: direction of the force.
     pub position: [c_double; 3],

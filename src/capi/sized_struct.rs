@@ -42,7 +42,7 @@ impl<T: Copy> SizedStruct<T> {
         if (least..=LARGEST).contains(&size) { Ok(()) } else { Err(Refusal::WrongSize { name, size, least }) }
     }
 
-    /// Copies the struct with this index of an array whose first one this is.
+    /// Copies a struct of an array. `self` is the first struct of the array, and `index` selects the copied one.
     ///
     /// # Safety
     /// [`Self::check`] has succeeded, and the array has this index.

@@ -18,9 +18,9 @@ use std::ffi::c_int;
 ///
 /// The torque of the joints is stiffness (d - p), with the desired angles d and the measured angles p of
 /// joints 0, 1 and 2. The stiffness takes effect like Kx, without a jump in torque: 95 % of the change has
-/// taken effect after 50 ms. It replaces the Kx or contact that was sent last, and a later
-/// sun2xp_send_stiffness, sun2xp_send_contact, or Kx of sun2xp_send_group or sun2xp_send_path replaces it.
-/// The torque of sun2xp_send_joint_torque stays. The stiffness must be symmetric and must have no negative eigenvalue,
+/// taken effect after 50 ms. It replaces the Kx or contact that was sent last. A later sun2xp_send_stiffness
+/// or sun2xp_send_contact replaces it, and so does a Kx of sun2xp_send_group or sun2xp_send_path. The torque
+/// of sun2xp_send_joint_torque stays. The stiffness must be symmetric and must have no negative eigenvalue,
 /// as for sun2xp_send_stiffness. It may be zero.
 ///
 /// The largest eigenvalue may be at most the bound of Kx times l2 l2, where l2 is the length of the
@@ -77,7 +77,7 @@ pub unsafe extern "C" fn sun2xp_send_joint_stiffness(
 ///   EFAULT   torque is null
 ///   ENODEV   no such hand
 ///   EINVAL   no such finger; a torque is NaN or infinite
-///   ERANGE   the tendons cannot make torque (hand.out_of_range = "clamp" scales it instead)
+///   ERANGE   the tendons cannot produce this torque (hand.out_of_range = "clamp" scales it instead)
 ///   EIO      the finger is faulted
 ///
 /// Threads: any. Never waits for a servo. Takes about 1 us.

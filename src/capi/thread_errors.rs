@@ -10,7 +10,7 @@ use std::fmt::Display;
 /// the planner.
 pub(super) const REMEMBERED: usize = 4;
 
-/// Texts of the library are shorter, because they abbreviate what they quote.
+/// Room for a text, bytes. The texts of the library are shorter, because they abbreviate what they quote.
 const TEXT: usize = 2048;
 
 /// The last refusal of a hand.
@@ -74,9 +74,9 @@ impl Errors {
     }
 }
 
-/// Stores a refusal of the calling thread. Returns false if it could not, because a signal handler has interrupted this
-/// function and makes a call that it may not make, or because a log callback makes the call. errno still reports such a
-/// refusal.
+/// Stores a refusal of the calling thread. Returns false if the refusals of the thread are in use. This is so if a
+/// signal handler has interrupted this function and makes a call that it may not make, or if a log callback makes the
+/// call. errno still reports such a refusal.
 pub(super) fn store(
     handle: Handle,
     number: c_int,

@@ -61,7 +61,7 @@ pub struct sun2xp_timing {
     pub p999: c_ulong,
     /// Longest time of the stage.
     pub maximum: c_ulong,
-    /// All cycles of the finger. From here on independent of stage.
+    /// All cycles of the finger. From here on, no member depends on stage.
     pub cycles: c_ulong,
     /// Cycles that were not over when the next one was due.
     pub overruns: c_ulong,

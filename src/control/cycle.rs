@@ -170,9 +170,9 @@ impl Controller {
         self.cycle(state, feedback, activity)
     }
 
-    /// Changes the gravity that the next cycles compensate to `gravity`, m/s^2 in the finger's frame. This value is an
-    /// input of every cycle, like the set point: a hand on a moving arm changes it all the time. A large change is
-    /// spread over some cycles, so that it is no jump in torque. The first value after a start takes effect at once.
+    /// Sets the gravity that the next cycles compensate, m/s^2 in the finger's frame. This value is an input of every
+    /// cycle, like the set point: a hand on a moving arm changes it all the time. A large change is spread over some
+    /// cycles, so that it is no jump in torque. The first value after a start takes effect at once.
     pub fn approach_gravity(&self, state: &mut State, gravity: &Vector3<f64>) {
         self.gravity.approach(&mut state.gravity, gravity);
     }

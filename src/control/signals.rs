@@ -39,8 +39,8 @@ pub struct SetPoint {
     /// Damping relative to the damping that the controller computes from the stiffness.
     /// [`AdmissibleDamping`](crate::control::AdmissibleDamping) defines the permitted range.
     pub damping: f64,
-    /// The motion of `joints`; none for a set point at rest, whose steps the controller itself smooths. The controller
-    /// follows a set point with a motion without a lag.
+    /// The motion of `joints`. If it is given, the controller follows the set point without a lag. It is none for a set
+    /// point at rest. The controller itself smooths the steps of such a set point.
     #[serde(default)]
     pub motion: Option<Motion>,
     /// The spring in joint angles that acts in addition to `stiffness`; none if there is no such spring.

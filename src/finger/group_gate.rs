@@ -58,8 +58,8 @@ impl GroupGate {
     /// The result is the same for every servo, and no servo has begun that period before the group was posted:
     /// - A servo reads the time after it has seen the posted group. Cycles of other servos that have not seen it are in
     ///   the present period or an earlier one.
-    /// - A servo that sees the posted group cannot leave the period undecided. So even if the first servo is preempted
-    ///   before it decides, no other servo passes its period unnoticed.
+    /// - A servo that sees the posted group cannot leave the period undecided. If the first servo is preempted before
+    ///   it decides, the next servo that sees the group decides. So no servo passes the period before it is decided.
     pub(super) fn period(&self, group: u64, now: impl FnOnce() -> u64) -> Option<u64> {
         let state = self.state(group).load(Ordering::Acquire);
         // The difference of the tags, as a signed number.

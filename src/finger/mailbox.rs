@@ -3,7 +3,7 @@
 //!
 //! Both directions use wait-free triple buffers of whole values. A lock without priority inheritance would let a
 //! planner stop a servo. A channel is not lock-free when a real-time thread shares a core with a preempted sender. A
-//! lock exists only among the planners. The set points of groups are in a ring instead, because each of them must take
+//! lock exists only among the planners. The set points of groups are in a ring instead, because each group must take
 //! effect in all of its fingers, even if a newer set point follows.
 
 mod adjustments;
@@ -151,9 +151,9 @@ impl Mailbox {
         Some(matches!(planners.reports.read().stage, Stage::Closed | Stage::Faulted(_)))
     }
 
-    /// Changes the last set point and sends it as a whole, unless the finger is faulted. A path ends. If none was sent
-    /// since the finger became a spring, the change starts from the set point that the servo holds. The new set point
-    /// is valid for this spring phase only: if the finger faults meanwhile, it is discarded.
+    /// Changes the last set point and sends it as a whole, unless the finger is faulted. A path ends. If no set point
+    /// was sent since the finger became a spring, the change starts from the set point that the servo holds. The new
+    /// set point is valid for this spring phase only: if the finger faults meanwhile, it is discarded.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. Nothing is sent in that case.

@@ -11,8 +11,9 @@ const CALMING: f64 = 0.1;
 const FIRST: f64 = 0.2;
 
 /// Joint rate at which the error of the torques is learned at half the speed, rad/s. A motion adds errors of its own:
-/// the friction of its direction, and the inertia of links with wrong masses. A contact that follows the motion at once
-/// would keep them. So a finger learns at rest, and in motion only slow drifts.
+/// the friction of its direction, and the inertia of links with wrong masses. If these errors were learned, a contact
+/// right after the motion would preserve them, because nothing is learned during a contact. So a finger learns fully at
+/// rest. In motion it learns only slow drifts.
 const SLOW: f64 = 0.1;
 
 /// The constant part of the detection.

@@ -89,7 +89,8 @@ impl MomentumObserver {
         // The implicit Euler method. It is stable for any time between two samples.
         let keeps = 1.0 / (1.0 + self.bandwidth * elapsed);
         let passes = 1.0 - keeps;
-        // A difference of angles is the rate in the middle between the two samples. So is the mean of two tensions.
+        // The difference of the angles gives the rate in the middle between the two samples. The mean of the tensions
+        // is their value at the same time.
         state.rates = state.rates * keeps + (joints - state.joints) * (self.bandwidth * keeps);
         state.filtered = state.filtered * keeps + (tensions + state.tensions) * (0.5 * passes);
         state.weight = state.weight * keeps + weight * passes;

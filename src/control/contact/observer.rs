@@ -14,8 +14,9 @@ use serde::{Deserialize, Serialize};
 /// of the servo, the estimate would need four times the computing time at 1000 Hz and detect the same forces.
 const INTERVAL: f64 = 0.005;
 
-/// Number of samples after which the quantities that depend only on the pose are computed again, one of them at each
-/// sample. A joint that turns at 1 rad/s moves by 0.02 rad in this time, which changes the inertia by less than 2 %.
+/// Number of samples in which each slowly varying quantity is computed again once. At most one of them is computed at
+/// each sample. A joint that turns at 1 rad/s moves by 0.02 rad in this time, which changes the inertia by less than
+/// 2 %.
 const REFRESH: u8 = 4;
 
 /// The constant part of the contact estimate.
@@ -25,7 +26,7 @@ pub(in crate::control) struct ContactObserver {
     dynamics: LinkDynamics,
     observer: MomentumObserver,
     detection: Detection,
-    /// Largest change of the torque of each joint by the rubbing of each tendon on its pulleys, per tension, cm.
+    /// Largest change of a joint's torque that a tendon causes by rubbing on its pulleys, per tension, cm.
     rubbing: Matrix3x4<f64>,
     mass_tolerance: f64,
     /// Shortest time between two samples, s.

@@ -41,7 +41,7 @@ impl Controller {
         Self::construct(finger, gravity, rate, None)
     }
 
-    /// Constructs a controller whose state feedback has these numbers, without gravity. The search of the numbers uses
+    /// Constructs a controller whose state feedback has these numbers, without gravity. The search for the numbers uses
     /// it.
     pub fn with_numbers(finger: &ConfiguredFinger, rate: f64, numbers: &Numbers) -> Result<Self, Unusable> {
         Self::construct(finger, &Vector3::zeros(), rate, Some(*numbers))

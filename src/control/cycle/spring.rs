@@ -27,7 +27,8 @@ impl Controller {
             _ => (state.report.joints, true),
         };
         let rates = set_point.motion.map_or_else(Vector3::zeros, |motion| motion.rates);
-        // The slew limit acts on the distance from where the set point was in the last cycle.
+        // The slew limit acts on the distance between the anchor and the place where the set point was in the last
+        // cycle. The motion of the set point is added afterwards, without this limit.
         let way = rates * self.period;
         self.slew.advance(&mut anchor, &(set_point.joints - way));
         anchor += way;
@@ -36,7 +37,8 @@ impl Controller {
         let mut torques = spring.torques(&anchor);
         if let Some(joint_spring) = joint_spring.map(|joint_spring| joint_spring.softened(scale)) {
             torques += joint_spring.torques(&(anchor - joints));
-            // The damper damps both springs. The torque of the tip's spring is known by now.
+            // The damper follows from the stiffness of both springs. This sum does not change the torque of the tip's
+            // spring, which is already computed.
             spring.k_theta += joint_spring.k_theta;
         }
         let torques = torques - spring.damper(&(joint_rates - rates));

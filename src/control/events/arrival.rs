@@ -23,7 +23,7 @@ pub(super) struct ArrivalDetector {
     tolerance: f64,
     /// Largest motion of a joint at rest, rad.
     motion: f64,
-    /// Number of cycles with a reply for which the joints must be at rest.
+    /// Number of cycles with a reply after which joints that stay at rest have settled.
     cycles: u32,
 }
 

@@ -11,8 +11,8 @@ use crate::model::configuration::ConfiguredEvents;
 use crate::model::{Part, direction};
 use nalgebra::Vector3;
 
-/// Time after an observation until the next one of the same contact, s. In this time a finger that presses harder after
-/// the first one reaches its new force.
+/// Time between two observations of the same contact, s. If the first observation makes the finger press harder, the
+/// finger reaches its new force in this time.
 const PAUSE: f64 = 0.05;
 
 /// Detects slip.

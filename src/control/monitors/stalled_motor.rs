@@ -7,16 +7,17 @@ use crate::model::configuration::ConfiguredFinger;
 use crate::model::{Part, Tendons};
 use nalgebra::Vector4;
 
-/// Smallest tolerated imbalance as a multiple of the configured friction. It matters only for motors with more friction
-/// than the thresholds allow for: friction that is configured lower must not make the monitor more sensitive.
+/// Smallest tolerated imbalance as a multiple of the configured friction. It matters only if the configured friction is
+/// larger than the thresholds allow for. Otherwise the thresholds apply, so a low configured friction does not make the
+/// monitor more sensitive.
 const FRICTION: f64 = 1.5;
 
 /// Total time for which the imbalance must exceed the tolerated one, s. In this time a free motor would turn by dozens
 /// of counts under the smallest imbalance that this monitor reports.
 ///
-/// The dither makes the imbalance of a jammed motor oscillate, so in each of its periods the imbalance may exceed the
-/// tolerated one only for a part of this time. These parts are added, as long as the motor does not turn between them.
-/// A free motor that follows the dither turns by a multiple of [`AT_REST`] in each period.
+/// The dither makes the imbalance of a jammed motor oscillate. In one period of the dither, the imbalance may exceed
+/// the tolerated one for less than this time. The times of several periods are added, as long as the motor does not
+/// turn between them. A free motor that follows the dither turns by a multiple of [`AT_REST`] in each period.
 const DURATION: f64 = 0.012;
 
 /// Largest motion of a motor that is considered to be at rest, rad. The last bit of an encoder flickers.

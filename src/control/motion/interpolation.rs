@@ -1,4 +1,4 @@
-//! Makes smooth motion of set points that arrive at a low rate.
+//! Turns set points that arrive at a low rate into a smooth motion.
 //!
 //! Each new set point adds a smooth step to the motion, and the steps overlap. The rate of a step is a quadratic
 //! B-spline, whose three parts each last as long as a period of the planner. The sum of the steps is therefore
@@ -16,7 +16,8 @@ use nalgebra::Vector3;
 /// Smallest distance of two steps, as a fraction of the planner's period. Set points that come faster are combined.
 const SPACING: f64 = 0.25;
 
-/// A step lasts for three periods of the planner, so no more steps overlap.
+/// Largest number of steps that overlap. A step lasts for three periods of the planner, and [`SPACING`] keeps the steps
+/// apart.
 const MOST_STEPS: usize = 13;
 
 /// The constant part of the interpolation.
@@ -109,7 +110,7 @@ impl InterpolationState {
     }
 }
 
-/// Returns a step from 0 to 1 and its first three derivatives, at a time in planner's periods from 0 to 3.
+/// Returns a step from 0 to 1 and its first three derivatives. `time` is 0 to 3, in periods of the planner.
 fn smooth_step(time: f64) -> [f64; 4] {
     let left = 3.0 - time;
     if time < 1.0 {

@@ -19,8 +19,8 @@ impl JointSpring {
         (self != Self::default()).then_some(self)
     }
 
-    /// Returns the stiffness of the tip, N/cm, with which K_theta is compared: its largest eigenvalue divided by the
-    /// square of `lever`, cm, the length of the last link.
+    /// Returns the stiffness of the tip, N/cm, to which K_theta is equivalent where bounds of Kx apply to it. This is
+    /// the largest eigenvalue of K_theta divided by the square of `lever`, the length of the last link, cm.
     ///
     /// Joint 2 moves the tip by this lever in every pose, so a Kx of this size gives joint 2 the same stiffness. The
     /// levers of joints 0 and 1 are longer in most poses, and Kx gives these joints more. But K_theta stays the same

@@ -43,9 +43,10 @@ struct Shake {
 }
 
 impl StateFeedback {
-    /// Returns the pulls that make the fingertip the spring `spring` from the next sample on, and the joints the spring
-    /// `joint_spring`. The anchor of both springs has the motion `motion`. If `begins` is true, the springs start
-    /// without deflection. `gravity` is the compensation, with the gravity that planners have set, m/s^2.
+    /// Returns the pulls that act from the next sample on. They make the fingertip the spring `spring`, and they make
+    /// the joints the spring `joint_spring`. The anchor of both springs has the motion `motion`. If `begins` is true,
+    /// the springs start without deflection. `gravity` is the compensation, with the gravity that planners have set,
+    /// m/s^2.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,

@@ -4,7 +4,8 @@
 //! The masses follow from the configured rotor inertias, and the gains of the observers follow from the size of a count
 //! and a bandwidth. The other numbers are tuned. Most of them are dimensionless, or their unit is cycles or radians per
 //! cycle. They were found by a search on the eigenvalues of the exact one-cycle map of the default finger. No number
-//! was tuned for a single pose. `cargo bench --bench stiffness -- --search` searches numbers for a set of fingers.
+//! was tuned for a single pose. `cargo bench --bench stiffness -- --search` searches for the numbers of a set of
+//! fingers.
 
 use crate::control::number_checks::{not_negative, positive};
 use crate::control::rate_table::{Row, Tuned, at};
@@ -59,8 +60,8 @@ pub struct Numbers {
     pub dither_frequency: f64,
     /// Amplitude of the dither of the tensions, divided by the configured pulley friction p t.
     pub pulley_excess: f64,
-    /// Distance of the tensions from t_min that makes room for the dither of the tensions, per amplitude, as a fraction
-    /// of t_min.
+    /// Distance of the tensions from t_min, as a fraction of t_min, divided by the relative amplitude of the dither of
+    /// the tensions. This distance makes room for the dither.
     pub dither_reserve: f64,
     /// Largest amplitude of the dither of the tensions, divided by its amplitude at t_min without joint torque. The
     /// limit applies if the configured pulley friction does not require a larger dither. The motors of a loaded finger
@@ -71,7 +72,8 @@ pub struct Numbers {
     pub drift_bandwidth: f64,
     /// The part of the pulleys' friction that is fed forward while the reference moves.
     pub pulley_share: f64,
-    /// Speed of a tendon of the reference from which this part is fed forward in full, m/s.
+    /// Speed of a tendon from which this part is fed forward in full, m/s. It is the speed that the tendon has if the
+    /// joints follow the reference.
     pub pulley_creep: f64,
 }
 
@@ -88,16 +90,17 @@ const DITHER_FREQUENCY: f64 = 44.0;
 /// static friction of twice the Coulomb friction are less exact under pushes.
 const DITHER: f64 = 1.6;
 
-/// See [`Numbers::tension_dither`]. With 0.06 fingers rest whose motors have no friction, or static friction of twice
-/// the Coulomb friction. With 0.1, the tensions of a finger with rotors of half the inertia oscillate.
+/// See [`Numbers::tension_dither`]. With 0.06, a finger comes to rest even if its motors have no friction, or static
+/// friction of twice the Coulomb friction. With 0.1, the tensions of a finger with rotors of half the inertia
+/// oscillate.
 const TENSION_DITHER: f64 = 0.06;
 
 /// See [`Numbers::pulley_excess`]. An amplitude of p t would suffice at rest. More of it lets the tendons slide so fast
 /// that a push or a step has settled after some periods.
 const PULLEY_EXCESS: f64 = 5.0;
 
-/// See [`Numbers::dither_reserve`]. With more pretension the tensions also differ less from each other, relative to the
-/// null vector.
+/// See [`Numbers::dither_reserve`]. With more pretension, the tensions divided by the entries of the null vector also
+/// differ less from each other.
 const DITHER_RESERVE: f64 = 16.0 / 3.0;
 
 /// See [`Numbers::dither_rise`].
@@ -112,8 +115,8 @@ const PULLEY_SHARE: f64 = 0.5;
 /// See [`Numbers::pulley_creep`].
 const PULLEY_CREEP: f64 = 0.002;
 
-/// See [`Numbers::friction_share`]. With half of the configured friction, no finger hunted whose friction was 0 to 3
-/// times the configured one.
+/// See [`Numbers::friction_share`]. With half of the configured friction, no finger hunted, although the friction of
+/// the fingers was 0 to 3 times the configured one.
 const FRICTION_SHARE: f64 = 0.5;
 
 /// See [`Numbers::friction_slope`].

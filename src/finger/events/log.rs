@@ -168,7 +168,8 @@ impl EventReader {
     }
 
     /// Returns the horizon, ns: no event that is published later has an earlier time. So call this function first, and
-    /// then [`EventReader::take`] until it returns none. No event that was not returned then has an earlier time.
+    /// then [`EventReader::take`] until it returns none. All events that this reader takes afterwards have the time of
+    /// the horizon or a later one.
     pub fn horizon(&self) -> u64 {
         self.log.horizon.load(Ordering::Acquire)
     }

@@ -12,9 +12,10 @@ const TOGETHER: f64 = 0.001;
 const FASTEST: f64 = 3.0;
 /// Missing fraction of the pretension at which the motors stop.
 const REACHED: f64 = 0.03;
-/// Missing fraction at which they move again, so that friction causes no limit cycle. Up to it the take-up is complete.
+/// Missing fraction above which the motors move again. Up to this fraction, a completed take-up stays complete. The
+/// difference from [`REACHED`] prevents a limit cycle by friction.
 const COMPLETE: f64 = 0.1;
-/// Excess fraction with which the take-up is complete too: at its stops a finger has other tensions.
+/// Largest excess fraction with which the take-up is complete. At its stops a finger has other tensions.
 const TOO_HIGH: f64 = 0.5;
 /// Fraction of t_min that no tendon may be below, even if the common tension is right.
 const LEAST: f64 = 0.9;
@@ -63,7 +64,7 @@ impl SlackTakeUp {
         }
     }
 
-    /// Winds the tendons in again that are slack although they seemed to have been taut.
+    /// Winds in again the tendons that seemed to be taut but are slack.
     fn touch_again(&self, slack: &mut Slack, taut: [bool; 4], travel: &Vector4<f64>) {
         if !slack.gauges.iter().all(Gauge::is_tared) {
             // All tendons seemed to be taut at the start, so the gauges were not read.
