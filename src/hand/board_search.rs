@@ -91,7 +91,7 @@ fn port_of(
     let mut ports = searched.iter().filter(|port| port.answer.iter().flatten().any(is_wanted));
     let twice = match (ports.next(), ports.next()) {
         (Some(port), None) => return Ok(port.path.clone()),
-        (Some(_), Some(_)) => " alone, because boards at two ports do",
+        (Some(_), Some(_)) => " as the only one: boards at two ports report it",
         (None, _) => "",
     };
     let patterns = configuration.hand.search_ports.join(", ");
@@ -135,8 +135,8 @@ fn ask(path: &Path, rates: &[u32]) -> Result<Vec<FoundFinger>, LinkError> {
 }
 
 /// The serial devices that processes have open, as far as this user may see it. Such a port is not opened, even if it
-/// is not locked: settings and bytes would disturb its user. Pseudo-terminals are not among them, because the board behind
-/// a pseudo-terminal may hold both ends.
+/// is not locked: settings and bytes would disturb its user. Pseudo-terminals are not among them, because the board
+/// behind a pseudo-terminal may hold both ends.
 fn used_terminals() -> BTreeSet<PathBuf> {
     let entries = |folder: PathBuf| std::fs::read_dir(folder).into_iter().flatten().flatten();
     let descriptors = entries("/proc".into()).flat_map(|process| entries(process.path().join("fd")));

@@ -27,9 +27,9 @@ impl Hand {
     }
 
     /// Calls `callback` with each event from now on, in an ordinary thread of its own, until the listener is dropped or
-    /// the hand is closed. The second argument is the number of events that the listener has lost, the oldest first,
-    /// because the callback was too slow. The callback may make every call of the hand. While it runs, later events
-    /// wait.
+    /// the hand is closed. The second argument is the number of events that the listener has lost because the callback
+    /// was too slow. The oldest events are lost first. The callback may make every call of the hand. While it runs,
+    /// later events wait.
     ///
     /// # Errors
     /// Returns an error if the system cannot start a thread.

@@ -99,9 +99,8 @@ impl FingerCommand {
 }
 
 impl Hand {
-    /// Sends commands to several fingers. All of them take effect in the same cycle, also if different threads serve
-    /// the fingers: in the same period of the hand, which begins within two periods. Either every command is sent, or
-    /// none is.
+    /// Sends commands to several fingers. All of them take effect in the same period of the hand, also if different
+    /// threads serve the fingers. This period begins within two periods. Either every command is sent, or none is.
     ///
     /// If a servo is so late that it skips this period, its fingers follow in their next cycle. With
     /// `hand.clock = "board"` the periods of the threads follow different clocks. Then a finger may follow one period

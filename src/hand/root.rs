@@ -77,8 +77,8 @@ impl Hand {
         Self::open_from(configured.configuration, configured.file, Fingers::ALL, false)
     }
 
-    /// Opens the hand, with the fingers of `hand.fingers`: shakes hands with its boards, takes up the slack of its tendons, and returns when every finger
-    /// holds its pose at its initial stiffness.
+    /// Opens the hand, with the fingers of `hand.fingers`. Shakes hands with its boards, takes up the slack of its
+    /// tendons, and returns when every finger holds its pose at its initial stiffness.
     ///
     /// # Errors
     /// Returns an error if the configuration cannot be used, if a port or board does not work, or if a finger faults.

@@ -1,7 +1,7 @@
 //! Torques of gravity on the joints, from the first moments of the links.
 //!
-//! The links are straight. Therefore the sum of mass times Jacobian over the centres of mass is the Jacobian of a
-//! finger whose links have the lengths of the first moments.
+//! The torques follow from the sum of mass times Jacobian over all centres of mass. The links are straight, so this sum
+//! is the Jacobian of another finger, whose link lengths are the first moments.
 
 use crate::model::Links;
 use nalgebra::Vector3;

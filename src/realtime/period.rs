@@ -27,7 +27,7 @@ impl Schedule {
         Self { next, period, origin: first, margin: period / (2 * of as u64) }
     }
 
-    /// Delays the whole schedule by `by` ns, with its period 0.
+    /// Delays the whole schedule by `by` ns, including the beginning of period 0.
     pub fn delay(&mut self, by: u64) {
         self.next += by;
         self.origin += by;

@@ -1,7 +1,7 @@
 //! Simulated boards at serial ports of their own, whose fingers touch one object.
 //!
-//! One thread runs all of these boards and the object in steps of the same time, so no thread waits for another. For
-//! each host, its port is like that of a [`SimulatedPort`](crate::simulated::SimulatedPort).
+//! One thread runs all of these boards and the object in steps of the same time, so no thread waits for another. To its
+//! host, each port looks like that of a [`SimulatedPort`](crate::simulated::SimulatedPort).
 
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, FINGERS};

@@ -7,9 +7,10 @@ use crate::simulated::pace::{LONGEST_STEP, PATIENCE};
 /// The time of simulated boards with one host each, ns.
 ///
 /// All boards have the same time, because an object that they share cannot be at two times. The time advances at the
-/// rate of real time. It stops if no bytes arrive within the grace for a finger whose motors follow commands, until
-/// bytes for this finger arrive, as with [`Pace::Patient`](crate::simulated::Pace). It does not stop for a finger whose
-/// motors are off, because the finger is stopped, faulted or not opened, nor for a host that is silent for two seconds.
+/// rate of real time, but waits for late hosts, as with [`Pace::Patient`](crate::simulated::Pace). If the motors of a
+/// finger follow commands, and no bytes arrive for this finger within the grace, the time stops until they arrive. It
+/// does not stop for a finger that is stopped, faulted or not opened, because the motors of such a finger are off. It
+/// does not stop for a host that has been silent for two seconds.
 #[derive(Clone, Debug)]
 pub struct SharedTime {
     /// How far the time continues after the last bytes for a finger, ns.

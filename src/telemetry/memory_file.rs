@@ -85,7 +85,7 @@ pub(super) fn create(words: usize) -> io::Result<(Descriptor, Mapping)> {
 /// Returns an error if the file has another size or other seals than [`create`] gives it. Reading a file that another
 /// process can shrink could end this process.
 pub(super) fn open(file: &Descriptor, words: usize) -> io::Result<Mapping> {
-    let foreign = || io::Error::new(io::ErrorKind::InvalidData, "the memory file has another size or other seals");
+    let foreign = || io::Error::new(io::ErrorKind::InvalidData, "the memory file has a wrong size or wrong seals");
     // SAFETY: the descriptor is open, and the command takes no argument.
     let seals = check(unsafe { libc::fcntl(file.number(), libc::F_GET_SEALS) })?;
     // SAFETY: all zeros are a valid value of this plain structure.

@@ -94,8 +94,8 @@ impl Readers {
         }
     }
 
-    /// Wakes the readers that wait for a batch. A reader whose socket is full has not taken the earlier wake-ups yet, and
-    /// needs no further one.
+    /// Wakes the readers that wait for a batch. A reader whose socket is full has not taken the earlier wake-ups yet,
+    /// and needs no further one.
     pub fn wake(&self) {
         self.attached.iter().for_each(|socket| drop(socket.send(BATCH, None)));
     }

@@ -8,8 +8,9 @@ use crate::finger::path_buffer::PathBuffer;
 use crate::finger::sent::SentPath;
 
 impl Mailbox {
-    /// Sends a path that begins in period `origin`. `change` changes the last set point to the end of the path. Returns
-    /// the number of the path, or none if the spring phase is no longer `spring`, for which the path was computed.
+    /// Sends a path that begins in period `origin`. `change` changes the last set point to the end of the path. The
+    /// path was computed for the spring phase `spring`. Returns the number of the path, or none if another spring phase
+    /// has begun.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. The inner result is the refusal of `change`. Nothing is sent in

@@ -84,7 +84,7 @@ impl ReactionLimits {
 
     /// Returns the admitted damping ratio that is nearest to `ratio`.
     fn damping(&self, ratio: f64, followed: &SetPoint) -> f64 {
-        // Every set point that was admitted is a contact.
+        // This conversion succeeds, because the set point was admitted.
         let contact = Contact::general(&followed.stiffness, &Matrix6::identity());
         let largest = contact.map_or(f64::INFINITY, |contact| contact.largest_eigenvalue(self.links.0[2]));
         let of_joints = followed.joint_spring.map_or(0.0, |spring| spring.equivalent(self.links.0[2]));

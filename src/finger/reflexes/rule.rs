@@ -55,7 +55,7 @@ pub enum Condition {
     },
     /// The board has not replied for this time, s.
     LinkLost(f64),
-    /// The planner has sent no set point that the finger followed for this time, s.
+    /// For this time, s, the planner has sent no set point that the finger followed.
     PlannerSilent(f64),
 }
 

@@ -109,7 +109,8 @@ impl ReflexServer {
     }
 }
 
-/// Returns the count of another finger's event that a new rule has seen. Earlier events do not fire it.
+/// Returns the present count of another finger's event, with which a new rule begins. Events that were counted earlier
+/// do not fire the rule.
 fn state_of_others(condition: &Condition, bulletin: &Bulletin) -> u32 {
     match *condition {
         Condition::OtherFinger { finger, event } => bulletin.counted(finger, event),

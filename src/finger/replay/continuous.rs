@@ -136,8 +136,8 @@ impl ContinuousReplay {
         Ok(())
     }
 
-    /// Takes the state of the controller before a cycle. Returns whether the replay has computed the same state, or no
-    /// state. The replay continues with the state of the keyframe, so that later cycles can be compared.
+    /// Takes the state of the controller before a cycle. Returns false if the replay has computed another state for
+    /// this cycle. The replay continues with the state of the keyframe, so that later cycles can be compared.
     ///
     /// # Errors
     /// Returns an error if a number is out of bounds.

@@ -43,10 +43,12 @@ pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wron
     Ok((configuration, ports_named))
 }
 
-/// Reads a finger from the table of all fingers and its own table. Also returns whether they name its port or its board.
+/// Reads a finger from the table of all fingers and its own table. Also returns whether they name its port or its
+/// board.
 fn finger_of(common: &Table, own: &Table) -> Result<(ConfiguredFinger, bool), Wrong> {
     let mut merged = common.clone();
-    // The finger's own key replaces the other one of all fingers, because both say where the finger is.
+    // Both keys say where a finger is. If the finger's own table has one of them, the other one of the common table is
+    // not used.
     for (key, other) in [("board", "port"), ("port", "board")] {
         if own.contains_key(key) && !own.contains_key(other) {
             merged.remove(other);
@@ -77,9 +79,9 @@ fn refuse_simulated_beside_real(
     let span = span_of(own, "port").or_else(|| span_of(own, "board"));
     let fingers: Vec<String> = named.iter().map(FingerNumber::to_string).collect();
     let reason = format!(
-        "is missing, and finger {real} has a real port: a finger is not simulated beside real ones unless the file says \
-         so. If the hand does not have finger {missing}, set hand.fingers = [{}]. Otherwise name its port or its board, \
-         or set port = \"simulated\" in [finger.{missing}]",
+        "is missing, and finger {real} has a real port: a finger is not simulated beside real ones unless the file \
+         says so. If the hand does not have finger {missing}, set hand.fingers = [{}]. Otherwise name its port or its \
+         board, or set port = \"simulated\" in [finger.{missing}]",
         fingers.join(", ")
     );
     Err(Wrong::at(span, reason).in_key("port").in_key(&format!("finger.{missing}")))

@@ -2,8 +2,9 @@
 //! array in place of a table. This one accepts only valid values, and reports the position of every other value and
 //! what is expected there.
 //!
-//! Serde has the generic functions compiled for each of some 50 types. So they contain little, and call others that are
-//! not generic and not inlined. Otherwise they are a twentieth of the library.
+//! Serde makes the compiler compile the generic functions again for each of some 50 types. So these functions contain
+//! little, and call others that are neither generic nor inlined. With all of the code in them, they would be a
+//! twentieth of the library.
 
 mod choice;
 mod content;

@@ -40,7 +40,7 @@ impl EventListener {
         Ok(Self { stop, queue, thread: Some(thread), process })
     }
 
-    /// Returns the number of events that were lost, the oldest first, because the function was too slow.
+    /// Returns the number of events that were lost because the function was too slow. The oldest are lost first.
     #[must_use]
     pub fn lost(&self) -> u64 {
         self.queue.lost()

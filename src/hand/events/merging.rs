@@ -27,7 +27,7 @@ pub struct MergedEvents {
 struct FingerEvents {
     reader: EventReader,
     next: Option<Event>,
-    /// No later event of this finger has an earlier time, ns.
+    /// The events of this finger that are published later have at least this time, ns.
     horizon: u64,
 }
 

@@ -78,7 +78,8 @@ impl EventQueue {
         self.shared.source.is_closed()
     }
 
-    /// Returns the number of events that this queue has lost, the oldest first, because they were not taken in time.
+    /// Returns the number of events that this queue has lost because they were not taken in time. The oldest are lost
+    /// first.
     #[must_use]
     pub fn lost(&self) -> u64 {
         self.shared.lost()

@@ -54,7 +54,8 @@ impl Admission {
                 for joint in 0..3 {
                     let value = most[joint].max(-least[joint]);
                     let limit = self.motion_limits.0[quantity].max(begin[joint].abs() * (1.0 + 1e-9));
-                    // Slower by a factor, the n-th derivative shrinks by the n-th power of the factor.
+                    // If a path is made slower by a factor, its n-th derivative is divided by the n-th power of the
+                    // factor.
                     let factor = (value / limit).powf(1.0 / (quantity + 1) as f64);
                     if factor > 1.0 && worst.as_ref().is_none_or(|worst| factor > worst.factor) {
                         worst = Some(Excess { factor, piece: index, joint, quantity, value });

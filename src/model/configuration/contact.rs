@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct ConfiguredContact {
     /// Bandwidth with which the estimated torques follow the true ones, 1/s.
     pub bandwidth: f64,
-    /// Force at the tip from which a finger at rest touches something, N.
+    /// Least force at the tip with which a finger at rest counts as touching something, N.
     pub force: f64,
     /// Increase of this force with the fastest joint rate, N s/rad.
     pub force_per_rate: f64,

@@ -3,14 +3,15 @@
 use crate::model::path::bounds::{COEFFICIENTS, bounds};
 use nalgebra::Vector3;
 
-/// Three polynomials of time, one a coordinate. The coordinates are joint angles, rad, or the position of a tip, cm.
+/// Three polynomials of time, one for each coordinate. The coordinates are joint angles, rad, or the position of a tip,
+/// cm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
     /// Beginning of the piece since the beginning of the path, s.
     pub begin: f64,
     /// Length of the piece, s.
     pub length: f64,
-    /// Coefficients of the powers of the time since `begin`, divided by `length`.
+    /// Coefficients of the powers of (time - `begin`) / `length`.
     pub coefficients: [Vector3<f64>; COEFFICIENTS],
 }
 

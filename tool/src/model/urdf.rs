@@ -12,7 +12,8 @@ use sun2xp::nalgebra::Vector3;
 pub fn urdf(geometry: &Geometry, configuration: &Configuration) -> String {
     let mut xml = Xml::new("Written by sun2xp model --urdf. Lengths are in m, masses in kg, angles in rad.");
     xml.open("robot", &[("name", &"sun2xp")]);
-    // Otherwise MuJoCo would merge each fingertip with the last link, because the tip does not move in that link.
+    // Without this element MuJoCo would merge each fingertip with the last link, because the tip does not move in that
+    // link.
     xml.open("mujoco", &[]);
     xml.empty("compiler", &[("fusestatic", &"false"), ("discardvisual", &"false"), ("balanceinertia", &"false")]);
     xml.close();
