@@ -2,7 +2,6 @@
 
 use crate::errors::Refusal;
 use crate::fork;
-use crate::records;
 use parking_lot::{Mutex, RwLock};
 use pyo3::prelude::*;
 use std::sync::{Arc, Weak};
@@ -112,12 +111,11 @@ impl Hand {
         self.close(py);
     }
 
-    fn __repr__(&self, py: Python<'_>) -> String {
+    fn __repr__(&self) -> String {
         let stages = (1..=3).map(|finger| match self.0.with(|hand| hand.report(finger)) {
             Ok(report) => report.stage.name(),
             Err(_) => "absent",
         });
-        let _ = py;
         if self.0.is_open() {
             format!("<sun2xp.Hand: {}>", stages.collect::<Vec<_>>().join(", "))
         } else {

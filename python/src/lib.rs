@@ -6,6 +6,7 @@ mod errors;
 mod events;
 mod fork;
 mod hand;
+mod messages;
 mod opening;
 mod queries;
 mod recording;
@@ -25,6 +26,8 @@ mod _sun2xp {
     use super::hand::Hand;
     #[pymodule_export]
     use super::hand::close_all;
+    #[pymodule_export]
+    use super::messages::{end_messages, flush_messages, next_message, take_messages};
     #[pymodule_export]
     use super::opening::{open_file, open_simulated, open_text};
     #[pymodule_export]

@@ -6,7 +6,7 @@ import json
 import os
 from typing import Any, AsyncIterator, Callable, Dict, Iterable, Optional, Union
 
-from . import _sun2xp
+from . import _log, _sun2xp
 from ._events import Events
 from ._recording import Recording, black_box
 from ._types import Event, Identified, Signs, Zeros
@@ -111,10 +111,10 @@ def open(path: Union[str, os.PathLike[str], None] = None, *, text: Optional[str]
         Error: a port or a board does not work.
     """
     if text is None:
-        return Hand(_sun2xp.open_file(path))
+        return _opened(_sun2xp.open_file, path)
     if path is not None:
         raise TypeError("open() takes a path or a text, not both")
-    return Hand(_sun2xp.open_text(text))
+    return _opened(_sun2xp.open_text, text)
 
 
 def simulated(name: str = "nominal", *, rate: float = 1000.0, text: str = "") -> Hand:
@@ -128,4 +128,12 @@ def simulated(name: str = "nominal", *, rate: float = 1000.0, text: str = "") ->
     Raises:
         ConfigurationError: there is no such name or rate, or the text is wrong.
     """
-    return Hand(_sun2xp.open_simulated(name, rate, text))
+    return _opened(_sun2xp.open_simulated, name, rate, text)
+
+
+def _opened(function: Callable[..., _sun2xp.Opened], *arguments: Any) -> Hand:
+    _log.start()
+    try:
+        return Hand(function(*arguments))
+    finally:
+        _log.flush()

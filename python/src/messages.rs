@@ -1,0 +1,124 @@
+//! Messages of the library for the module `logging` of Python.
+//!
+//! Threads of the library send messages while they hold locks. If such a thread waited for the interpreter lock, it
+//! could wait for a Python thread that waits for its locks. Therefore the messages pass through a queue to a thread of
+//! Python (sun2xp/_log.py).
+
+use crate::fork;
+use parking_lot::{Condvar, Mutex};
+use pyo3::prelude::*;
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
+use sun2xp::realtime::{Severity, offer_messages_to};
+
+/// Largest number of messages that wait. Further ones go to standard error.
+const CAPACITY: usize = 1000;
+
+/// Longest time for which an opened hand waits until its messages are in the log.
+const LONGEST_FLUSH: Duration = Duration::from_secs(1);
+
+/// The process that has the thread of Python, as `fork` counts. No process has the first value.
+static OWNER: AtomicU32 = AtomicU32::new(u32::MAX);
+
+struct Messages {
+    waiting: VecDeque<(i32, String)>,
+    /// Number of messages that were sent to the thread of Python.
+    sent: u64,
+    /// Number of messages that the thread of Python has taken.
+    taken: u64,
+    /// Number of messages that the thread of Python has logged.
+    logged: u64,
+    /// Whether the thread of Python takes messages.
+    open: bool,
+}
+
+static MESSAGES: Mutex<Messages> =
+    Mutex::new(Messages { waiting: VecDeque::new(), sent: 0, taken: 0, logged: 0, open: false });
+
+/// Signals each change of `MESSAGES`.
+static CHANGED: Condvar = Condvar::new();
+
+/// Begins to take messages for the thread of Python, which calls `next_message` until it returns None.
+#[pyfunction]
+pub fn take_messages() {
+    OWNER.store(fork::generation(), Ordering::Relaxed);
+    MESSAGES.lock().open = true;
+    offer_messages_to(receive);
+}
+
+/// Returns whether this process has the thread of Python. A forked child has not, and nobody releases a lock there that
+/// another thread of the parent held.
+fn has_thread() -> bool {
+    OWNER.load(Ordering::Relaxed) == fork::generation()
+}
+
+/// Takes a message, or returns false if it must go to standard error.
+fn receive(severity: Severity, text: &str) -> bool {
+    if !has_thread() {
+        return false;
+    }
+    let level = match severity {
+        Severity::Refusal => 20, // logging.INFO
+        Severity::Warning => 30, // logging.WARNING
+    };
+    let mut messages = MESSAGES.lock();
+    if !messages.open || messages.waiting.len() >= CAPACITY {
+        return false;
+    }
+    messages.waiting.push_back((level, text.into()));
+    messages.sent += 1;
+    CHANGED.notify_all();
+    true
+}
+
+/// Waits for a message, and returns its level and its text. A call also says that the previous message is logged.
+/// Returns None after `end_messages`.
+#[pyfunction]
+pub fn next_message(py: Python<'_>) -> PyResult<Option<(i32, String)>> {
+    loop {
+        let found = py.detach(|| {
+            let mut messages = MESSAGES.lock();
+            messages.logged = messages.taken;
+            CHANGED.notify_all();
+            if messages.waiting.is_empty() && messages.open {
+                CHANGED.wait(&mut messages);
+            }
+            let found = messages.waiting.pop_front();
+            messages.taken += u64::from(found.is_some());
+            (found, messages.open)
+        });
+        match found {
+            (Some(message), _) => return Ok(Some(message)),
+            (None, false) => return Ok(None),
+            (None, true) => {}
+        }
+    }
+}
+
+/// Ends `next_message` as soon as it has returned all messages. Later messages go to standard error.
+#[pyfunction]
+pub fn end_messages() {
+    if has_thread() {
+        MESSAGES.lock().open = false;
+        CHANGED.notify_all();
+    }
+}
+
+/// Waits until all messages are in the log, but at most for one second: a handler of the log may wait for the caller.
+#[pyfunction]
+pub fn flush_messages(py: Python<'_>) {
+    if !has_thread() {
+        return;
+    }
+    py.detach(|| {
+        let mut messages = MESSAGES.lock();
+        let sent = messages.sent;
+        let deadline = Instant::now() + LONGEST_FLUSH;
+        while messages.open && messages.logged < sent {
+            if CHANGED.wait_until(&mut messages, deadline).timed_out() {
+                break;
+            }
+        }
+    });
+}
