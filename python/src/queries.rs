@@ -69,6 +69,17 @@ impl Hand {
         records::record(py, "JointTorques", &fields)
     }
 
+    /// Angles, rates and torques of the joints of a finger in its last cycle, and the time of this cycle.
+    fn joint_state<'py>(&self, py: Python<'py>, finger: i32) -> PyResult<Bound<'py, PyAny>> {
+        let (report, torques) = self.quick(py, |hand| Ok((hand.report(finger)?, hand.joint_torques(finger)?)))?;
+        let fields = PyDict::new(py);
+        fields.set_item("time", report.last)?;
+        fields.set_item("position", vector(py, &report.cycle.joints.into()))?;
+        fields.set_item("rate", vector(py, &report.cycle.joint_rates.into()))?;
+        fields.set_item("torque", vector(py, &torques.measured))?;
+        records::record(py, "JointState", &fields)
+    }
+
     /// Pose of a finger and of its tip in the palm's frame.
     fn palm_pose<'py>(&self, py: Python<'py>, finger: i32) -> PyResult<Bound<'py, PyAny>> {
         let pose = self.quick(py, |hand| hand.palm_pose(finger))?;
@@ -129,6 +140,12 @@ impl Hand {
         fields.set_item("acceleration", configured.motion.acceleration)?;
         fields.set_item("jerk", configured.motion.jerk)?;
         records::record(py, "Limits", &fields)
+    }
+
+    /// The hand as URDF, as `sun2xp model --urdf` writes it: lengths in m, masses in kg, angles in rad.
+    fn urdf(&self, py: Python<'_>) -> PyResult<String> {
+        let configuration = self.quick(py, |hand| Ok(hand.configuration()))?;
+        Ok(sun2xp_tool::urdf(&configuration))
     }
 
     /// The finger's configuration in force, as JSON text.

@@ -7,7 +7,7 @@ use crate::hand::calibration_file::store_findings;
 use crate::hand::opening::check;
 use crate::hand::{Found, Hand, HandError};
 use crate::model::FingerNumber;
-use crate::model::configuration::ConfiguredFinger;
+use crate::model::configuration::{Configuration, ConfiguredFinger};
 use crate::model::{Section, UnusableConfiguration};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -206,6 +206,11 @@ impl Hand {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.member(finger)?;
         Ok(self.configuration.read().fingers[finger.index()].clone())
+    }
+
+    /// The configuration of the hand, with all results of calibrations since open.
+    pub fn configuration(&self) -> Configuration {
+        self.configuration.read().clone()
     }
 
     /// Writes calibration results of finger 1, 2 or 3 into the configuration file that the hand was opened with, by

@@ -32,6 +32,7 @@ mod web;
 use crate::failure::ExitStatus;
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
+use sun2xp::model::configuration::Configuration;
 
 /// Tools for a hand that the sun2xp library drives.
 #[derive(Parser)]
@@ -98,6 +99,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Tool::Status(arguments) => status::run(&arguments),
     };
     result.unwrap_or_else(|error| failure::report(&error)).0
+}
+
+/// Returns the URDF of a hand, as `sun2xp model --urdf` writes it.
+pub fn urdf(configuration: &Configuration) -> String {
+    model::urdf(configuration)
 }
 
 /// The command line. The help of every command ends with its exit statuses.

@@ -15,6 +15,7 @@ use std::path::PathBuf;
 use sun2xp::files::replace_file;
 use sun2xp::hand;
 use sun2xp::model::ShownPath;
+use sun2xp::model::configuration::Configuration;
 
 /// Writes a model of the configured hand for other programs: palm, fingers, joints with their stops, masses, tendons
 /// and the object of the simulation.
@@ -47,16 +48,20 @@ struct Format {
     json: bool,
 }
 
+/// Returns the URDF of a hand.
+pub fn urdf(configuration: &Configuration) -> String {
+    urdf::urdf(&geometry(configuration), configuration)
+}
+
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let configuration = match &arguments.config {
         Some(file) => hand::read_configuration(file)?,
         None => hand::find_configuration()?.configuration,
     };
-    let geometry = geometry(&configuration);
     let text = match arguments.format {
-        Format { urdf: true, .. } => urdf::urdf(&geometry, &configuration),
-        Format { mjcf: true, .. } => mjcf::mjcf(&geometry, &configuration)?,
-        Format { .. } => serde_json::to_string_pretty(&geometry)? + "\n",
+        Format { urdf: true, .. } => urdf(&configuration),
+        Format { mjcf: true, .. } => mjcf::mjcf(&geometry(&configuration), &configuration)?,
+        Format { .. } => serde_json::to_string_pretty(&geometry(&configuration))? + "\n",
     };
     match &arguments.output {
         None => io::stdout().lock().write_all(text.as_bytes())?,

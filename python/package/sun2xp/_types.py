@@ -135,6 +135,20 @@ class JointTorques:
 
 
 @_frozen
+class JointState:
+    """The motion of joints 0, 1 and 2 in the last cycle of a finger."""
+
+    #: Beginning of this cycle, ns of CLOCK_MONOTONIC, as `time.monotonic_ns` counts.
+    time: int
+    #: Measured angles, rad: shape (3,).
+    position: Array
+    #: Measured rates, rad/s: shape (3,).
+    rate: Array
+    #: Torques from the measured tensions, N cm: shape (3,). They may be those of the next cycle.
+    torque: Array
+
+
+@_frozen
 class PalmPose:
     """Where a finger and its tip are in the palm's frame."""
 

@@ -16,8 +16,7 @@ const CONTACT_RADIUS: f64 = 0.1;
 /// # Errors
 /// Returns an error if the tendons with their true moment arms cannot hold the finger.
 pub fn mjcf(geometry: &Geometry, configuration: &Configuration) -> Result<String, TendonsError> {
-    let mut xml =
-        Xml::new("Written by sun2xp model --mjcf. Lengths are in m, masses in kg, angles in rad, forces in N.");
+    let mut xml = Xml::new("Written by sun2xp model. Lengths are in m, masses in kg, angles in rad, forces in N.");
     xml.open("mujoco", &[("model", &"sun2xp")]);
     xml.empty("compiler", &[("angle", &"radian"), ("autolimits", &"true")]);
     let gravity = numbers(geometry.gravity);

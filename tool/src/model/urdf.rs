@@ -10,7 +10,7 @@ use sun2xp::nalgebra::Vector3;
 
 /// Returns the URDF of a hand.
 pub fn urdf(geometry: &Geometry, configuration: &Configuration) -> String {
-    let mut xml = Xml::new("Written by sun2xp model --urdf. Lengths are in m, masses in kg, angles in rad.");
+    let mut xml = Xml::new("Written by sun2xp model. Lengths are in m, masses in kg, angles in rad.");
     xml.open("robot", &[("name", &"sun2xp")]);
     // Without this element MuJoCo would merge each fingertip with the last link, because the tip does not move in that
     // link.

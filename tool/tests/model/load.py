@@ -3,10 +3,13 @@ for each the positions of the three fingertips, m, the inertia matrix, kg m^2, a
 
 import json
 import sys
+from xml.etree import ElementTree
 
 import mujoco
 import numpy
 
+# MuJoCo accepts files that are not XML.
+ElementTree.parse(sys.argv[1])
 model = mujoco.MjModel.from_xml_path(sys.argv[1])
 data = mujoco.MjData(model)
 joints = [model.joint(f"finger{finger}_joint{joint}") for finger in (1, 2, 3) for joint in (0, 1, 2)]

@@ -1,0 +1,39 @@
+//! The tests of the ROS 2 node: ros/tests. They run in a network namespace of their own, where no other node is.
+
+use crate::environment::{Environment, ROOT, run};
+use std::path::Path;
+use std::process::Command;
+
+/// Runs the arguments that follow in a network namespace with nothing but the loopback interface.
+const ALONE: [&str; 6] = ["unshare", "--net", "--map-root-user", "sh", "-c", "ip link set lo up && exec \"$0\" \"$@\""];
+
+/// Returns a command that runs a program alone, or beside the other nodes of this machine if that is not permitted.
+fn command(program: &Path) -> Command {
+    let mut alone = Command::new(ALONE[0]);
+    alone.args(&ALONE[1..]);
+    if alone.arg("true").output().is_ok_and(|probe| probe.status.success()) {
+        let mut alone = Command::new(ALONE[0]);
+        alone.args(&ALONE[1..]).arg(program);
+        return alone;
+    }
+    println!("This process may not make a network namespace. The nodes use the loopback interface of the machine.");
+    let mut beside = Command::new(program);
+    // Of the numbers up to 101, which use no ports of short-lived connections.
+    beside.env("ROS_DOMAIN_ID", (1 + std::process::id() % 101).to_string());
+    beside
+}
+
+#[test]
+fn the_ros_node_works_with_rclpy() {
+    let Some(environment) = Environment::new("the ROS 2 node", "ros/tests/requirements.txt", "ros") else { return };
+    // The build writes into the source, so it gets a copy.
+    let source = environment.folder.join("source");
+    run(Command::new("cp").arg("-r").arg(Path::new(ROOT).join("ros")).arg(&source));
+    environment.install(&["--no-build-isolation", "--no-deps", source.to_str().expect("a plain name")]);
+    let mut pytest = command(&environment.python());
+    pytest.args(["-m", "pytest", "-p", "no:cacheprovider"]).arg(Path::new(ROOT).join("ros/tests"));
+    pytest.current_dir(&environment.folder).env("PYTHONDONTWRITEBYTECODE", "1").env_remove("SUN2XP_CONFIG");
+    pytest.env("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST").env("ROS_LOG_DIR", environment.folder.join("log"));
+    println!("{}", run(&mut pytest));
+    environment.delete();
+}

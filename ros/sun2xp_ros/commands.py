@@ -1,0 +1,110 @@
+"""The topics that move the hand. A command that the hand cannot execute changes nothing, and the log says why."""
+
+from __future__ import annotations
+
+import time
+from functools import partial
+from typing import Any, Callable, Dict, Optional, Sequence, Tuple
+
+import numpy
+import sun2xp
+from geometry_msgs.msg import PointStamped
+from rclpy.node import Node
+from std_msgs.msg import Float64MultiArray
+from trajectory_msgs.msg import JointTrajectory
+
+from . import names
+from .trajectory import Path, Unusable, paths
+
+#: cm in a metre.
+CM_PER_M = 100.0
+
+#: Shortest time between two equal lines of the log, s, so that a stream of refused commands does not fill it.
+REPEAT = 1.0
+
+
+class Commands:
+    """Subscribes to trajectories, targets of fingertips and stiffnesses."""
+
+    def __init__(self, node: Node, hand: sun2xp.Hand, fingers: Sequence[int], prefix: str) -> None:
+        self._node = node
+        self._hand = hand
+        self._fingers = fingers
+        self._prefix = prefix
+        self._said: Dict[str, float] = {}
+        #: Pose of each finger's frame in the palm's: origin, cm, and axes as columns.
+        self._mounts: Dict[int, Tuple[numpy.ndarray, numpy.ndarray]] = {}
+        subscribe = partial(self._subscribe, node)
+        subscribe(JointTrajectory, "joint_trajectory", "trajectory", self._move)
+        for finger in fingers:
+            pose = hand.palm_pose(finger)
+            self._mounts[finger] = (pose.base, pose.rotation)
+            name = f"finger{finger}"
+            subscribe(PointStamped, f"{name}/target", f"target of {name}", partial(self._aim, finger))
+            subscribe(Float64MultiArray, f"{name}/stiffness", f"stiffness of {name}", partial(self._soften, finger))
+
+    def _subscribe(self, node: Node, kind: Any, topic: str, what: str, action: Callable[[Any], None]) -> None:
+        def take(message: Any) -> None:
+            try:
+                action(message)
+            except (sun2xp.Error, Unusable) as refusal:
+                self._refuse(f"{what} refused: {refusal}")
+
+        node.create_subscription(kind, topic, take, 10)
+
+    def _refuse(self, text: str) -> None:
+        now = time.monotonic()
+        self._said = {line: since for line, since in self._said.items() if now - since < REPEAT}
+        if text not in self._said:
+            self._said[text] = now
+            self._node.get_logger().error(text)
+
+    def _move(self, message: JointTrajectory) -> None:
+        if not message.points:
+            # As for other controllers of ROS, an empty trajectory stops the motion.
+            self._hold(self._fingers)
+            return
+        now = self._node.get_clock().now().nanoseconds * 1e-9
+        demanded = paths(message, self._prefix, self._fingers, now)
+        for place, path in enumerate(demanded):
+            try:
+                self._follow(path)
+            except sun2xp.Error:
+                # The hand has no path of several fingers. None of them executes a trajectory that one has refused.
+                self._hold([before.finger for before in demanded[:place]])
+                raise
+
+    def _follow(self, path: Path) -> None:
+        if len(path.times):
+            self._hand.send_path(path.finger, path.times, joints=path.joints)
+        else:
+            self._hand.send_position(path.finger, path.joints[0])
+
+    def _hold(self, fingers: Sequence[int]) -> None:
+        """Sends these fingers the pose that they have."""
+        refused: Optional[sun2xp.Error] = None
+        for finger in fingers:
+            try:
+                self._hand.send_position(finger, self._hand.position(finger))
+            except sun2xp.Error as refusal:
+                refused = refusal
+        if refused is not None:
+            raise refused
+
+    def _aim(self, finger: int, message: PointStamped) -> None:
+        point = CM_PER_M * numpy.array([message.point.x, message.point.y, message.point.z])
+        frame = message.header.frame_id
+        palm, base = names.palm(self._prefix), names.base(self._prefix, finger)
+        if frame == palm:
+            origin, axes = self._mounts[finger]
+            point = axes.T @ (point - origin)
+        elif frame != base:
+            raise Unusable(f"the frame is {frame!r}: send the point in {palm!r} or {base!r}")
+        self._hand.send_tip(finger, point)
+
+    def _soften(self, finger: int, message: Float64MultiArray) -> None:
+        numbers = list(message.data)[message.layout.data_offset :]
+        sizes = [dimension.size for dimension in message.layout.dim]
+        if len(numbers) != 9 or sizes not in ([], [9], [3, 3]):
+            raise Unusable(f"{len(numbers)} numbers, dimensions {sizes}: send a 3 x 3 matrix in N/m, row by row")
+        self._hand.send_stiffness(finger, numpy.reshape(numbers, (3, 3)) / CM_PER_M)

@@ -1,0 +1,68 @@
+"""The services of the hand and of its fingers."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from typing import Any, Callable, Sequence
+
+import sun2xp
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.node import Node
+from rclpy.task import Future
+from std_srvs.srv import Trigger
+
+#: Does something with one finger, and returns what it has done.
+Action = Callable[[int], str]
+
+
+class Services:
+    """Offers zero, recover and stop, for all fingers and for each."""
+
+    def __init__(self, node: Node, hand: sun2xp.Hand, fingers: Sequence[int]) -> None:
+        self._node = node
+        self._hand = hand
+        #: A zeroing takes half a minute. It waits in a thread of its own, and the node continues to publish.
+        self._waiting = ThreadPoolExecutor(max_workers=len(fingers) + 1, thread_name_prefix="sun2xp service")
+        slow, quick = ReentrantCallbackGroup(), MutuallyExclusiveCallbackGroup()
+        for of, prefix in [(fingers, ""), *(((finger,), f"finger{finger}/") for finger in fingers)]:
+            for name, action in (("zero", self._zero), ("recover", self._recover)):
+                answer = partial(self._answer_later, of, action)
+                node.create_service(Trigger, prefix + name, answer, callback_group=slow)
+            stop = partial(self._answer, of, self._stop)
+            node.create_service(Trigger, f"{prefix}stop", stop, callback_group=quick)
+
+    def close(self) -> None:
+        """Ends the threads, after the hand is closed."""
+        self._waiting.shutdown(wait=True)
+
+    async def _answer_later(self, fingers: Sequence[int], action: Action, request: Any, response: Any) -> Any:
+        done = Future(executor=self._node.executor)
+        self._waiting.submit(lambda: done.set_result(self._answer(fingers, action, request, response)))
+        return await done
+
+    def _answer(self, fingers: Sequence[int], action: Action, _request: Any, response: Any) -> Any:
+        said, response.success = [], True
+        for finger in fingers:
+            try:
+                said.append(f"finger {finger} {action(finger)}")
+            except sun2xp.Error as refusal:
+                response.success = False
+                said.append(str(refusal))
+                self._node.get_logger().error(str(refusal))
+        response.message = "; ".join(said)
+        return response
+
+    def _zero(self, finger: int) -> str:
+        self._hand.zero(finger)
+        return "is zeroed"
+
+    def _recover(self, finger: int) -> str:
+        if self._hand.status(finger).stage != "faulted":
+            return "has no fault"
+        self._hand.recover(finger)
+        return "has recovered"
+
+    def _stop(self, finger: int) -> str:
+        self._hand.stop(finger)
+        return "is stopped: the service recover makes it a spring again"

@@ -1,0 +1,143 @@
+"""A running node, and a planner that talks to it."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PointStamped, WrenchStamped
+from rcl_interfaces.msg import Log
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray, String
+from std_srvs.srv import Trigger
+from trajectory_msgs.msg import JointTrajectory
+
+#: Longest time of a wait, s. The machine may be busy.
+LONGEST = 30.0
+
+#: The prefix of names with which the node runs.
+PREFIX = "left_"
+
+
+class Planner:
+    """A node that keeps what it receives."""
+
+    def __init__(self):
+        self.node = rclpy.create_node("planner")
+        self.received = {}
+        self.changed = threading.Condition()
+        subscribe = self._subscribe
+        subscribe(JointState, "joint_states")
+        subscribe(DiagnosticArray, "/diagnostics")
+        subscribe(Log, "/rosout")
+        for finger in (1, 2, 3):
+            subscribe(WrenchStamped, f"finger{finger}/wrench")
+        self.trajectories = self.node.create_publisher(JointTrajectory, "joint_trajectory", 10)
+        self.targets = self.node.create_publisher(PointStamped, "finger1/target", 10)
+        self.stiffnesses = self.node.create_publisher(Float64MultiArray, "finger1/stiffness", 10)
+        self.executor = SingleThreadedExecutor()
+        self.executor.add_node(self.node)
+        self.thread = threading.Thread(target=self.executor.spin, daemon=True)
+        self.thread.start()
+
+    def _subscribe(self, kind, topic, qos=10):
+        def keep(message):
+            with self.changed:
+                self.received.setdefault(topic, []).append(message)
+                self.changed.notify_all()
+
+        return self.node.create_subscription(kind, topic, keep, qos)
+
+    def wait(self, topic, condition=lambda message: True):
+        """Waits for a message after this call that has the property, and returns it."""
+        deadline = time.monotonic() + LONGEST
+        with self.changed:
+            place = len(self.received.get(topic, []))
+            while True:
+                messages = self.received.get(topic, [])
+                for message in messages[place:]:
+                    if condition(message):
+                        return message
+                place = len(messages)
+                left = deadline - time.monotonic()
+                newest = messages[-1] if messages else None
+                assert left > 0 and self.changed.wait(left) or newest, f"no message of {topic}"
+                assert left > 0, f"no such message of {topic}; the newest is {newest}"
+
+    def latched(self, topic):
+        """Subscribes now, and returns the message that was published before."""
+        qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._subscribe(String, topic, qos)
+        deadline = time.monotonic() + LONGEST
+        with self.changed:
+            while topic not in self.received:
+                assert self.changed.wait(deadline - time.monotonic()), f"no message of {topic}"
+            return self.received[topic][0]
+
+    def begin(self, service):
+        """Calls a service without waiting for the response."""
+        client = self.node.create_client(Trigger, service)
+        assert client.wait_for_service(LONGEST), f"no service {service}"
+        return client.call_async(Trigger.Request())
+
+    def finish(self, future):
+        """Waits for a response."""
+        done = threading.Event()
+        future.add_done_callback(lambda _: done.set())
+        assert done.wait(LONGEST), "no response"
+        return future.result()
+
+    def call(self, service):
+        return self.finish(self.begin(service))
+
+    def ready(self):
+        """Waits until the node has the publishers of this planner."""
+        deadline = time.monotonic() + LONGEST
+        for publisher in (self.trajectories, self.targets, self.stiffnesses):
+            while publisher.get_subscription_count() == 0:
+                assert time.monotonic() < deadline, f"nobody subscribes to {publisher.topic_name}"
+                time.sleep(0.05)
+        self.wait("joint_states")
+
+    def close(self):
+        self.executor.shutdown()
+        self.thread.join(LONGEST)
+        self.node.destroy_node()
+
+
+def start(*parameters, **environment):
+    """Starts the node in a process of its own."""
+    command = [sys.executable, "-m", "sun2xp_ros", "--ros-args"]
+    for parameter in parameters:
+        command += ["-p", parameter]
+    return subprocess.Popen(command, env={**os.environ, **environment}, stderr=subprocess.PIPE, text=True)
+
+
+@pytest.fixture(scope="session")
+def ros():
+    rclpy.init()
+    yield
+    rclpy.try_shutdown()
+
+
+@pytest.fixture(scope="module")
+def planner(ros):
+    """A planner, while the node with a simulated hand runs."""
+    process = start("simulated:=nominal", f"prefix:={PREFIX}", "diagnostics_rate:=2.0")
+    one = Planner()
+    try:
+        one.ready()
+        yield one
+    finally:
+        one.close()
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=LONGEST)
+        print(said)
+    assert process.returncode == 0, said

@@ -1,0 +1,291 @@
+"""The node against rclpy: what it publishes, and what it does with messages and services."""
+
+import math
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+from xml.etree import ElementTree
+
+import numpy
+import pytest
+import sun2xp
+from builtin_interfaces.msg import Duration
+from conftest import LONGEST, PREFIX, start
+from geometry_msgs.msg import PointStamped
+from std_msgs.msg import Float64MultiArray
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+JOINTS = [f"{PREFIX}finger{finger}_joint{joint}" for finger in (1, 2, 3) for joint in (0, 1, 2)]
+
+
+def trajectory(finger, *points, names=None):
+    """A trajectory of one finger: times, s, and angles, rad."""
+    message = JointTrajectory(joint_names=names or JOINTS[3 * finger - 3 : 3 * finger])
+    for seconds, angles in points:
+        since = Duration(sec=int(seconds), nanosec=round(seconds % 1 * 1e9))
+        message.points.append(JointTrajectoryPoint(positions=angles, time_from_start=since))
+    return message
+
+
+def near(finger, angles, tolerance=0.03):
+    """Whether joint states have a finger near these angles."""
+
+    def condition(message):
+        found = dict(zip(message.name, message.position))
+        names = JOINTS[3 * finger - 3 : 3 * finger]
+        return all(name in found and abs(found[name] - angle) < tolerance for name, angle in zip(names, angles))
+
+    return condition
+
+
+def refused(*words):
+    """Whether the log has a refusal with these words."""
+    return lambda line: line.level == 40 and all(word in line.msg for word in words)
+
+
+def of_finger(message, finger):
+    found = {status.name: status for status in message.status}
+    return found[f"sun2xp: {PREFIX}finger{finger}"]
+
+
+def in_stage(finger, stage):
+    def condition(message):
+        values = {value.key: value.value for value in of_finger(message, finger).values}
+        return values["stage"] == stage
+
+    return condition
+
+
+def test_joint_states_are_complete_and_fresh(planner):
+    message = planner.wait("joint_states")
+    assert list(message.name) == JOINTS
+    assert len(message.position) == len(message.velocity) == len(message.effort) == 9
+    # Tendons at 5 to 60 N with arms of about 1 cm: some 0.1 N m, and not N cm.
+    assert 0.0 < max(abs(torque) for torque in message.effort) < 0.6
+    now = planner.node.get_clock().now().nanoseconds * 1e-9
+    age = now - (message.header.stamp.sec + message.header.stamp.nanosec * 1e-9)
+    assert -0.001 < age < 1.0, age
+    count, began = len(planner.received["joint_states"]), time.monotonic()
+    time.sleep(2.0)
+    rate = (len(planner.received["joint_states"]) - count) / (time.monotonic() - began)
+    assert 50 < rate < 110, f"{rate} Hz instead of 100 Hz"
+
+
+def frames(urdf, angles):
+    """Returns the poses of all links in the frame of the root, m, at these angles by joint."""
+    robot = ElementTree.fromstring(urdf)
+    poses = {f"{PREFIX}palm": numpy.eye(4)}
+    joints = list(robot.findall("joint"))
+    while joints:
+        joint = next(one for one in joints if one.find("parent").get("link") in poses)
+        joints.remove(joint)
+        origin = joint.find("origin")
+        x, y, z, roll, pitch, yaw = (float(part) for key in ("xyz", "rpy") for part in origin.get(key).split())
+        assert roll == pitch == 0.0
+        step = numpy.array(
+            [[math.cos(yaw), -math.sin(yaw), 0, x], [math.sin(yaw), math.cos(yaw), 0, y], [0, 0, 1, z], [0, 0, 0, 1]]
+        )
+        if joint.get("type") == "revolute":
+            axis = [float(part) for part in joint.find("axis").get("xyz").split()]
+            step = step @ turned(axis, angles[joint.get("name")])
+        poses[joint.find("child").get("link")] = poses[joint.find("parent").get("link")] @ step
+    return poses
+
+
+def turned(axis, angle):
+    """Rodrigues' formula."""
+    x, y, z = axis
+    cross = numpy.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    pose = numpy.eye(4)
+    pose[:3, :3] += math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
+    return pose
+
+
+def test_the_latched_description_is_the_hand(planner):
+    urdf = planner.latched("robot_description").data
+    robot = ElementTree.fromstring(urdf)
+    assert [joint.get("name") for joint in robot.findall("joint[@type='revolute']")] == JOINTS
+    with sun2xp.simulated() as hand:
+        for finger in (1, 2, 3):
+            limits = hand.limits(finger).joints
+            for joint, name in enumerate(JOINTS[3 * finger - 3 : 3 * finger]):
+                soft = robot.find(f"joint[@name='{name}']/safety_controller")
+                assert float(soft.get("soft_lower_limit")) == pytest.approx(limits[0, joint])
+                assert float(soft.get("soft_upper_limit")) == pytest.approx(limits[1, joint])
+            # The pose of the tip, in position and axes, is that of the library.
+            pose, state = hand.palm_pose(finger), hand.position(finger)
+            angles = dict(zip(JOINTS, 9 * [0.0])) | dict(zip(JOINTS[3 * finger - 3 :], state))
+            found = frames(urdf, angles)
+            tip, base = found[f"{PREFIX}finger{finger}_tip"], found[f"{PREFIX}finger{finger}_base"]
+            assert numpy.allclose(base[:3, :3], pose.rotation) and numpy.allclose(base[:3, 3] * 100, pose.base)
+            assert numpy.allclose(tip[:3, :3], pose.tip_rotation, atol=0.002)
+            assert numpy.allclose(tip[:3, 3] * 100, pose.tip, atol=0.02)
+            for angles in numpy.random.default_rng(14).uniform(limits[0], limits[1], (20, 3)):
+                expected = pose.base + pose.rotation @ hand.forward_kinematics(finger, angles)
+                every = dict(zip(JOINTS, 9 * [0.0])) | dict(zip(JOINTS[3 * finger - 3 :], angles))
+                tip = frames(urdf, every)[f"{PREFIX}finger{finger}_tip"]
+                assert numpy.allclose(tip[:3, 3] * 100, expected, atol=1e-9)
+
+
+def test_a_trajectory_moves_a_finger_and_no_other(planner):
+    before = planner.wait("joint_states")
+    # The joints in another order, and the present pose as the first point, as planners of ROS send it.
+    names = [JOINTS[5], JOINTS[3], JOINTS[4]]
+    now = dict(zip(before.name, before.position))
+    planner.trajectories.publish(
+        trajectory(2, (0.0, [now[name] for name in names]), (0.8, [0.8, 0.1, 0.4]), (1.6, [0.9, 0.2, 0.5]), names=names)
+    )
+    after = planner.wait("joint_states", near(2, [0.2, 0.5, 0.9]))
+    for finger in (1, 3):
+        place = 3 * finger - 3
+        assert near(finger, before.position[place : place + 3])(after)
+
+
+def test_a_trajectory_beyond_the_limits_is_refused_with_the_reason(planner):
+    before = planner.wait("joint_states")
+    planner.trajectories.publish(trajectory(3, (1.0, [0.0, 0.5, 9.0])))
+    line = planner.wait("/rosout", refused("trajectory refused", "finger 3", "rad"))
+    assert "9.000" in line.msg
+    planner.trajectories.publish(trajectory(3, (0.01, [0.5, 1.0, 1.4])))
+    planner.wait("/rosout", refused("trajectory refused", "finger.motion"))
+    planner.trajectories.publish(trajectory(3, (1.0, [0.5]), names=["elbow"]))
+    planner.wait("/rosout", refused("there is no joint elbow"))
+    # One finger refuses, so the other one, which accepts its path, holds its pose.
+    both = trajectory(1, (1.0, [0.0, 0.9, 1.2, 0.0, 0.5, 8.0]), names=[*JOINTS[:3], *JOINTS[6:]])
+    planner.trajectories.publish(both)
+    planner.wait("/rosout", refused("trajectory refused", "8.000", "finger 3"))
+    time.sleep(1.2)
+    after = planner.wait("joint_states")
+    assert near(1, before.position[:3])(after) and near(3, before.position[6:])(after)
+
+
+def test_an_empty_trajectory_stops_the_motion(planner):
+    before = planner.wait("joint_states").position[6]
+    planner.trajectories.publish(trajectory(3, (6.0, [before + 0.6, 0.5, 0.9])))
+    moving = planner.wait("joint_states", lambda message: message.position[6] > before + 0.05)
+    assert moving.velocity[6] > 0.02
+    planner.trajectories.publish(JointTrajectory())
+    time.sleep(0.5)
+    stopped = planner.wait("joint_states").position[6]
+    time.sleep(1.0)
+    # The path would have moved on by 0.1 rad and more.
+    assert abs(planner.wait("joint_states").position[6] - stopped) < 0.02
+
+
+def test_a_target_moves_the_tip(planner):
+    with sun2xp.simulated() as hand:
+        joints = numpy.array([0.1, 0.7, 1.0])
+        pose = hand.palm_pose(1)
+        point = hand.forward_kinematics(1, joints)
+    in_palm = (pose.base + pose.rotation @ point) / 100.0
+    message = PointStamped()
+    message.header.frame_id = f"{PREFIX}palm"
+    message.point.x, message.point.y, message.point.z = in_palm
+    planner.targets.publish(message)
+    planner.wait("joint_states", near(1, joints))
+    message.header.frame_id = "map"
+    planner.targets.publish(message)
+    planner.wait("/rosout", refused("target of finger1 refused", "map", f"{PREFIX}finger1_base"))
+    message.header.frame_id = f"{PREFIX}finger1_base"
+    message.point.x, message.point.y, message.point.z = point / 100.0 + [0.0, 0.002, 0.0]
+    planner.targets.publish(message)
+    planner.wait("joint_states", lambda message: not near(1, joints, 0.005)(message))
+
+
+def test_a_stiffness_is_taken_in_newtons_a_metre(planner):
+    planner.stiffnesses.publish(Float64MultiArray(data=numpy.diag([900.0, 300.0, 300.0]).ravel().tolist()))
+    # The library names its own unit.
+    planner.wait("/rosout", refused("stiffness of finger1 refused", "9.000 N/cm"))
+    planner.stiffnesses.publish(Float64MultiArray(data=[1.0, 2.0]))
+    planner.wait("/rosout", refused("3 x 3"))
+    count = len(planner.received["/rosout"])
+    planner.stiffnesses.publish(Float64MultiArray(data=numpy.diag([200.0, 200.0, 100.0]).ravel().tolist()))
+    time.sleep(0.5)
+    lines = planner.received["/rosout"][count:]
+    assert not [line.msg for line in lines if refused("stiffness")(line)]
+
+
+def test_wrenches_are_in_the_frames_of_the_tips(planner):
+    for finger in (1, 2, 3):
+        message = planner.wait(f"finger{finger}/wrench")
+        assert message.header.frame_id == f"{PREFIX}finger{finger}_tip"
+        force = message.wrench.force
+        # Nothing touches the fingers.
+        assert math.hypot(force.x, force.y, force.z) < 1.0
+        assert message.wrench.torque.x == message.wrench.torque.y == message.wrench.torque.z == 0.0
+
+
+def test_a_fault_is_in_diagnostics_and_recover_ends_it(planner):
+    message = planner.wait("/diagnostics")
+    # A busy machine loses periods, of which the diagnostics warn.
+    assert [status for status in message.status if status.level > b"\x01"] == []
+    assert {"tension 4, N", "lost replies", "remedy"} <= {value.key for value in message.status[0].values}
+    assert message.status[0].hardware_id == "simulated finger 1"
+
+    response = planner.call("finger2/stop")
+    assert response.success and "finger 2 is stopped" in response.message
+    status = of_finger(planner.wait("/diagnostics", in_stage(2, "faulted")), 2)
+    values = {value.key: value.value for value in status.values}
+    assert status.level == b"\x02" and "stop of the finger" in status.message
+    assert values["fault"].startswith("50: ") and "recover it" in values["remedy"]
+    assert list(planner.wait("joint_states").name) == JOINTS[:3] + JOINTS[6:]
+    planner.trajectories.publish(trajectory(2, (1.0, [0.0, 0.5, 0.9])))
+    planner.wait("/rosout", refused("finger 2 is faulted"))
+
+    response = planner.call("recover")
+    assert response.success, response
+    assert response.message == "finger 1 has no fault; finger 2 has recovered; finger 3 has no fault"
+    assert planner.wait("/diagnostics", in_stage(2, "running")).status[1].level < b"\x02"
+    assert list(planner.wait("joint_states").name) == JOINTS
+
+
+def test_a_zeroing_does_not_delay_the_node_and_stop_ends_it(planner):
+    zeroing = planner.begin("finger3/zero")
+    planner.wait("/diagnostics", in_stage(3, "calibrating"))
+    planner.trajectories.publish(trajectory(3, (1.0, [0.0, 0.5, 0.9])))
+    planner.wait("/rosout", refused("trajectory refused", "finger 3"))
+    planner.trajectories.publish(trajectory(2, (1.0, [0.1, 0.6, 1.0])))
+    planner.wait("joint_states", near(2, [0.1, 0.6, 1.0]))
+    assert not zeroing.done() and planner.call("stop").success
+    response = planner.finish(zeroing)
+    assert not response.success and "finger 3" in response.message
+    assert planner.call("recover").success
+    planner.wait("/diagnostics", in_stage(3, "running"))
+
+
+@pytest.mark.parametrize(
+    ("parameter", "text"),
+    [("simulated:=broken", "broken"), ("configuration:=/nowhere/hand.toml", "/nowhere/hand.toml")],
+)
+def test_a_hand_that_cannot_be_opened_ends_the_node_with_the_reason(ros, parameter, text):
+    process = start(parameter)
+    try:
+        _, said = process.communicate(timeout=LONGEST)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        raise
+    assert process.returncode == 1 and "the hand was not opened" in said and text in said and "Traceback" not in said
+
+
+def test_the_example_of_the_page_moves_a_finger(ros):
+    page = (pathlib.Path(__file__).parents[2] / "docs/ros.md").read_text()
+    (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    example += (
+        "from sensor_msgs.msg import JointState\n"
+        "states = []\n"
+        "planner.create_subscription(JointState, 'joint_states', states.append, 10)\n"
+        "while not states or abs(states[-1].position[0] - 0.1) > 0.02:\n"
+        "    rclpy.spin_once(planner)\n"
+    )
+    # Beside the node of the other tests, whose topics have the same names.
+    apart = {"ROS_DOMAIN_ID": str(int(os.environ.get("ROS_DOMAIN_ID", 0)) % 100 + 1)}
+    process = start("simulated:=nominal", **apart)
+    try:
+        subprocess.run([sys.executable, "-c", example], env={**os.environ, **apart}, timeout=LONGEST, check=True)
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=LONGEST)
