@@ -477,6 +477,129 @@ int sun2xp_close(sun2xp_hand *hand);
 sun2xp_hand *sun2xp_default_hand(void);
 
 
+/* ---- HARDWARE OF THE PROGRAM ------------------------------------------------------------------------------------- */
+
+#define SUN2XP_IO_WATCHDOG 1                /* The watchdog of the hardware has tripped since the start. */
+#define SUN2XP_IO_ENDED 2                   /* The hardware has entered the end state for another reason. */
+#define SUN2XP_IO_EMERGENCY_STOP 4          /* The emergency stop is active. */
+#define SUN2XP_IO_SUPPLY 8                  /* The supply of the motors is missing or out of range. */
+#define SUN2XP_IO_DRIVER 16                 /* A motor driver reports a fault. */
+#define SUN2XP_IO_SENSOR 32                 /* An encoder or a gauge cannot be read. */
+#define SUN2XP_IO_ZERO_LOST 64              /* The encoder counts have lost their reference to the zero. */
+
+/* The terms under which the motors of a finger may move. The library sets all members. */
+struct sun2xp_io_terms {
+    size_t size;                            /* sizeof (struct sun2xp_io_terms) in the library. */
+    int finger;                             /* Finger, 1 to 3. */
+    int hold;                               /* 1: the end state is "hold"; 0: it is "release". */
+    double rate;                            /* Exchanges in a second, Hz. */
+    double watchdog;                        /* Time without an exchange after which the hardware must enter the end
+                                               state by itself, s. */
+    double hold_time;                       /* Duration of "hold", s. */
+    double hold_torque;                     /* Largest torque that "hold" keeps, N cm. */
+    double torque_limits[4];                /* Largest torque of each motor, N cm. The commanded torques are within
+                                               it. */
+    double torque_constants[4];             /* Torque constant of each motor, N cm/A. */
+};
+
+/* What the sensors of a finger measured. The library sets all members to 0 before the call, and then size. */
+struct sun2xp_io_sample {
+    size_t size;                            /* sizeof (struct sun2xp_io_sample) in the library. */
+    double time;                            /* Time of the measurement, s of any clock that advances evenly; 0: when
+                                               the exchange returned. */
+    double tensions[4];                     /* Tensions at the gauges, N. */
+    int encoders[4];                        /* Counts of the motor encoders. */
+    unsigned int faults;                    /* Sum of SUN2XP_IO_... for faults that are present. Each faults the
+                                               finger. */
+};
+
+/* The command of one exchange. The library sets all members. */
+struct sun2xp_io_command {
+    size_t size;                            /* sizeof (struct sun2xp_io_command) in the library. */
+    unsigned long number;                   /* Number of the command since the start. A repeated exchange has the
+                                               same number again. */
+    int enable;                             /* 0: the motors are off, and the torques are zero. */
+    double torques[4];                      /* Torques of motors 1 to 4, N cm. */
+    double deadline;                        /* Time by which the exchange should return, s of CLOCK_MONOTONIC. */
+};
+
+/* The hardware of one finger (sun2xp_open_io). Set members that are not used to 0. */
+struct sun2xp_io {
+    size_t size;                            /* sizeof (struct sun2xp_io), the same in every element of an array. */
+    int finger;                             /* Finger, 1 to 3. */
+    int holds;                              /* 1: the hardware has the end state "hold". */
+    int in_step;                            /* 1: a simulation that advances by one period in each exchange. The
+                                               servo waits for it. */
+    double shortest_watchdog;               /* Shortest watchdog time of the hardware, s. */
+    double tension_unit;                    /* Step in which the library stores tensions, N; 0: 0.005. */
+    void *user;                             /* First argument of the functions. */
+    int (*start)(void*, const struct sun2xp_io_terms*, struct sun2xp_io_sample*); /* Prepares the hardware, with the
+                                               motors off, and gets the first sample. */
+    int (*exchange)(void*, const struct sun2xp_io_command*, struct sun2xp_io_sample*); /* Applies the torques, and
+                                               gets what the sensors measure. */
+    int (*stop)(void*);                     /* Enters the end state. */
+};
+
+/*
+ sun2xp_open_io - open a hand with hardware of the program
+
+   path    as in sun2xp_open
+   count   number of fingers with hardware of the program, 0 to 3
+   io      io[count]: the hardware of each of these fingers; copied
+   hand    result: the handle of the hand
+
+ Opens a hand as sun2xp_open does. A finger with an entry in io has no serial port: the library calls
+ start, then exchange in every cycle, then stop, all with user as first argument. Each returns 0, or an
+ errno. Timing, faults and recovery are those of a board (docs/other-hardware.md):
+
+   start     in a thread of the library that is not real-time, at opening and at every recovery; may take
+             seconds. An error refuses the call.
+   exchange  in the servo thread of the finger. An error is a lost reply. If it returns after the
+             deadline, the cycle is late, and possibly an overrun.
+   stop      in the servo thread or at a recovery. After an error, the library calls it again. Every
+             start that has succeeded is followed by a stop.
+
+ Calls for one finger never overlap. exchange and stop must not allocate memory, wait for locks, write
+ files or call the library. The behaviour is undefined if one of the functions does not return: longjmp,
+ pthread_exit, exceptions.
+
+ The program has the watchdog: if no exchange comes for terms->watchdog, the hardware must enter the end
+ state by itself, also if this process hangs or has died.
+
+ A tension may be from -8192 to 57342 steps. A tension outside, NaN, or an encoder that moves by 32768
+ counts between two exchanges faults the finger, as SUN2XP_IO_SENSOR does.
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   hand or io is null, or a function of io is null
+   EINVAL   size is too small; count is not 0 to 3; no such finger, or two entries for one finger
+   ENOMEM   there is not enough memory
+   EMFILE   16 hands are open
+   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
+   EINVAL   the configuration is unusable, or gauge.newton_per_count is that of another board
+   others   as sun2xp_open, and the errno that start has returned
+
+ Threads: any.
+ */
+int sun2xp_open_io(const char *path, int count, const struct sun2xp_io *io, sun2xp_hand **hand);
+
+/*
+ sun2xp_open_io_text - open a hand with hardware of the program, of a configuration in memory
+
+   configuration   the text, as in sun2xp_open_text
+   count, io       as in sun2xp_open_io
+   hand            result: the handle of the hand
+
+ Returns 0, or a negative number with
+   EPERM    forked child
+   EFAULT   configuration, hand or io is null, or a function of io is null
+   others   as sun2xp_open_io
+
+ Threads: any.
+ */
+int sun2xp_open_io_text(const char *configuration, int count, const struct sun2xp_io *io, sun2xp_hand **hand);
+
+
 /* ---- JOINT ANGLES AND STIFFNESS ---------------------------------------------------------------------------------- */
 
 /*
@@ -1583,6 +1706,7 @@ int sun2xp_reset_timing(sun2xp_hand *hand, int finger);
 #define SUN2XP_FAULT_STOP_CALL              50 /* stop of the finger, call */
 #define SUN2XP_FAULT_SET_POINT_EXPIRED      51 /* set point expired */
 #define SUN2XP_FAULT_REFLEX_STOP            52 /* stopped by a reflex */
+#define SUN2XP_FAULT_HARDWARE_FAILED        53 /* hardware failed */
 /*
  Result of sun2xp_fault.
 
@@ -2159,6 +2283,10 @@ int sun2xp_write_black_box(sun2xp_hand *hand, int finger, const char *path);
 /* These do not compile if the compiler lays out structs differently than the library. */
 #ifdef __LP64__
 typedef char sun2xp_error_size[sizeof(struct sun2xp_error) == 40 ? 1 : -1];
+typedef char sun2xp_io_terms_size[sizeof(struct sun2xp_io_terms) == 112 ? 1 : -1];
+typedef char sun2xp_io_sample_size[sizeof(struct sun2xp_io_sample) == 72 ? 1 : -1];
+typedef char sun2xp_io_command_size[sizeof(struct sun2xp_io_command) == 64 ? 1 : -1];
+typedef char sun2xp_io_size[sizeof(struct sun2xp_io) == 72 ? 1 : -1];
 typedef char sun2xp_tip_size[sizeof(struct sun2xp_tip) == 208 ? 1 : -1];
 typedef char sun2xp_set_point_size[sizeof(struct sun2xp_set_point) == 48 ? 1 : -1];
 typedef char sun2xp_path_pose_size[sizeof(struct sun2xp_path_pose) == 56 ? 1 : -1];

@@ -110,6 +110,11 @@ pub mod groups {
     pub use crate::hand::{FingerCommand, Pose, Until, Waiting};
 }
 
+/// Hardware of the program instead of boards at serial ports: [`Hand::open_with_io`].
+pub mod io {
+    pub use crate::board::{FingerIo, HandIo, IoCommand, IoFaults, IoProperties, IoSample, IoTerms};
+}
+
 /// What the kinematics of a finger report: joint torques, limits, and its pose in the palm.
 pub mod kinematics {
     pub use crate::hand::{FingerLimits, JointTorques, PalmPose};

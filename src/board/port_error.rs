@@ -67,6 +67,14 @@ pub enum PortError {
     /// The descriptor is closed, or its number now belongs to another file (EBADF).
     #[error("another part of this program has closed the descriptor of the port. Close the hand and open it again")]
     Closed,
+    /// Hardware that the program provides does not start or stop.
+    #[error("the program's hardware failed to {doing}: {source}")]
+    Hardware {
+        /// "start" or "stop".
+        doing: &'static str,
+        /// The error that the program reported.
+        source: io::Error,
+    },
     /// A read or write failed.
     #[error("reading or writing the port failed: {}", failing(.0))]
     Failed(io::Error),
@@ -83,9 +91,10 @@ impl PortError {
             PortError::Baud { .. } => libc::EINVAL,
             PortError::Vanished => libc::EIO,
             PortError::Closed => libc::EBADF,
-            PortError::Opening { source, .. } | PortError::SetUp { source, .. } | PortError::Failed(source) => {
-                source.raw_os_error().unwrap_or(libc::EIO)
-            }
+            PortError::Opening { source, .. }
+            | PortError::SetUp { source, .. }
+            | PortError::Hardware { source, .. }
+            | PortError::Failed(source) => source.raw_os_error().unwrap_or(libc::EIO),
         }
     }
 

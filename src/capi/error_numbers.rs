@@ -67,7 +67,11 @@ pub(super) fn number(refusal: &Refusal) -> c_int {
         Refusal::NoHand => SUN2XP_ERROR_NO_HAND,
         Refusal::AlreadyOpen | Refusal::Busy | Refusal::InLogCallback => SUN2XP_ERROR_BUSY,
         Refusal::TooManyHands => SUN2XP_ERROR_TOO_MANY,
-        Refusal::Null { .. } | Refusal::WrongSize { .. } | Refusal::NoSuchName => SUN2XP_ERROR_ARGUMENT,
+        Refusal::Null { .. }
+        | Refusal::WrongSize { .. }
+        | Refusal::NoSuchName
+        | Refusal::IoCount
+        | Refusal::IoTwice(_) => SUN2XP_ERROR_ARGUMENT,
         Refusal::NoMemory => SUN2XP_ERROR_NO_MEMORY,
         Refusal::Hand(error) => of_hand(error),
     }

@@ -1,5 +1,6 @@
 //! The hands of the C calls: a table with a place for the hand of OpenHand, and places for the hands of sun2xp_open.
 
+use crate::board::HandIo;
 use crate::capi::hand_events::{self, HandEvents};
 use crate::capi::handle::{Handle, MOST_HANDS};
 use crate::capi::process;
@@ -57,7 +58,23 @@ pub(super) enum Source {
     Text(String),
 }
 
+/// A configuration, and the hardware that the program provides.
+pub(super) struct SourceWithIo {
+    source: Source,
+    io: HandIo,
+}
+
+impl From<Source> for SourceWithIo {
+    fn from(source: Source) -> Self {
+        source.with_io(HandIo::default())
+    }
+}
+
 impl Source {
+    pub(super) fn with_io(self, io: HandIo) -> SourceWithIo {
+        SourceWithIo { source: self, io }
+    }
+
     fn read(self) -> Result<Configured, HandError> {
         let configured = match self {
             Self::Found => hand::find_configuration(),
@@ -80,11 +97,11 @@ pub(super) fn open_default() -> Result<(), Refusal> {
     if TABLE[DEFAULT].hand.read().is_some() {
         return Err(Refusal::AlreadyOpen);
     }
-    open_at(DEFAULT, Source::Found).map(drop)
+    open_at(DEFAULT, Source::Found.into()).map(drop)
 }
 
 /// Opens another hand.
-pub(super) fn open(source: Source) -> Result<Handle, Refusal> {
+pub(super) fn open(source: SourceWithIo) -> Result<Handle, Refusal> {
     refuse_while_exiting()?;
     let (place, _opening) = free_place().ok_or(Refusal::TooManyHands)?;
     open_at(place, source)
@@ -98,11 +115,11 @@ fn free_place() -> Option<(usize, MutexGuard<'static, ()>)> {
 }
 
 /// Opens a hand at a free place. The caller has locked its lifecycle.
-fn open_at(place: usize, source: Source) -> Result<Handle, Refusal> {
+fn open_at(place: usize, from: SourceWithIo) -> Result<Handle, Refusal> {
     process::watch(close_at_exit);
-    let configured = source.read()?;
+    let configured = from.source.read()?;
     reporting::set_printing(configured.configuration.hand.print_refusals);
-    let hand = Hand::open_as(configured)?;
+    let hand = Hand::open_as_with_io(configured, from.io)?;
     // If the process exits, this line returns an error, and the return drops the hand, which closes it. The exit
     // handler waits only briefly for this call, so it cannot be relied on to close this hand.
     refuse_while_exiting()?;

@@ -2,7 +2,7 @@
 
 use crate::capi::boundary::{MEMORY_OF_HAND, delegated, delegated_or_done_here, uncancelled};
 use crate::capi::hand_events::in_callback;
-use crate::capi::hand_table::{self, Source, default_handle};
+use crate::capi::hand_table::{self, Source, SourceWithIo, default_handle};
 use crate::capi::handle::{Handle, sun2xp_hand};
 use crate::capi::memory::non_null;
 use crate::capi::refusal::{Refusal, Wanted};
@@ -151,7 +151,7 @@ pub extern "C" fn sun2xp_default_hand() -> *mut sun2xp_hand {
     uncancelled(|| default_handle().to_c())
 }
 
-fn not_utf_8() -> ConfigurationError {
+pub(super) fn not_utf_8() -> ConfigurationError {
     ConfigurationError::Invalid { file: "configuration text".into(), line: None, reason: "is not UTF-8".into() }
 }
 
@@ -159,17 +159,17 @@ fn not_utf_8() -> ConfigurationError {
 ///
 /// # Safety
 /// `out` is null or points to a handle. The pointers that `source` uses are valid.
-unsafe fn open(
+pub(super) unsafe fn open<S: Into<SourceWithIo>>(
     name: &'static str,
     out: *mut *mut sun2xp_hand,
-    source: impl FnOnce() -> Result<Source, Refusal>,
+    source: impl FnOnce() -> Result<S, Refusal>,
 ) -> c_int {
     let opened = Arc::new(AtomicUsize::new(0));
     let result = {
         let opened = opened.clone();
         delegated(name, Handle::NULL, MEMORY_OF_HAND, || {
-            let source = source()?;
             non_null(out, "hand", Wanted::Handle)?;
+            let source = source()?.into();
             Ok(move || {
                 opened.store(hand_table::open(source)?.value(), Ordering::Relaxed);
                 Ok(())

@@ -3,6 +3,7 @@
 use crate::capi::handle::MOST_HANDS;
 use crate::finger::Action;
 use crate::hand;
+use crate::model::FingerNumber;
 use std::ffi::c_int;
 use std::fmt::{self, Display, Formatter};
 use std::mem::{Discriminant, discriminant};
@@ -27,6 +28,10 @@ pub(super) enum Refusal {
     AlreadyOpen,
     #[error("{} hands are open: close one of them before another is opened", MOST_HANDS)]
     TooManyHands,
+    #[error("count is not 0, 1, 2 or 3: pass one struct sun2xp_io for each finger with hardware of the program")]
+    IoCount,
+    #[error("two elements of io are for finger {0}: pass one for each finger")]
+    IoTwice(FingerNumber),
     #[error("no hand has this name: the names are nominal, worn, sheathed and cheap")]
     NoSuchName,
     #[error(
@@ -61,6 +66,7 @@ pub(super) enum Wanted {
     Matrix,
     Text,
     FileName,
+    Function,
     Handle,
 }
 
@@ -72,6 +78,7 @@ impl Display for Wanted {
             Self::Matrix => formatter.write_str("the array of the matrix"),
             Self::Text => formatter.write_str("a text"),
             Self::FileName => formatter.write_str("the name of a file"),
+            Self::Function => formatter.write_str("the address of a function"),
             Self::Handle => formatter.write_str("the address of a sun2xp_hand *"),
         }
     }
@@ -88,7 +95,7 @@ impl Refusal {
             Self::NoHand => libc::ENODEV,
             Self::AlreadyOpen | Self::Busy | Self::InLogCallback => libc::EBUSY,
             Self::TooManyHands => libc::EMFILE,
-            Self::NoSuchName => libc::EINVAL,
+            Self::NoSuchName | Self::IoCount | Self::IoTwice(_) => libc::EINVAL,
             Self::Exiting => libc::ESHUTDOWN,
             Self::NoMemory => libc::ENOMEM,
             Self::Panicked(_) => libc::EIO,

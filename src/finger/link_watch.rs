@@ -53,7 +53,7 @@ impl Fading {
 
 /// Counts lost replies in a row. It counts attempts and not time: when the whole machine pauses, no reply is lost.
 pub(super) struct LinkWatch {
-    /// Whether the finger has a built-in simulated board.
+    /// Whether the finger is a simulation that runs in step.
     simulated: bool,
     in_a_row: u32,
     repeat: u32,
@@ -64,7 +64,8 @@ pub(super) struct LinkWatch {
 }
 
 impl LinkWatch {
-    /// Constructs the watch of a finger. `simulated` is true if the finger has a built-in simulated board.
+    /// Constructs the watch of a finger. `simulated` is true if the finger has a built-in simulated board, or another
+    /// simulation that runs in step.
     pub fn new(hand: &ConfiguredHand, simulated: bool) -> Self {
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
         // The board gets the Stop one period after the last lost reply. The board must get it within the watchdog's

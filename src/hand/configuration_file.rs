@@ -10,7 +10,7 @@ use crate::files::{raised_privileges, read_regular_file};
 use crate::hand::ConfigurationError;
 use crate::hand::notice::print_notice;
 use crate::model::configuration::{Configuration, FINGERS};
-use crate::model::{Fingers, ShownPath};
+use crate::model::{FingerNumber, Fingers, ShownPath};
 use std::path::{Path, PathBuf};
 pub(super) use text::overlay;
 pub use values::deserialize;
@@ -101,6 +101,11 @@ impl Configured {
                 Err(ConfigurationError::Invalid { file, line: wrong.line(text), reason: wrong.to_string() })
             }
         }
+    }
+
+    /// Notes that the program provides the hardware of this finger, so that its port does not matter.
+    pub(super) fn provides(&mut self, finger: FingerNumber) {
+        self.ports_named[finger.index()] = true;
     }
 
     /// Prints one line on standard error if some of these fingers are simulated although the configuration does not

@@ -18,6 +18,7 @@ mod fingertip;
 mod found;
 mod gravity;
 mod groups;
+mod hardware;
 mod identities;
 mod kinematics;
 mod limits;

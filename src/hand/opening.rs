@@ -2,7 +2,7 @@
 //! hands with the boards.
 
 use crate::board::protocol::Status;
-use crate::board::{Link, Port, Terms, capacity, tactile_requests};
+use crate::board::{Connection, Link, Terms, capacity, tactile_requests};
 use crate::control::{AdmissibleDamping, Controller, JointSprings};
 use crate::finger::events::EventLog;
 use crate::finger::{
@@ -11,6 +11,7 @@ use crate::finger::{
 };
 use crate::hand::admission::{Admission, DampingAdmission};
 use crate::hand::events::EventSource;
+use crate::hand::hardware::Hardware;
 use crate::hand::identities::Identities;
 use crate::hand::notice::print_notice;
 use crate::hand::port_repair::{KnownBoard, PortRepair};
@@ -19,7 +20,7 @@ use crate::hand::{ConfigurationError, HandError, MotionLimits, SetPointError};
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Configuration, OnFault, Unusable};
 use crate::model::{FingerNumber, Fingers};
-use crate::model::{Section, Shown, ShownPath, UnusableConfiguration};
+use crate::model::{Section, Shown, UnusableConfiguration};
 use crate::realtime::{Consumer, CycleTiming, EventCount, Pages, SharedPages, now, ring};
 use nalgebra::Matrix3;
 use std::path::{Path, PathBuf};
@@ -64,7 +65,7 @@ pub(super) struct Connected {
 pub(super) struct Line {
     /// Number of the servo thread, 1 to 3.
     pub thread: u8,
-    pub port: ServedPort<Port>,
+    pub port: ServedPort<Connection>,
 }
 
 /// Checks everything in a configuration that can be checked without a port: values, initial stiffness, capacity of the
@@ -105,6 +106,7 @@ pub(super) fn reach(
     configuration: &Configuration,
     fingers: Fingers,
     simulated: &SimulatedHand,
+    hardware: &mut Hardware,
     limp: bool,
 ) -> Result<Connected, HandError> {
     // The hand reacts to every emergency stop call that is made after this line.
@@ -115,20 +117,19 @@ pub(super) fn reach(
     let readers = SharedPages::from(Pages::new(EventCount::default()));
     for (path, sharing) in ports(configuration, fingers, simulated) {
         let first = sharing[0];
-        let failed = |source| HandError::Link { finger: first, source };
-        let mut link = Link::open(&path, configuration.fingers[first.index()].baud).map_err(failed)?;
-        warn_of_latency(link.transport());
+        let baud = configuration.fingers[first.index()].baud;
+        let mut link = hardware.connect(configuration, first, &path)?;
         let (mut servos, mut boards) = (Vec::new(), Vec::new());
         for &number in &sharing {
             let (servo, finger, board) = shake_hands(configuration, number, &bulletin, &mut link)?;
             identities.add(board.finger, &path, &board.identity)?;
             let servo = servo.with(alarm.clone()).in_groups(gate.clone()).with_readers(readers.clone());
+            let servo = if link.transport().in_step() { servo.in_step(&configuration.hand) } else { servo };
             servos.push(if limp { servo.limp() } else { servo });
             reached.push(finger);
             boards.push(board);
         }
         let (handover, repair_end) = link_handover();
-        let baud = configuration.fingers[first.index()].baud;
         // A pseudo-terminal has no bit rate.
         let requests = match simulated.path(first) {
             Some(_) => sharing.len(),
@@ -138,10 +139,12 @@ pub(super) fn reach(
             thread: configuration.thread(first),
             port: ServedPort::new(link, servos).with_handover(handover).with_requests(requests),
         });
+        // Hardware of the program does not start again before a recovery is requested.
         // The port of a simulated board is not reopened. After the port is lost, the system may use its path for a
         // pseudo-terminal that the planner opens.
         let reconnects = |&number: &FingerNumber| {
-            configuration.fingers[number.index()].reconnect && simulated.path(number).is_none()
+            let finger = &configuration.fingers[number.index()];
+            finger.reconnect && !finger.has_io() && simulated.path(number).is_none()
         };
         let reconnect = sharing.iter().any(reconnects);
         repairs.push(PortRepair::new(path, baud, reconnect, boards, repair_end));
@@ -170,17 +173,6 @@ pub fn ports(
     ports
 }
 
-/// Prints a notice if a USB adapter delays bytes, because then every cycle loses its reply.
-fn warn_of_latency(port: &Port) {
-    if let Some(milliseconds) = port.latency_timer_ms().filter(|&milliseconds| milliseconds > 1) {
-        print_notice(&format!(
-            "the adapter at {} delays bytes by up to {milliseconds} ms (its latency timer): write 1 to latency_timer \
-             under /sys/bus/usb-serial/devices, or add a udev rule that does so",
-            ShownPath(port.path())
-        ));
-    }
-}
-
 /// The notice for a board that uses a longer watchdog than configured, because it does not support a shorter one.
 fn longer_watchdog(finger: FingerNumber, configured_ms: u16, agreed_ms: u16) -> Option<String> {
     (agreed_ms > configured_ms).then(|| {
@@ -195,7 +187,7 @@ fn shake_hands(
     configuration: &Configuration,
     number: FingerNumber,
     bulletin: &Bulletin,
-    link: &mut Link<Port>,
+    link: &mut Link<Connection>,
 ) -> Result<(FingerServo, Reached, KnownBoard), HandError> {
     let (hand, finger) = (&configuration.hand, &configuration.fingers[number.index()]);
     let unusable = |unusable| ConfigurationError::Unusable { section: format!("finger.{number}"), unusable };
@@ -258,8 +250,8 @@ fn initial_stiffness(configuration: &Configuration, number: FingerNumber) -> Res
 /// Checks that the line of a finger can carry all of its traffic at the configured rate.
 fn carries(configuration: &Configuration, number: FingerNumber) -> Result<(), Unusable> {
     let finger = &configuration.fingers[number.index()];
-    if finger.simulated() {
-        // A pseudo-terminal has no bit rate.
+    if finger.simulated() || finger.has_io() {
+        // A pseudo-terminal has no bit rate, and hardware of the program has no line.
         return Ok(());
     }
     let others = configuration.hand.fingers.members().filter(|&other| other != number);

@@ -1,7 +1,7 @@
 //! Repair of a port: reopens it and shakes hands again, and checks that its boards are the same as at open.
 
 use crate::board::protocol::{Configured, Identity, Status};
-use crate::board::{Link, LinkError, Port, Terms, Transport};
+use crate::board::{Connection, Link, LinkError, Port, Terms, Transport};
 use crate::finger::{Fault, FaultKind, LinkRepairEnd, RepairedLink, RestoredBoard, RestoredFinger, StopCounts};
 use crate::hand::{HandError, RecoveryError};
 use crate::model::FingerNumber;
@@ -20,11 +20,11 @@ pub(super) struct PortRepair {
     pub reconnect: bool,
     /// The boards, in the order of the servo's fingers.
     pub boards: Vec<KnownBoard>,
-    handover: LinkRepairEnd<Port>,
+    handover: LinkRepairEnd<Connection>,
     /// Whether the servo has released its link and has not got it back.
     released: bool,
     /// The released link or a new one; `None` while the port is gone.
-    link: Option<Link<Port>>,
+    link: Option<Link<Connection>>,
     /// Whether the boards have answered and are the same as at open.
     pub checked: bool,
 }
@@ -47,7 +47,7 @@ impl PortRepair {
         baud: u32,
         reconnect: bool,
         boards: Vec<KnownBoard>,
-        handover: LinkRepairEnd<Port>,
+        handover: LinkRepairEnd<Connection>,
     ) -> Self {
         Self { path, baud, reconnect, boards, handover, released: false, link: None, checked: false }
     }
@@ -74,13 +74,16 @@ impl PortRepair {
         let mut link = match self.link.take() {
             Some(link) => link,
             None if self.reconnect => {
-                Link::open(&self.path, self.baud).map_err(|source| HandError::Link { finger: first, source })?
+                let port = Port::open(&self.path, self.baud);
+                let port = port.map_err(|error| HandError::Link { finger: first, source: error.into() })?;
+                Link::new(Connection::from(port))
             }
             None => return Err(RecoveryError::NotReconnected(first).into()),
         };
         let outcome = self.shake_hands(&mut link);
-        // A failed port is closed by dropping its link. The next attempt opens it.
-        if !matches!(outcome, Err(HandError::Link { source: LinkError::Port(_), .. })) {
+        let failed = matches!(outcome, Err(HandError::Link { source: LinkError::Port(_), .. }));
+        // A failed port is closed by dropping its link. The next attempt opens it. Hardware of the program stays.
+        if !failed || link.transport().port().is_none() {
             self.link = Some(link);
         }
         self.checked = outcome.is_ok();
@@ -88,7 +91,7 @@ impl PortRepair {
     }
 
     /// Shakes hands with the boards of the port. They must be the same as at open, with valid zeros.
-    fn shake_hands(&self, link: &mut Link<Port>) -> Result<[Option<Configured>; FINGERS], HandError> {
+    fn shake_hands(&self, link: &mut Link<Connection>) -> Result<[Option<Configured>; FINGERS], HandError> {
         let mut all = [None; FINGERS];
         for (board, place) in self.boards.iter().zip(&mut all) {
             *place = Some(board.shake_hands(link)?);

@@ -4,6 +4,7 @@ use crate::finger::{FingerReport, Losses, Stage};
 use crate::hand::board_search::find_boards;
 use crate::hand::dispatcher::Dispatcher;
 use crate::hand::events::EventSource;
+use crate::hand::hardware::Hardware;
 use crate::hand::opening::{Connected, black_box_folder, check, from_here, reach};
 use crate::hand::reconnection::Recovery;
 use crate::hand::servo_threads::{PortServo, RealtimeState, start};
@@ -74,7 +75,7 @@ impl Hand {
     /// Returns the errors of [`Hand::open`].
     pub fn open_as(configured: Configured) -> Result<Self, HandError> {
         configured.announce(Fingers::ALL);
-        Self::open_from(configured.configuration, configured.file, Fingers::ALL, false)
+        Self::open_from(configured.configuration, configured.file, Fingers::ALL, Hardware::default(), false)
     }
 
     /// Opens the hand, with the fingers of `hand.fingers`. Shakes hands with its boards, takes up the slack of its
@@ -84,7 +85,7 @@ impl Hand {
     /// Returns an error if the configuration cannot be used, if a port or board does not work, or if a finger faults.
     /// Then everything that was opened is closed again, and every motor is in its end state.
     pub fn open(configuration: Configuration) -> Result<Self, HandError> {
-        Self::open_from(configuration, None, Fingers::ALL, false)
+        Self::open_from(configuration, None, Fingers::ALL, Hardware::default(), false)
     }
 
     /// Opens these fingers of the hand with their motors off, so that signs and zeros can be found before a tendon is
@@ -94,15 +95,17 @@ impl Hand {
     /// # Errors
     /// Returns the errors of [`Hand::open`].
     pub fn open_limp(configuration: Configuration, file: Option<PathBuf>, fingers: Fingers) -> Result<Self, HandError> {
-        Self::open_from(configuration, file, fingers, true)
+        Self::open_from(configuration, file, fingers, Hardware::default(), true)
     }
 
-    fn open_from(
+    pub(super) fn open_from(
         mut configuration: Configuration,
         file: Option<PathBuf>,
         fingers: Fingers,
+        mut hardware: Hardware,
         limp: bool,
     ) -> Result<Self, HandError> {
+        hardware.prepare(&mut configuration, fingers)?;
         check(&configuration)?;
         let opened = fingers.in_hand(&configuration.hand)?;
         find_boards(&mut configuration, opened)?;
@@ -111,7 +114,8 @@ impl Hand {
         waiting.map_err(|source| HandError::System { doing: "sleep until a given time (clock_nanosleep)", source })?;
         let (folder, file) = (black_box_folder(&configuration)?, file.map(from_here));
         let simulated = SimulatedHand::start(&configuration, opened)?;
-        let Connected { lines, reached, gate, repairs, events } = reach(&configuration, opened, &simulated, limp)?;
+        let Connected { lines, reached, gate, repairs, events } =
+            reach(&configuration, opened, &simulated, &mut hardware, limp)?;
         let recovery = Recovery::new(repairs);
         let dispatcher = Dispatcher::new(reached, configuration.hand.fingers, gate);
         let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOP_CONFIRMATION;

@@ -1,6 +1,6 @@
 //! Starts the servo threads, in real time as far as permitted and required.
 
-use crate::board::Port;
+use crate::board::Connection;
 use crate::finger::{ServedPort, Servo};
 use crate::hand::HandError;
 use crate::hand::missing_permissions::{MissingPermission, missing_permissions};
@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::thread::JoinHandle;
 
 /// The servo of one thread.
-pub(super) type PortServo = Servo<Port, MonotonicClock>;
+pub(super) type PortServo = Servo<Connection, MonotonicClock>;
 
 /// Time from the moment when every thread is ready to the first cycle, ns.
 const HEAD_START: u64 = 2_000_000;
@@ -70,8 +70,8 @@ pub(super) fn start(
 }
 
 /// The ports of each servo thread, by thread number.
-fn by_thread(lines: Vec<Line>) -> BTreeMap<u8, Vec<ServedPort<Port>>> {
-    let mut ports: BTreeMap<u8, Vec<ServedPort<Port>>> = BTreeMap::new();
+fn by_thread(lines: Vec<Line>) -> BTreeMap<u8, Vec<ServedPort<Connection>>> {
+    let mut ports: BTreeMap<u8, Vec<ServedPort<Connection>>> = BTreeMap::new();
     for line in lines {
         ports.entry(line.thread).or_default().push(line.port);
     }
@@ -79,7 +79,12 @@ fn by_thread(lines: Vec<Line>) -> BTreeMap<u8, Vec<ServedPort<Port>>> {
 }
 
 /// Returns the servo of the thread at `place` among `threads` threads.
-fn port_servo(configuration: &Configuration, ports: Vec<ServedPort<Port>>, place: usize, threads: usize) -> PortServo {
+fn port_servo(
+    configuration: &Configuration,
+    ports: Vec<ServedPort<Connection>>,
+    place: usize,
+    threads: usize,
+) -> PortServo {
     let period = configuration.hand.period();
     let servo = Servo::new(MonotonicClock, Schedule::staggered(0, period, place, threads), ports);
     match configuration.hand.clock {

@@ -13,12 +13,13 @@ use sun2xp::finger::events::EventKind;
 /// The five calls of 1990 and HandError.
 const CALLS_OF_1990: &[&str] = &["calls.rs"];
 
-/// The sections of sun2xp.h: heading and file.
+/// The sections of sun2xp.h: heading and files.
 const SECTIONS: &[(&str, &str)] = &[
     ("ERRORS", "error_calls.rs"),
     ("MESSAGES", "log_calls.rs"),
     ("VERSIONS", "version_calls.rs"),
     ("OPENING AND CLOSING", "opening_calls.rs"),
+    ("HARDWARE OF THE PROGRAM", "io_structs.rs io_calls.rs"),
     ("JOINT ANGLES AND STIFFNESS", "position_calls.rs"),
     ("FINGERTIPS", "fingertip_calls.rs"),
     ("SPRINGS IN JOINT ANGLES", "spring_calls.rs"),
@@ -176,7 +177,10 @@ fn sizes(code: &str) -> String {
         let members = members.split_once('}').expect("the members end").0;
         let (mut size, mut alignment) = (0, 1);
         for member in members.split(';').map(str::trim).filter(|member| !member.is_empty()) {
-            let (kind, rest) = member.rsplit_once(' ').expect("a member has a type and a name");
+            let (kind, rest) = match member.contains("(*") {
+                true => ("pointer to a function", "*"),
+                false => member.rsplit_once(' ').expect("a member has a type and a name"),
+            };
             let part = match kind {
                 "int" | "unsigned int" => 4,
                 "double" | "unsigned long" | "size_t" => 8,
@@ -235,7 +239,7 @@ fn the_committed_header_with_handles_is_the_one_of_the_exports() {
             "EVENTS" => format!("/* Kinds of events (docs/events.md). Numbers never change. */\n{}", events()),
             _ => String::new(),
         };
-        let section = declarations(config.clone(), &[file]);
+        let section = declarations(config.clone(), &file.split(' ').collect::<Vec<_>>());
         let rule = "-".repeat(108 - heading.len());
         write!(declared, "\n\n/* ---- {heading} {rule} */\n\n{constants}{}", section.trim_start_matches('\n'))
             .expect("a String grows");

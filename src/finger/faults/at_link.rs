@@ -30,8 +30,10 @@ impl From<&PortError> for Fault {
             PortError::NotASerialPort(_) | PortError::Baud { .. } => FaultKind::PortUnusable,
             PortError::Opening { .. } | PortError::SetUp { .. } => FaultKind::PortUnusable,
             PortError::Failed(_) => FaultKind::PortFailed,
+            PortError::Hardware { .. } => FaultKind::HardwareFailed,
         };
-        let value = if kind == FaultKind::PortFailed { f64::from(error.errno()) } else { 0.0 };
+        let with_errno = matches!(kind, FaultKind::PortFailed | FaultKind::HardwareFailed);
+        let value = if with_errno { f64::from(error.errno()) } else { 0.0 };
         Fault::of(kind, value)
     }
 }

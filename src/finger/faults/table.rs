@@ -232,6 +232,10 @@ faults! {
         "the condition of a reflex was true, and its reaction stops the finger",
         "the planner installed the reflex for this case; the last event \"reflex fired\" has the number of the rule",
         "Remove the cause, or remove the reflex, then recover the finger", [Recover];
+    53 HardwareFailed "HARDWARE_FAILED" Refusal Finger Errno "hardware failed",
+        "the hardware that the program provides for this finger does not start or stop",
+        "the function start or stop of the program has returned this error",
+        "Follow the documentation of the program or of its hardware", [];
 }
 
 #[cfg(test)]

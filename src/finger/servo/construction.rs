@@ -60,6 +60,13 @@ impl Limits {
 }
 
 impl FingerServo {
+    /// Makes the servo wait for hardware that advances with its exchanges, as built-in simulated fingers do.
+    pub fn in_step(mut self, hand: &ConfiguredHand) -> Self {
+        self.link = LinkWatch::new(hand, true);
+        self.supervision = Supervision::new(hand.rate, self.link.most(), self.board.gauge_bits);
+        self
+    }
+
     /// Constructs a finger in the pose that its board has reported, and the planners' end of its mailbox. The finger is
     /// about to take up slack. Timings are written to `timings`, and records of its cycles to `black_box`. Entries for
     /// which a ring has no room are dropped.

@@ -1,0 +1,164 @@
+//! The interface to the hardware of one finger.
+
+use super::tension_scale::DEFAULT_TENSION_UNIT;
+use crate::model::FingerNumber;
+use crate::model::configuration::{EndState, FINGERS};
+use nalgebra::Vector4;
+use std::io;
+use std::ops::{BitOr, BitOrAssign};
+
+/// The hardware of one finger, for example drives and load cells at a field bus. A program implements this trait and
+/// opens the hand with [`Hand::open_with_io`](crate::Hand::open_with_io).
+///
+/// The library calls [`start`](Self::start), then [`exchange`](Self::exchange) once a cycle, then
+/// [`stop`](Self::stop). Every start that succeeds is followed by a stop that succeeds, or by stops that fail. A
+/// recovery stops the hardware if necessary and starts it again. No two calls for a finger overlap, but they may come
+/// from different threads.
+///
+/// The hardware has the watchdog: if no exchange comes for [`IoTerms::watchdog_ms`], it must enter the end state by
+/// itself, because a program that hangs or dies makes no more calls.
+///
+/// `exchange` runs in the servo thread of the finger, and usually also `stop`. They must not allocate memory, wait for
+/// a lock, write to files or use the hand. A panic faults every finger of the servo thread.
+pub trait FingerIo: Send {
+    /// Returns what the library must know about the hardware before it starts. It is called once, at open.
+    fn properties(&self) -> IoProperties {
+        IoProperties::default()
+    }
+
+    /// Prepares the hardware for exchanges, with the motors off, and returns the first sample. The library calls it at
+    /// open and at every recovery, and never in a servo thread, so it may take as long as it needs.
+    ///
+    /// # Errors
+    /// The hand is not opened, or the finger stays faulted. The call that opens or recovers returns the error.
+    fn start(&mut self, terms: &IoTerms) -> io::Result<IoSample>;
+
+    /// Applies the torques of `command`, and returns what the sensors measure at that time. An exchange that returns
+    /// after the deadline still counts, but the servo then misses the end of its period: an overrun.
+    ///
+    /// # Errors
+    /// The exchange counts as a lost reply of a serial board.
+    fn exchange(&mut self, command: &IoCommand) -> io::Result<IoSample>;
+
+    /// Enters the end state of the terms.
+    ///
+    /// # Errors
+    /// The library calls `stop` again, several times if necessary.
+    fn stop(&mut self) -> io::Result<()>;
+}
+
+/// The hardware of fingers 1, 2 and 3. A finger without hardware has a port.
+pub type HandIo = [Option<Box<dyn FingerIo>>; FINGERS];
+
+/// What the library must know about hardware before it starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct IoProperties {
+    /// Step in which the library stores tensions, N. A tension may be from -8192 to 57 342 steps.
+    pub tension_unit: f64,
+    /// Shortest watchdog time of the hardware, ms.
+    pub shortest_watchdog_ms: u16,
+    /// Whether the hardware has the end state *hold*.
+    pub holds: bool,
+    /// Whether the hardware is a simulation that advances by one period in every exchange, however long the exchange
+    /// takes. The servo then waits for it: after an exchange that failed, the servo repeats the same command later, and
+    /// the finger faults only after five seconds.
+    pub in_step: bool,
+}
+
+impl Default for IoProperties {
+    fn default() -> Self {
+        Self { tension_unit: DEFAULT_TENSION_UNIT, shortest_watchdog_ms: 0, holds: false, in_step: false }
+    }
+}
+
+/// The terms under which the motors may move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct IoTerms {
+    /// The finger, 1 to 3.
+    pub finger: FingerNumber,
+    /// Exchanges in a second, Hz.
+    pub rate: f64,
+    /// Time without an exchange after which the hardware enters the end state by itself, ms.
+    pub watchdog_ms: u16,
+    /// What the motors do when exchanges stop.
+    pub end_state: EndState,
+    /// Duration of *hold*, ms.
+    pub hold_time_ms: u16,
+    /// The largest torque that *hold* keeps, N cm.
+    pub hold_torque_limit: f64,
+    /// The largest torque of each motor, N cm. The commanded torques are within it.
+    pub torque_limits: Vector4<f64>,
+    /// Torque constant of each motor, N cm/A.
+    pub torque_constants: Vector4<f64>,
+}
+
+/// The command of one exchange.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct IoCommand {
+    /// Number of the command since the start. An exchange that failed and is repeated has the same number again.
+    pub number: u64,
+    /// False: the motors are off, and the torques are zero.
+    pub enable: bool,
+    /// Torques of motors 1 to 4, N cm. A positive torque has the direction that `motor.sign` gives.
+    pub torques: Vector4<f64>,
+    /// Time by which the exchange should return, ns of CLOCK_MONOTONIC.
+    pub deadline: u64,
+}
+
+/// What the sensors of a finger measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct IoSample {
+    /// Time of the measurement, ns, of any clock that advances evenly. None: the time at which the exchange returned.
+    pub time: Option<u64>,
+    /// Counts of the motor encoders. The counters may wrap around.
+    pub encoders: [i32; 4],
+    /// Tensions at the gauges, N. A tension that is NaN, infinite or out of range counts as a gauge that cannot be
+    /// read.
+    pub tensions: [f64; 4],
+    /// Faults of the hardware.
+    pub faults: IoFaults,
+}
+
+/// Faults that the hardware reports. Each bit faults the finger.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct IoFaults(pub u32);
+
+impl IoFaults {
+    /// The watchdog of the hardware has tripped since the start.
+    pub const WATCHDOG: Self = Self(1 << 0);
+    /// The hardware has entered the end state for another reason.
+    pub const ENDED: Self = Self(1 << 1);
+    /// The emergency stop is active.
+    pub const EMERGENCY_STOP: Self = Self(1 << 2);
+    /// The supply of the motors is missing or out of range.
+    pub const SUPPLY: Self = Self(1 << 3);
+    /// A motor driver reports a fault.
+    pub const DRIVER: Self = Self(1 << 4);
+    /// An encoder or a gauge cannot be read.
+    pub const SENSOR: Self = Self(1 << 5);
+    /// The encoder counts have lost their reference to the zero.
+    pub const ZERO_LOST: Self = Self(1 << 6);
+
+    /// Returns whether any of these bits is set.
+    #[must_use]
+    pub fn has(self, bits: Self) -> bool {
+        self.0 & bits.0 != 0
+    }
+}
+
+impl BitOr for IoFaults {
+    type Output = Self;
+
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+impl BitOrAssign for IoFaults {
+    fn bitor_assign(&mut self, other: Self) {
+        self.0 |= other.0;
+    }
+}

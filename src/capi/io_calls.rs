@@ -1,0 +1,102 @@
+//! The exported functions for hardware that the program provides. Their doc comments are the C manual, as in
+//! `calls.rs`.
+
+use crate::capi::hand_table::Source;
+use crate::capi::handle::sun2xp_hand;
+use crate::capi::io_structs::sun2xp_io;
+use crate::capi::io_table;
+use crate::capi::memory::non_null;
+use crate::capi::opening_calls::{not_utf_8, open};
+use crate::capi::refusal::Wanted;
+use crate::hand::HandError;
+use std::ffi::{CStr, OsStr, c_char, c_int};
+use std::os::unix::ffi::OsStrExt;
+use std::path::PathBuf;
+
+/// sun2xp_open_io - open a hand with hardware of the program
+///
+///   path    as in sun2xp_open
+///   count   number of fingers with hardware of the program, 0 to 3
+///   io      io[count]: the hardware of each of these fingers; copied
+///   hand    result: the handle of the hand
+///
+/// Opens a hand as sun2xp_open does. A finger with an entry in io has no serial port: the library calls
+/// start, then exchange in every cycle, then stop, all with user as first argument. Each returns 0, or an
+/// errno. Timing, faults and recovery are those of a board (docs/other-hardware.md):
+///
+///   start     in a thread of the library that is not real-time, at opening and at every recovery; may take
+///             seconds. An error refuses the call.
+///   exchange  in the servo thread of the finger. An error is a lost reply. If it returns after the
+///             deadline, the cycle is late, and possibly an overrun.
+///   stop      in the servo thread or at a recovery. After an error, the library calls it again. Every
+///             start that has succeeded is followed by a stop.
+///
+/// Calls for one finger never overlap. exchange and stop must not allocate memory, wait for locks, write
+/// files or call the library. The behaviour is undefined if one of the functions does not return: longjmp,
+/// pthread_exit, exceptions.
+///
+/// The program has the watchdog: if no exchange comes for terms->watchdog, the hardware must enter the end
+/// state by itself, also if this process hangs or has died.
+///
+/// A tension may be from -8192 to 57342 steps. A tension outside, NaN, or an encoder that moves by 32768
+/// counts between two exchanges faults the finger, as SUN2XP_IO_SENSOR does.
+///
+/// Returns 0, or a negative number with
+///   EPERM    forked child
+///   EFAULT   hand or io is null, or a function of io is null
+///   EINVAL   size is too small; count is not 0 to 3; no such finger, or two entries for one finger
+///   ENOMEM   there is not enough memory
+///   EMFILE   16 hands are open
+///   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
+///   EINVAL   the configuration is unusable, or gauge.newton_per_count is that of another board
+///   others   as sun2xp_open, and the errno that start has returned
+///
+/// Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sun2xp_open_io(
+    path: *const c_char,
+    count: c_int,
+    io: *const sun2xp_io,
+    hand: *mut *mut sun2xp_hand,
+) -> c_int {
+    // SAFETY: here and below, by the contract in the manual, each pointer is null or points to what it is for.
+    unsafe {
+        open("sun2xp_open_io", hand, || {
+            let io = io_table::load(count, io)?;
+            Ok(match path.is_null() {
+                true => Source::Found.with_io(io),
+                false => Source::File(PathBuf::from(OsStr::from_bytes(CStr::from_ptr(path).to_bytes()))).with_io(io),
+            })
+        })
+    }
+}
+
+/// sun2xp_open_io_text - open a hand with hardware of the program, of a configuration in memory
+///
+///   configuration   the text, as in sun2xp_open_text
+///   count, io       as in sun2xp_open_io
+///   hand            result: the handle of the hand
+///
+/// Returns 0, or a negative number with
+///   EPERM    forked child
+///   EFAULT   configuration, hand or io is null, or a function of io is null
+///   others   as sun2xp_open_io
+///
+/// Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sun2xp_open_io_text(
+    configuration: *const c_char,
+    count: c_int,
+    io: *const sun2xp_io,
+    hand: *mut *mut sun2xp_hand,
+) -> c_int {
+    // SAFETY: as above.
+    unsafe {
+        open("sun2xp_open_io_text", hand, || {
+            non_null(configuration, "configuration", Wanted::Text)?;
+            let io = io_table::load(count, io)?;
+            let text = CStr::from_ptr(configuration).to_str().map_err(|_| HandError::from(not_utf_8()))?;
+            Ok(Source::Text(text.to_owned()).with_io(io))
+        })
+    }
+}

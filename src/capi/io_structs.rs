@@ -1,0 +1,109 @@
+//! The exported structs and constants for hardware that the program provides.
+
+// The exported names are those of the header.
+#![allow(non_camel_case_types)]
+
+use std::ffi::{c_int, c_uint, c_ulong, c_void};
+
+/// The watchdog of the hardware has tripped since the start.
+pub const SUN2XP_IO_WATCHDOG: c_uint = 1;
+
+/// The hardware has entered the end state for another reason.
+pub const SUN2XP_IO_ENDED: c_uint = 2;
+
+/// The emergency stop is active.
+pub const SUN2XP_IO_EMERGENCY_STOP: c_uint = 4;
+
+/// The supply of the motors is missing or out of range.
+pub const SUN2XP_IO_SUPPLY: c_uint = 8;
+
+/// A motor driver reports a fault.
+pub const SUN2XP_IO_DRIVER: c_uint = 16;
+
+/// An encoder or a gauge cannot be read.
+pub const SUN2XP_IO_SENSOR: c_uint = 32;
+
+/// The encoder counts have lost their reference to the zero.
+pub const SUN2XP_IO_ZERO_LOST: c_uint = 64;
+
+/// The terms under which the motors of a finger may move. The library sets all members.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct sun2xp_io_terms {
+    /// sizeof (struct sun2xp_io_terms) in the library.
+    pub size: usize,
+    /// Finger, 1 to 3.
+    pub finger: c_int,
+    /// 1: the end state is "hold"; 0: it is "release".
+    pub hold: c_int,
+    /// Exchanges in a second, Hz.
+    pub rate: f64,
+    /// Time without an exchange after which the hardware must enter the end state by itself, s.
+    pub watchdog: f64,
+    /// Duration of "hold", s.
+    pub hold_time: f64,
+    /// Largest torque that "hold" keeps, N cm.
+    pub hold_torque: f64,
+    /// Largest torque of each motor, N cm. The commanded torques are within it.
+    pub torque_limits: [f64; 4],
+    /// Torque constant of each motor, N cm/A.
+    pub torque_constants: [f64; 4],
+}
+
+/// The command of one exchange. The library sets all members.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct sun2xp_io_command {
+    /// sizeof (struct sun2xp_io_command) in the library.
+    pub size: usize,
+    /// Number of the command since the start. A repeated exchange has the same number again.
+    pub number: c_ulong,
+    /// 0: the motors are off, and the torques are zero.
+    pub enable: c_int,
+    /// Torques of motors 1 to 4, N cm.
+    pub torques: [f64; 4],
+    /// Time by which the exchange should return, s of CLOCK_MONOTONIC.
+    pub deadline: f64,
+}
+
+/// What the sensors of a finger measured. The library sets all members to 0 before the call, and then size.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct sun2xp_io_sample {
+    /// sizeof (struct sun2xp_io_sample) in the library.
+    pub size: usize,
+    /// Time of the measurement, s of any clock that advances evenly; 0: when the exchange returned.
+    pub time: f64,
+    /// Tensions at the gauges, N.
+    pub tensions: [f64; 4],
+    /// Counts of the motor encoders.
+    pub encoders: [c_int; 4],
+    /// Sum of SUN2XP_IO_... for faults that are present. Each faults the finger.
+    pub faults: c_uint,
+}
+
+/// The hardware of one finger (sun2xp_open_io). Set members that are not used to 0.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct sun2xp_io {
+    /// sizeof (struct sun2xp_io), the same in every element of an array.
+    pub size: usize,
+    /// Finger, 1 to 3.
+    pub finger: c_int,
+    /// 1: the hardware has the end state "hold".
+    pub holds: c_int,
+    /// 1: a simulation that advances by one period in each exchange. The servo waits for it.
+    pub in_step: c_int,
+    /// Shortest watchdog time of the hardware, s.
+    pub shortest_watchdog: f64,
+    /// Step in which the library stores tensions, N; 0: 0.005.
+    pub tension_unit: f64,
+    /// First argument of the functions.
+    pub user: *mut c_void,
+    /// Prepares the hardware, with the motors off, and gets the first sample.
+    pub start: Option<extern "C" fn(*mut c_void, *const sun2xp_io_terms, *mut sun2xp_io_sample) -> c_int>,
+    /// Applies the torques, and gets what the sensors measure.
+    pub exchange: Option<extern "C" fn(*mut c_void, *const sun2xp_io_command, *mut sun2xp_io_sample) -> c_int>,
+    /// Enters the end state.
+    pub stop: Option<extern "C" fn(*mut c_void) -> c_int>,
+}

@@ -1,0 +1,167 @@
+//! The hardware that the program provides for some fingers, and the connections to the hardware of all fingers.
+
+use crate::board::{Connection, HandIo, IoBoard, Link, Port, TensionScale, ZERO_COUNT};
+use crate::hand::notice::print_notice;
+use crate::hand::{Configured, Hand, HandError};
+use crate::model::configuration::{Configuration, ConfiguredGauge, IO_PORT, Unusable};
+use crate::model::{FingerNumber, Fingers, Section, ShownPath, UnusableConfiguration};
+use std::path::Path;
+
+/// Largest ratio of a gauge's calibrated scale to the step of the tensions, or the reverse. The hardware gives
+/// tensions in N, so a calibration changes its scale by some per cent.
+const LARGEST_RATIO: f64 = 2.0;
+
+/// Largest distance of a gauge's calibrated zero from zero tension, counts.
+const LARGEST_ZERO: f64 = 8000.0;
+
+/// The hardware of fingers 1, 2 and 3.
+#[derive(Default)]
+pub(super) struct Hardware(HandIo);
+
+impl Hardware {
+    pub fn new(io: HandIo) -> Self {
+        Self(io)
+    }
+
+    /// Returns the fingers whose hardware the program provides.
+    pub fn members(&self) -> impl Iterator<Item = FingerNumber> {
+        FingerNumber::ALL.into_iter().filter(|finger| self.0[finger.index()].is_some())
+    }
+
+    /// Replaces the port and the default scale of the gauges of every finger whose hardware the program provides.
+    ///
+    /// # Errors
+    /// Returns an error if such a finger is not opened, or if its configured gauges cannot be those of its hardware.
+    pub fn prepare(&self, configuration: &mut Configuration, opened: Fingers) -> Result<(), HandError> {
+        for number in self.members() {
+            if !opened.contains(number) || !configuration.hand.fingers.contains(number) {
+                return Err(HandError::NotOpened(number));
+            }
+            let Some(io) = &self.0[number.index()] else { continue };
+            let finger = &mut configuration.fingers[number.index()];
+            finger.port = format!("{IO_PORT}{number}");
+            finger.board = None;
+            fit(&mut finger.gauge, io.properties().tension_unit)
+                .map_err(|unusable| UnusableConfiguration { section: Section::Finger(number), unusable })?;
+        }
+        Ok(())
+    }
+
+    /// Connects to the hardware of the program for this finger if there is one, and otherwise opens the port.
+    ///
+    /// # Errors
+    /// Returns an error if the port cannot be opened.
+    pub fn connect(
+        &mut self,
+        configuration: &Configuration,
+        finger: FingerNumber,
+        path: &Path,
+    ) -> Result<Link<Connection>, HandError> {
+        let io = self.0[finger.index()].take();
+        // The step of the tensions was checked before.
+        if let Some(board) = io.and_then(|io| IoBoard::new(configuration, finger, io)) {
+            return Ok(Link::new(board.into()));
+        }
+        let port = Port::open(path, configuration.fingers[finger.index()].baud);
+        let port = port.map_err(|error| HandError::Link { finger, source: error.into() })?;
+        warn_of_latency(&port);
+        Ok(Link::new(port.into()))
+    }
+}
+
+impl Hand {
+    /// Opens the hand with hardware that the program provides for some fingers, instead of boards at serial ports. The
+    /// configured ports of these fingers are ignored. `io` has the hardware of fingers 1, 2 and 3.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Hand::open`]. Returns an error if the step of the tensions does not fit the configured
+    /// gauges.
+    pub fn open_with_io(configuration: Configuration, io: HandIo) -> Result<Self, HandError> {
+        Self::open_from(configuration, None, Fingers::ALL, Hardware::new(io), false)
+    }
+
+    /// Does the same as [`Hand::open_with_io`] for a configuration that was found in a file, or in none. Calibration
+    /// results are stored in the file.
+    pub(crate) fn open_as_with_io(mut configured: Configured, io: HandIo) -> Result<Self, HandError> {
+        let hardware = Hardware::new(io);
+        hardware.members().for_each(|finger| configured.provides(finger));
+        configured.announce(Fingers::ALL);
+        Self::open_from(configured.configuration, configured.file, Fingers::ALL, hardware, false)
+    }
+}
+
+/// Gives the gauges the scale in which tensions in steps of `unit`, N, are stored, unless they have been calibrated.
+fn fit(gauge: &mut ConfiguredGauge, unit: f64) -> Result<(), Unusable> {
+    if TensionScale::new(unit).is_none() {
+        let reason = format!("the step of the tensions of its hardware is {unit} N: give a number above 0");
+        return Err(Unusable { key: "gauge.newton_per_count", reason });
+    }
+    let default = ConfiguredGauge::default();
+    if gauge.newton_per_count == default.newton_per_count {
+        gauge.newton_per_count = [unit; 4];
+    }
+    if gauge.zero == default.zero {
+        gauge.zero = [f64::from(ZERO_COUNT); 4];
+    }
+    let foreign = |scale: f64| !(unit / LARGEST_RATIO..=unit * LARGEST_RATIO).contains(&scale.abs());
+    if let Some(scale) = gauge.newton_per_count.into_iter().find(|&scale| foreign(scale)) {
+        let reason = format!(
+            "{scale} N is configured for a count, but the hardware of the program gives tensions in steps of {unit} N: \
+             remove the key, which is that of another board, and calibrate the finger with this hardware"
+        );
+        return Err(Unusable { key: "gauge.newton_per_count", reason });
+    }
+    let away = |zero: f64| (zero - f64::from(ZERO_COUNT)).abs() > LARGEST_ZERO;
+    if let Some(zero) = gauge.zero.into_iter().find(|&zero| away(zero)) {
+        let reason = format!(
+            "count {zero} is configured for zero tension, but with the hardware of the program it is near \
+             {ZERO_COUNT}: remove the key, which is that of another board, and zero the finger with this hardware"
+        );
+        return Err(Unusable { key: "gauge.zero", reason });
+    }
+    Ok(())
+}
+
+/// Prints a notice if a USB adapter delays bytes, because then every cycle loses its reply.
+fn warn_of_latency(port: &Port) {
+    if let Some(milliseconds) = port.latency_timer_ms().filter(|&milliseconds| milliseconds > 1) {
+        print_notice(&format!(
+            "the adapter at {} delays bytes by up to {milliseconds} ms (its latency timer): write 1 to latency_timer \
+             under /sys/bus/usb-serial/devices, or add a udev rule that does so",
+            ShownPath(port.path())
+        ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gauges_get_the_scale_of_the_hardware_and_keep_their_calibration() {
+        let mut gauge = ConfiguredGauge::default();
+        fit(&mut gauge, 0.005).expect("not calibrated");
+        assert_eq!((gauge.newton_per_count, gauge.zero), ([0.005; 4], [8192.0; 4]));
+        let calibrated = ConfiguredGauge {
+            newton_per_count: [0.0052, -0.0048, 0.005, 0.005],
+            zero: [8190.0, 8195.5, 8192.0, 8300.0],
+            ..gauge
+        };
+        let mut gauge = calibrated.clone();
+        fit(&mut gauge, 0.005).expect("calibrated with this hardware");
+        assert_eq!(gauge, calibrated);
+    }
+
+    #[test]
+    fn gauges_of_another_board_are_refused() {
+        let gauge = ConfiguredGauge { newton_per_count: [0.025; 4], zero: [8192.0; 4], ..Default::default() };
+        let refused = fit(&mut gauge.clone(), 0.005).expect_err("another scale");
+        assert!(refused.key == "gauge.newton_per_count" && refused.reason.contains("0.025 N"), "{refused:?}");
+        let mut gauge = ConfiguredGauge { newton_per_count: [0.005; 4], zero: [180.0; 4], ..gauge };
+        let refused = fit(&mut gauge, 0.005).expect_err("another zero");
+        assert!(refused.key == "gauge.zero" && refused.reason.contains("180"), "{refused:?}");
+        for unit in [0.0, f64::NAN, -0.005] {
+            assert!(fit(&mut ConfiguredGauge::default(), unit).is_err(), "{unit}");
+        }
+    }
+}
