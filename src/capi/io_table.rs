@@ -9,7 +9,6 @@ use crate::capi::planners_pointer::PlannersPointer;
 use crate::capi::refusal::{Refusal, Wanted};
 use crate::capi::sized_struct::SizedStruct;
 use crate::capi::status_calls::count;
-use crate::hand::HandError;
 use crate::model::FingerNumber;
 use crate::model::configuration::{EndState, FINGERS};
 use std::ffi::{c_int, c_uint, c_void};
@@ -114,7 +113,7 @@ pub(super) unsafe fn load(number: c_int, io: *const sun2xp_io) -> Result<HandIo,
     for place in 0..number.ok_or(Refusal::IoCount)? {
         // SAFETY: the size is right, as checked above, and by the contract of this function there are `number` structs.
         let table = unsafe { tables.load(place) };
-        let finger = FingerNumber::try_from(table.finger).map_err(HandError::from)?;
+        let finger = FingerNumber::try_from(table.finger)?;
         if loaded[finger.index()].replace(Box::new(from_table(&table)?)).is_some() {
             return Err(Refusal::IoTwice(finger));
         }
@@ -125,12 +124,13 @@ pub(super) unsafe fn load(number: c_int, io: *const sun2xp_io) -> Result<HandIo,
 fn from_table(table: &sun2xp_io) -> Result<IoTable, Refusal> {
     let missing = |name| Refusal::Null { name, wanted: Wanted::Function };
     let sun2xp_io { holds, in_step, shortest_watchdog, tension_unit, user, start, exchange, stop, .. } = *table;
-    let mut properties = IoProperties::default();
-    properties.holds = holds != 0;
-    properties.in_step = in_step != 0;
-    properties.tension_unit = if tension_unit == 0.0 { DEFAULT_TENSION_UNIT } else { tension_unit };
-    // The conversion saturates, and a time that is too long is refused when the terms are agreed.
-    properties.shortest_watchdog_ms = (shortest_watchdog * 1e3).ceil() as u16;
+    let properties = IoProperties {
+        tension_unit: if tension_unit == 0.0 { DEFAULT_TENSION_UNIT } else { tension_unit },
+        // The conversion saturates, and a time that is too long is refused when the terms are agreed.
+        shortest_watchdog_ms: (shortest_watchdog * 1e3).ceil() as u16,
+        holds: holds != 0,
+        in_step: in_step != 0,
+    };
     Ok(IoTable {
         properties,
         user: PlannersPointer(user),

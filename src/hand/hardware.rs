@@ -1,8 +1,8 @@
 //! The hardware that the program provides for some fingers, and the connections to the hardware of all fingers.
 
 use crate::board::{Connection, HandIo, IoBoard, Link, Port, TensionScale, ZERO_COUNT};
+use crate::hand::HandError;
 use crate::hand::notice::print_notice;
-use crate::hand::{Configured, Hand, HandError};
 use crate::model::configuration::{Configuration, ConfiguredGauge, IO_PORT, Unusable};
 use crate::model::{FingerNumber, Fingers, Section, ShownPath, UnusableConfiguration};
 use std::path::Path;
@@ -66,27 +66,6 @@ impl Hardware {
         let port = port.map_err(|error| HandError::Link { finger, source: error.into() })?;
         warn_of_latency(&port);
         Ok(Link::new(port.into()))
-    }
-}
-
-impl Hand {
-    /// Opens the hand with hardware that the program provides for some fingers, instead of boards at serial ports. The
-    /// configured ports of these fingers are ignored. `io` has the hardware of fingers 1, 2 and 3.
-    ///
-    /// # Errors
-    /// Returns the errors of [`Hand::open`]. Returns an error if the step of the tensions does not fit the configured
-    /// gauges.
-    pub fn open_with_io(configuration: Configuration, io: HandIo) -> Result<Self, HandError> {
-        Self::open_from(configuration, None, Fingers::ALL, Hardware::new(io), false)
-    }
-
-    /// Does the same as [`Hand::open_with_io`] for a configuration that was found in a file, or in none. Calibration
-    /// results are stored in the file.
-    pub(crate) fn open_as_with_io(mut configured: Configured, io: HandIo) -> Result<Self, HandError> {
-        let hardware = Hardware::new(io);
-        hardware.members().for_each(|finger| configured.provides(finger));
-        configured.announce(Fingers::ALL);
-        Self::open_from(configured.configuration, configured.file, Fingers::ALL, hardware, false)
     }
 }
 

@@ -5,8 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
-#include "check.h"
+#include "Sun2Xp.h"
 #include "sun2xp.h"
+#include "check.h"
 #include "finger_physics.h"
 
 struct hardware {
@@ -163,9 +164,9 @@ int main(void)
         CHECK(Hardware[i].finger == i + 1 && Hardware[i].exchanges > 10);
         CHECK(sun2xp_send_position(hand, i + 1, target) == 0);
     }
-    CHECK(sun2xp_wait(hand, SUN2XP_ALL_FINGERS, SUN2XP_WAIT_ARRIVED, 10.0) == 0);
+    CHECK(sun2xp_wait(hand, SUN2XP_ALL_FINGERS, SUN2XP_WAIT_SETTLED, 10.0) == 0);
     for (i = 0; i < 3; i++)
-        CHECK(fabs(Hardware[2].physics.theta[i] - target[i]) < 0.03);
+        CHECK(fabs(Hardware[2].physics.theta[i] - target[i]) < 0.02);
 
     Hardware[1].fails = 1;
     CHECK(fault_of(hand, 2) == SUN2XP_FAULT_LOST_REPLIES);

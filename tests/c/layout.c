@@ -170,6 +170,43 @@ AT(sun2xp_record, tension, 112);
 AT(sun2xp_record, tension_sent, 144);
 AT(sun2xp_record, torque, 176);
 
+
+BYTES(sun2xp_io_terms, 112);
+AT(sun2xp_io_terms, size, 0);
+AT(sun2xp_io_terms, finger, 8);
+AT(sun2xp_io_terms, hold, 12);
+AT(sun2xp_io_terms, rate, 16);
+AT(sun2xp_io_terms, watchdog, 24);
+AT(sun2xp_io_terms, hold_time, 32);
+AT(sun2xp_io_terms, hold_torque, 40);
+AT(sun2xp_io_terms, torque_limits, 48);
+AT(sun2xp_io_terms, torque_constants, 80);
+
+BYTES(sun2xp_io_command, 64);
+AT(sun2xp_io_command, size, 0);
+AT(sun2xp_io_command, number, 8);
+AT(sun2xp_io_command, enable, 16);
+AT(sun2xp_io_command, torques, 24);
+AT(sun2xp_io_command, deadline, 56);
+
+BYTES(sun2xp_io_sample, 72);
+AT(sun2xp_io_sample, size, 0);
+AT(sun2xp_io_sample, time, 8);
+AT(sun2xp_io_sample, tensions, 16);
+AT(sun2xp_io_sample, encoders, 48);
+AT(sun2xp_io_sample, faults, 64);
+
+BYTES(sun2xp_io, 72);
+AT(sun2xp_io, size, 0);
+AT(sun2xp_io, finger, 8);
+AT(sun2xp_io, holds, 12);
+AT(sun2xp_io, in_step, 16);
+AT(sun2xp_io, shortest_watchdog, 24);
+AT(sun2xp_io, tension_unit, 32);
+AT(sun2xp_io, user, 40);
+AT(sun2xp_io, start, 48);
+AT(sun2xp_io, exchange, 56);
+AT(sun2xp_io, stop, 64);
 #endif
 
 /* A translation unit must not be empty. */

@@ -22,6 +22,7 @@ static struct sun2xp_set_point Command[2];
 static struct sun2xp_joint_torques Torques;
 static struct sun2xp_palm_pose Pose;
 static struct sun2xp_limits Limits;
+static struct sun2xp_io Io;
 static double J[9];
 static sun2xp_hand *Other;
 static struct sun2xp_fault Fault;

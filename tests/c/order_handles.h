@@ -11,6 +11,9 @@ static void null_pointers(void)
     REFUSED("sun2xp_open", sun2xp_open("no/such/file", NULL), "hand");
     REFUSED("sun2xp_open_text", sun2xp_open_text("rat = 1", NULL), "hand");
     REFUSED("sun2xp_open_named", sun2xp_open_named("nominal", NULL), "hand");
+    REFUSED("sun2xp_open_io", sun2xp_open_io("no/such/file", 9, NULL, &Other), "io");
+    REFUSED("sun2xp_open_io", sun2xp_open_io("no/such/file", 9, &Io, NULL), "hand");
+    REFUSED("sun2xp_open_io_text", sun2xp_open_io_text(NULL, 9, &Io, &Other), "configuration");
     REFUSED("sun2xp_status", sun2xp_status(HAND, 9, NULL), "status");
     REFUSED("sun2xp_timing", sun2xp_timing(HAND, 9, 99, NULL), "timing");
     REFUSED("sun2xp_send_tip", sun2xp_send_tip(HAND, 9, NULL), "tip");
@@ -53,6 +56,8 @@ static void without_hand(void)
     REFUSED("sun2xp_close", sun2xp_close(HAND), "sun2xp_open");
     REFUSED("sun2xp_open", sun2xp_open("no/such/file", &Other), "no/such/file");
     REFUSED("sun2xp_open_named", sun2xp_open_named("golden", &Other), "worn");
+    REFUSED("sun2xp_open_io", sun2xp_open_io("no/such/file", 9, &Io, &Other), "size");
+    REFUSED("sun2xp_open_io", sun2xp_open_io("no/such/file", 0, NULL, &Other), "no/such/file");
     REFUSED("sun2xp_status", sun2xp_status(HAND, 9, &Status), "sun2xp_open");
     REFUSED("sun2xp_timing", sun2xp_timing(HAND, 9, 99, &Timing), "sun2xp_open");
     REFUSED("sun2xp_reset_timing", sun2xp_reset_timing(HAND, 9), "sun2xp_open");

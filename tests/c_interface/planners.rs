@@ -1,6 +1,6 @@
 //! Planners in every dialect of C and in C++: they compile without a warning, move the hand, and get correct results.
 
-use crate::c::{Bench, STRICT, c_compiler, said, tool};
+use crate::c::{self, Bench, STRICT, c_compiler, said, tool};
 use crate::{strict, succeed};
 use std::process::Command;
 
@@ -75,6 +75,12 @@ fn events_are_taken_and_waited_for_in_every_way() {
 #[test]
 fn reflexes_fire_and_are_refused_and_removed() {
     succeed(&strict(&["-std=c99"]), &["reflex.c"]);
+}
+
+#[test]
+fn hardware_of_the_program_is_a_hand() {
+    let examples = c::root().join("c_examples");
+    succeed(&strict(&["-std=c99", "-I", examples.to_str().expect("the path is text")]), &["io.c"]);
 }
 
 #[test]

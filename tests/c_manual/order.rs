@@ -20,6 +20,7 @@ const NOT_TRIED: &[(&str, &[&str])] = &[
     ("sun2xp_recover", &["EIO", "ENOENT", "EACCES", "ETIMEDOUT"]),
     ("sun2xp_write_black_box", &["EACCES", "ENOSPC"]),
     ("sun2xp_open", &["EPERM", "ENOMEM", "EACCES", "EIO", "ETIMEDOUT", "EINVAL", "EBUSY", "EMFILE"]),
+    ("sun2xp_open_io", &["ENOMEM", "EMFILE", "EACCES"]),
     ("sun2xp_close", &["EBUSY"]),
     ("sun2xp_set_log", &["EBUSY"]),
 ];

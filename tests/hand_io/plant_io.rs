@@ -61,8 +61,7 @@ impl PlantIo {
         let configured = &configuration.fingers[finger.index()];
         let plant = Plant::new(configured, configuration.gravity(finger)).expect("tendons that hold the finger");
         let steps = (1.0 / configuration.hand.rate / PLANT_STEP_SECONDS).round() as u32;
-        let mut properties = IoProperties::default();
-        properties.in_step = in_step;
+        let properties = IoProperties { in_step, ..Default::default() };
         Self { plant, steps, number: 0, time: 0, switches: Switches::default(), properties }
     }
 

@@ -50,9 +50,9 @@ pub trait FingerIo: Send {
 /// The hardware of fingers 1, 2 and 3. A finger without hardware has a port.
 pub type HandIo = [Option<Box<dyn FingerIo>>; FINGERS];
 
-/// What the library must know about hardware before it starts.
+/// What the library must know about hardware before it starts. Later versions add fields, so end a value with
+/// `..Default::default()`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct IoProperties {
     /// Step in which the library stores tensions, N. A tension may be from -8192 to 57 342 steps.
     pub tension_unit: f64,
