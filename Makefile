@@ -4,6 +4,7 @@
 #   make install             installs what was built, below /usr/local
 #   make uninstall           removes exactly the files that make install has installed
 #   make deb                 builds a Debian package, target/dist/sun2xp_VERSION_ARCHITECTURE.deb
+#   make wheel               builds the Python wheel in target/wheels, the same bytes from the same source
 #   make check-installed     installs into an empty folder, and uses the result with every compiler and build system
 #   make clean               removes what was built
 #
@@ -35,10 +36,13 @@ uninstall:
 deb: all
 	packaging/deb
 
+wheel:
+	packaging/wheel $(TARGET)/wheels
+
 check-installed: all
 	packaging/check-installed
 
 clean:
 	rm -rf $(BUILT)
 
-.PHONY: all install uninstall deb check-installed clean
+.PHONY: all install uninstall deb wheel check-installed clean

@@ -1,4 +1,4 @@
-"""The examples, the benchmarks and the snippets of docs/python.md run."""
+"""The examples, the benchmarks and the snippets of the pages run."""
 
 import os
 import pathlib
@@ -8,8 +8,19 @@ import sys
 
 import pytest
 
+import sun2xp
+
 PYTHON = pathlib.Path(__file__).parent.parent
-PAGE = PYTHON.parent / "docs/python.md"
+ROOT = PYTHON.parent
+
+#: The pages with snippets in Python. Those of docs/ros.md need ROS, and ros/tests runs them.
+PAGES = [ROOT / "README.md", PYTHON / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+SNIPPETS = [
+    pytest.param(snippet, id=f"{page.relative_to(ROOT)}-{number}")
+    for page in PAGES
+    for number, snippet in enumerate(re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL))
+    if page.name != "ros.md"
+]
 
 
 def run(*arguments, folder):
@@ -46,6 +57,16 @@ def test_the_benchmarks_print_their_tables(tmp_path):
     assert "| burns Python |" in wake_up
 
 
-@pytest.mark.parametrize("snippet", re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL))
-def test_a_snippet_of_the_page_runs(snippet, tmp_path):
+def test_the_snippets_are_found():
+    pages = {snippet.id.rsplit("-", 1)[0] for snippet in SNIPPETS}
+    assert {"README.md", "python/README.md", "docs/python.md", "docs/black-box.md"} <= pages
+
+
+@pytest.mark.parametrize("snippet", SNIPPETS)
+def test_a_snippet_of_a_page_runs(snippet, tmp_path):
+    # docs/black-box.md reads a black box.
+    if "finger-1.jsonl" in snippet:
+        with sun2xp.simulated() as hand:
+            hand.write_black_box(1, tmp_path / "finger-1.jsonl")
+        snippet += "assert len(tensions) > 10 and len(tensions[0]) == 4\n"
     run("-c", snippet, folder=tmp_path)

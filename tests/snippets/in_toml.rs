@@ -1,0 +1,16 @@
+//! The snippets of configuration files.
+
+use crate::pages::{in_language, pages};
+use sun2xp::hand::parse_configuration;
+
+#[test]
+fn every_snippet_of_a_configuration_is_accepted() {
+    let pages = pages();
+    let blocks = in_language(&pages, "toml");
+    assert!(blocks.len() >= 15, "{} snippets were found", blocks.len());
+    for block in blocks {
+        if let Err(error) = parse_configuration(block.text) {
+            panic!("{}: {error}\n{}", block.page, block.text);
+        }
+    }
+}

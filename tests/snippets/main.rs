@@ -1,0 +1,34 @@
+//! Every snippet of README and of the pages in docs is compiled and run as it stands, or read as the library reads it.
+//! python/tests/test_examples.py and ros/tests/test_node.py run those in Python. Other tests compare the quoted texts.
+
+#[allow(dead_code)]
+#[path = "../c/mod.rs"]
+mod c;
+mod in_c;
+mod in_rust;
+mod in_toml;
+mod pages;
+
+use pages::{Page, pages};
+
+/// The languages of the fenced blocks. `hex` is that of the protocol (tests/board_protocol_page.rs), and `text` quotes
+/// errors (tests/faq.rs).
+const LANGUAGES: [&str; 6] = ["c", "hex", "python", "rust", "text", "toml"];
+
+/// What only code contains. `See it move` of README has commands (tool/tests/readme.rs).
+const CODE: [&str; 6] = ["#include", "let ", "?;", "import ", "if (", "sun2xp_send"];
+
+#[test]
+fn every_block_has_a_language_and_code_is_in_a_block() {
+    let pages = pages();
+    let languages: Vec<&str> = pages.iter().flat_map(Page::blocks).map(|block| block.language).collect();
+    for language in LANGUAGES {
+        assert!(languages.contains(&language), "no block in {language} was found");
+    }
+    let unknown: Vec<_> = languages.iter().filter(|language| !LANGUAGES.contains(language)).collect();
+    assert!(unknown.is_empty(), "no test reads blocks in {unknown:?}");
+    for page in &pages {
+        let code = page.indented().find(|line| CODE.iter().any(|code| line.contains(code)));
+        assert_eq!(code, None, "{}: put this code into a block with its language", page.name);
+    }
+}
