@@ -35,6 +35,8 @@ pub(crate) struct Slack {
     pub(super) unopposed: f64,
     /// Whether the common stretch is kept, because the tensions are at the pretension.
     pub(super) steady: bool,
+    /// Whether tendons that seemed to have been taut were slack, and are wound in again.
+    pub(super) touches_again: bool,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]

@@ -123,6 +123,7 @@ impl SlackTakeUp {
             common: 0.0,
             unopposed: 0.0,
             steady: false,
+            touches_again: false,
         }
     }
 

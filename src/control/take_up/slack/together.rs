@@ -1,7 +1,7 @@
 //! Winds all motors in together, from the travels at which the tendons came taut, until the tensions reach the
 //! pretension.
 
-use super::{ALL_TAUT, SlackTakeUp};
+use super::{ALL_TAUT, GAP, SlackTakeUp};
 use crate::control::take_up::progress::{Phase, Slack};
 use crate::control::take_up::touch::Gauge;
 use nalgebra::Vector4;
@@ -74,6 +74,15 @@ impl SlackTakeUp {
         slack.touched = taut;
         slack.holds = [false; 4];
         slack.gauges.iter_mut().zip(travel).for_each(|(gauge, &travel)| gauge.restart(travel));
+        // The finger may have moved since the tendons were taut, so that their travels belong to several poses. Two
+        // tendons can then hold it at a stop against each other, in every attempt again. From the second attempt on,
+        // the tendons that pull are let out from where they are now.
+        let let_out = std::mem::replace(&mut slack.touches_again, true);
+        for tendon in (0..4).filter(|&tendon| let_out && taut[tendon]) {
+            let stretch = self.stretch[tendon] * slack.tensions[tendon] / self.pretension[tendon];
+            slack.taut_at[tendon] = travel[tendon] - stretch;
+            slack.waits_at[tendon] = slack.taut_at[tendon] - GAP;
+        }
         slack.targets.integral = Vector4::zeros();
         slack.targets.travel = slack.waits_at;
         (slack.phase, slack.seconds) = (Phase::Touching, 0.0);
@@ -92,5 +101,37 @@ impl SlackTakeUp {
     /// Returns the fraction of the pretension that is missing. It is negative if the tensions are too high.
     fn missing(&self, tensions: &Vector4<f64>) -> f64 {
         (1.0 - self.common_part(tensions)).max(LEAST - tensions.min() / self.minimum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::take_up::progress::Slackness;
+    use crate::model::configuration::ConfiguredFinger;
+
+    /// Two tendons hold the finger at a stop against each other, at travels that belong to another pose.
+    #[test]
+    fn tendons_that_hold_the_finger_at_a_stop_are_let_out_in_the_second_attempt() {
+        let finger = ConfiguredFinger::default();
+        let take_up = SlackTakeUp::new(&finger, &finger.tendons().expect("regular"), 500.0);
+        let travel = Vector4::new(0.003, 0.001, -0.002, -0.003);
+        let tensions = Vector4::new(14.0, 0.0, 25.0, 0.0);
+        let now = Slackness { travel, speeds: Vector4::zeros(), tensions };
+        let mut slack = take_up.start(&now);
+        (0..100).for_each(|_| drop(take_up.step(&mut slack, &now, false)));
+        slack.taut_at = travel.add_scalar(0.002);
+        slack.waits_at = slack.taut_at.add_scalar(-GAP);
+        let attempts = [false, true].map(|let_out| {
+            assert_eq!(slack.touches_again, let_out);
+            (slack.phase, slack.touched, slack.unopposed) = (Phase::Tightening, [true; 4], 2.0 * LARGEST_UNOPPOSED);
+            while slack.phase != Phase::Touching {
+                take_up.step(&mut slack, &now, false);
+            }
+            assert_eq!(slack.touched, [true, false, true, false]);
+            [0, 2].map(|motor| slack.targets.travel[motor] - travel[motor])
+        });
+        assert!(attempts[0].iter().all(|&way| way > 0.001), "{attempts:?}");
+        assert!(attempts[1].iter().all(|&way| way < -GAP), "{attempts:?}");
     }
 }
