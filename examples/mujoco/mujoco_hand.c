@@ -1,0 +1,197 @@
+/* mujoco_hand.c - a hand whose fingers are simulated in another process, in step with the servo. C11.
+
+       mujoco_hand MEMORY      the fingers that simulation.py simulates over this file
+       mujoco_hand             the built-in simulated fingers
+
+   Moves the fingers to some poses, waits until they have settled, and prints where they rest. */
+
+#ifndef _DEFAULT_SOURCE
+#define _DEFAULT_SOURCE
+#endif
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <time.h>
+#include <unistd.h>
+#include "sun2xp.h"
+
+/* One servo thread serves all fingers, in the order of their numbers. */
+#define CONFIGURATION \
+    "[hand]\nreal_time = \"ignore\"\nend_state = \"release\"\n[finger]\nport = \"simulated\"\nthread = 1\n"
+
+/* Longest wait for the simulation in one exchange, s. The library repeats the exchange. */
+#define PATIENCE 0.08
+
+/* The layout of simulation.py: numbers of 8 bytes. */
+struct finger_memory {
+    double torques[4], tensions[4], encoders[4], joints[3];
+};
+
+struct memory {
+    _Atomic unsigned long long ready, requested, done, ended;
+    double time;
+    struct finger_memory fingers[3];
+};
+
+struct finger {
+    struct memory *memory;
+    int number;                         /* 0 to 2 */
+    unsigned long last;                 /* number of the last command */
+};
+
+static void nap(void)
+{
+    struct timespec time = {0, 20000};
+
+    nanosleep(&time, NULL);
+}
+
+static double seconds(void)
+{
+    struct timespec time;
+
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static void read_sample(const struct finger *finger, struct sun2xp_io_sample *sample)
+{
+    const struct finger_memory *memory = &finger->memory->fingers[finger->number];
+    int i;
+
+    for (i = 0; i < 4; i++) {
+        sample->tensions[i] = memory->tensions[i];
+        sample->encoders[i] = (int)memory->encoders[i];
+    }
+    sample->time = 1 + finger->memory->time;
+}
+
+static int start(void *user, const struct sun2xp_io_terms *terms, struct sun2xp_io_sample *first)
+{
+    struct finger *finger = user;
+
+    (void)terms;
+    finger->last = 0;
+    read_sample(finger, first);
+    return 0;
+}
+
+/* The exchange of finger 1 advances the simulation by one period, with the torques of the last cycle. The samples of
+   all fingers are those of the end of that period. The torques of this cycle act in the next period. */
+static int exchange(void *user, const struct sun2xp_io_command *command, struct sun2xp_io_sample *sample)
+{
+    struct finger *finger = user;
+    struct memory *memory = finger->memory;
+    double deadline = seconds() + PATIENCE;
+
+    if (finger->number == 0 && command->number != finger->last)
+        atomic_fetch_add(&memory->requested, 1);
+    finger->last = command->number;
+    while (atomic_load(&memory->done) != atomic_load(&memory->requested)) {
+        if (seconds() > deadline)
+            return ETIMEDOUT;
+        nap();
+    }
+    read_sample(finger, sample);
+    memcpy(memory->fingers[finger->number].torques, command->torques, sizeof command->torques);
+    return 0;
+}
+
+static int stop(void *user)
+{
+    struct finger *finger = user;
+
+    memset(finger->memory->fingers[finger->number].torques, 0, sizeof finger->memory->fingers[0].torques);
+    return 0;
+}
+
+static struct memory *map(const char *path)
+{
+    struct memory *memory;
+    double deadline = seconds() + 60;
+    int file;
+
+    /* The simulation makes the file. */
+    while ((file = open(path, O_RDWR)) < 0 || lseek(file, 0, SEEK_END) < (off_t)sizeof *memory) {
+        if (file >= 0)
+            close(file);
+        if (seconds() > deadline)
+            return NULL;
+        nap();
+    }
+    memory = mmap(NULL, sizeof *memory, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    close(file);
+    if (memory == MAP_FAILED)
+        return NULL;
+    while (atomic_load(&memory->ready) == 0 && seconds() < deadline)
+        nap();
+    return memory;
+}
+
+static int move(sun2xp_hand *hand, const struct memory *memory)
+{
+    static const double Poses[3][3] = {{0.2, 0.6, 1.1}, {-0.3, 1.0, 1.5}, {0.1, 0.5, 0.8}};
+    double position[3];
+    int pose, finger;
+
+    for (pose = 0; pose < 3; pose++) {
+        for (finger = 1; finger <= 3; finger++)
+            if (sun2xp_send_position(hand, finger, Poses[(pose + finger) % 3]) != 0)
+                return -1;
+        if (sun2xp_wait(hand, SUN2XP_ALL_FINGERS, SUN2XP_WAIT_SETTLED, 30.0) != 0)
+            return -1;
+        for (finger = 1; finger <= 3; finger++) {
+            if (sun2xp_position(hand, finger, position) != 0)
+                return -1;
+            printf("%d %d %.6f %.6f %.6f", pose, finger, position[0], position[1], position[2]);
+            if (memory != NULL)
+                printf(" %.6f %.6f %.6f", memory->fingers[finger - 1].joints[0], memory->fingers[finger - 1].joints[1],
+                    memory->fingers[finger - 1].joints[2]);
+            printf("\n");
+        }
+    }
+    return 0;
+}
+
+int main(int count, char **arguments)
+{
+    struct memory *memory = count > 1 ? map(arguments[1]) : NULL;
+    struct finger fingers[3];
+    struct sun2xp_io io[3];
+    sun2xp_hand *hand;
+    int i, result;
+
+    if (count > 1 && memory == NULL) {
+        perror(arguments[1]);
+        return 1;
+    }
+    memset(io, 0, sizeof io);
+    for (i = 0; i < 3; i++) {
+        fingers[i].memory = memory;
+        fingers[i].number = i;
+        io[i].size = sizeof io[i];
+        io[i].finger = i + 1;
+        io[i].in_step = 1;
+        io[i].user = &fingers[i];
+        io[i].start = start;
+        io[i].exchange = exchange;
+        io[i].stop = stop;
+    }
+    result = sun2xp_open_io_text(CONFIGURATION, memory != NULL ? 3 : 0, io, &hand);
+    if (result == 0) {
+        result = move(hand, memory);
+        if (result != 0)
+            fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
+        sun2xp_close(hand);
+    } else {
+        fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
+    }
+    if (memory != NULL)
+        atomic_store(&memory->ended, 1);
+    return result == 0 ? 0 : 1;
+}
