@@ -119,7 +119,9 @@ mod tests {
         let tensions = Vector4::new(14.0, 0.0, 25.0, 0.0);
         let now = Slackness { travel, speeds: Vector4::zeros(), tensions };
         let mut slack = take_up.start(&now);
-        (0..100).for_each(|_| drop(take_up.step(&mut slack, &now, false)));
+        for _ in 0..100 {
+            take_up.step(&mut slack, &now, false);
+        }
         slack.taut_at = travel.add_scalar(0.002);
         slack.waits_at = slack.taut_at.add_scalar(-GAP);
         let attempts = [false, true].map(|let_out| {
