@@ -84,6 +84,19 @@ fn hardware_of_the_program_is_a_hand() {
 }
 
 #[test]
+fn a_hand_with_drives_at_a_can_bus_moves() {
+    let bench = Bench::new();
+    let source = |name: &str| c::root().join("c_examples").join(name).to_str().expect("the path is text").to_string();
+    let flags = strict(&["-std=gnu99"]);
+    let [drives, hand] = ["CanDrives.c", "Can.c"].map(|name| bench.build(c_compiler(), &flags, &[&source(name)]));
+    // The program starts the far end from its own folder.
+    std::fs::rename(drives, bench.path().join("CanDrives")).expect("renamed");
+    let run = bench.run(Command::new(hand));
+    assert!(run.status.success(), "{}", said(&run));
+    assert_eq!(str::from_utf8(&run.stdout).expect("text").matches("rests at").count(), 3, "{}", said(&run));
+}
+
+#[test]
 fn null_pointers_are_refused() {
     succeed(&strict(&["-ansi"]), &["null.c"]);
 }

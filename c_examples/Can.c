@@ -1,0 +1,185 @@
+/* Can.c - a hand whose drives are at a CAN bus: the program gives the library its own hardware (docs/other-hardware.md).
+   GNU C99, Linux.
+
+       Can [INTERFACE]
+
+   The drives are simulated by CanDrives, which this program starts. They exchange CAN frames over INTERFACE, by default
+   over vcan0 if the machine has it (ip link add dev vcan0 type vcan; ip link set vcan0 up), and otherwise over Unix
+   datagram sockets. */
+
+#define _GNU_SOURCE
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include "can_bus.h"
+#include "sun2xp.h"
+
+/* The simulated drives have a patient watchdog, because a busy machine may delay them. */
+#define CONFIGURATION "[hand]\nend_state = \"release\"\nwatchdog_ms = 200\n"
+
+/* Longest wait for simulated drives in an exchange, s. For real drives it is the deadline of the command. */
+#define PATIENCE 0.08
+
+struct drives {
+    struct can_bus bus;
+    int finger;
+    int encoders[4];                    /* whole counts: the frames have their low 16 bits */
+};
+
+static void start_far_end(const char *program, const char *place, pid_t *process)
+{
+    char path[4096];
+    const char *end = strrchr(program, '/');
+
+    snprintf(path, sizeof path, "%.*sCanDrives", end != NULL ? (int)(end - program) + 1 : 0, program);
+    *process = fork();
+    if (*process == 0) {
+        execl(path, path, place, (char *)NULL);
+        perror(path);
+        _exit(1);
+    }
+}
+
+/* Waits for one frame with encoder counts and one with tensions. */
+static int receive_sample(struct drives *drives, struct sun2xp_io_sample *sample, double deadline)
+{
+    int numbers[4], missing = 2, identifier, i;
+
+    while (missing > 0) {
+        identifier = can_receive(&drives->bus, numbers, deadline);
+        if (identifier < 0)
+            return ETIMEDOUT;
+        if (identifier == CAN_EMERGENCY + drives->finger)
+            sample->faults |= SUN2XP_IO_WATCHDOG;
+        for (i = 0; i < 4; i++) {
+            if (identifier == CAN_ENCODERS + drives->finger)
+                drives->encoders[i] += (short)(numbers[i] - drives->encoders[i]);
+            if (identifier == CAN_TENSIONS + drives->finger)
+                sample->tensions[i] = TENSION_UNIT * (numbers[i] & 0xFFFF);
+        }
+        missing -= identifier == CAN_ENCODERS + drives->finger || identifier == CAN_TENSIONS + drives->finger;
+    }
+    memcpy(sample->encoders, drives->encoders, sizeof drives->encoders);
+    return 0;
+}
+
+/* Removes the frames of an earlier exchange that came too late. */
+static void discard(struct drives *drives)
+{
+    int numbers[4];
+
+    while (can_receive(&drives->bus, numbers, 0) >= 0)
+        ;
+}
+
+static int start(void *user, const struct sun2xp_io_terms *terms, struct sun2xp_io_sample *first)
+{
+    struct drives *drives = user;
+    int control[4] = {1, (int)(terms->watchdog * 1000), 0, 0};
+    int tries;
+
+    /* The far end may still be starting. */
+    for (tries = 0; tries < 100; tries++) {
+        discard(drives);
+        if (can_send(&drives->bus, 0, CAN_CONTROL + drives->finger, control) == 0
+            && receive_sample(drives, first, can_seconds() + 0.05) == 0)
+            return 0;
+        usleep(10000);
+    }
+    return ETIMEDOUT;
+}
+
+static int exchange(void *user, const struct sun2xp_io_command *command, struct sun2xp_io_sample *sample)
+{
+    struct drives *drives = user;
+    int torques[4], i;
+
+    discard(drives);
+    for (i = 0; i < 4; i++)
+        torques[i] = (int)floor(command->torques[i] / TORQUE_UNIT + 0.5);
+    if (can_send(&drives->bus, 0, CAN_TORQUES + drives->finger, torques) != 0)
+        return errno;
+    return receive_sample(drives, sample, can_seconds() + PATIENCE);
+}
+
+static int stop(void *user)
+{
+    static const int Control[4] = {2, 0, 0, 0};
+    struct drives *drives = user;
+
+    return can_send(&drives->bus, 0, CAN_CONTROL + drives->finger, Control) == 0 ? 0 : errno;
+}
+
+static int move(sun2xp_hand *hand)
+{
+    double target[3] = {0.2, 0.6, 1.1}, position[3];
+    struct sun2xp_timing timing;
+    int finger;
+
+    for (finger = 1; finger <= 3; finger++)
+        if (sun2xp_send_position(hand, finger, target) != 0)
+            return -1;
+    if (sun2xp_wait(hand, SUN2XP_ALL_FINGERS, SUN2XP_WAIT_SETTLED, 20.0) != 0)
+        return -1;
+    timing.size = sizeof timing;
+    for (finger = 1; finger <= 3; finger++) {
+        if (sun2xp_position(hand, finger, position) != 0
+            || sun2xp_timing(hand, finger, SUN2XP_STAGE_WIRE, &timing) != 0)
+            return -1;
+        printf("finger %d rests at %.3f %.3f %.3f rad, exchange: median %.0f us\n", finger, position[0], position[1],
+            position[2], (double)timing.median / 1000);
+        if (fabs(position[0] - target[0]) + fabs(position[1] - target[1]) + fabs(position[2] - target[2]) > 0.03)
+            return -1;
+    }
+    return 0;
+}
+
+int main(int count, char **arguments)
+{
+    char folder[] = "/tmp/can-XXXXXX";
+    const char *place = count > 1 ? arguments[1] : "vcan0";
+    struct drives drives[3];
+    struct sun2xp_io io[3];
+    sun2xp_hand *hand;
+    pid_t far_end;
+    int i, result;
+
+    if (count == 1 && if_nametoindex(place) == 0 && (place = mkdtemp(folder)) == NULL)
+        return 1;
+    printf("CAN over %s\n", place);
+    start_far_end(arguments[0], place, &far_end);
+    memset(drives, 0, sizeof drives);
+    memset(io, 0, sizeof io);
+    for (i = 0; i < 3; i++) {
+        drives[i].finger = i + 1;
+        if (can_open(&drives[i].bus, place, i + 1) != 0) {
+            perror(place);
+            return 1;
+        }
+        io[i].size = sizeof io[i];
+        io[i].finger = i + 1;
+        io[i].in_step = 1;              /* 0 for real drives */
+        io[i].user = &drives[i];
+        io[i].start = start;
+        io[i].exchange = exchange;
+        io[i].stop = stop;
+    }
+    result = sun2xp_open_io_text(CONFIGURATION, 3, io, &hand);
+    if (result == 0) {
+        result = move(hand);
+        if (result != 0)
+            fprintf(stderr, "%s\n", sun2xp_error_text(hand));
+        sun2xp_close(hand);
+    } else {
+        fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
+    }
+    kill(far_end, SIGTERM);
+    waitpid(far_end, NULL, 0);
+    for (i = 0; i <= 3 && place == folder; i++)
+        unlink(can_address(folder, i).sun_path);
+    if (place == folder)
+        rmdir(folder);
+    return result == 0 ? 0 : 1;
+}
