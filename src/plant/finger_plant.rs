@@ -1,5 +1,7 @@
 //! One finger as a physical system: joints, tendons, motors, and a surface that the tip can touch.
 
+mod by_hand;
+
 use super::amplifier::Amplifier;
 use super::contact;
 use super::gauge_filter::GaugeFilter;
@@ -51,6 +53,8 @@ pub struct Plant {
     object_force: Option<Vector3<f64>>,
     held: Option<HoldingHand>,
     surface: Option<Surface>,
+    /// The weight that hangs on each tendon between its gauge and the finger, N.
+    hung: Vector4<f64>,
 }
 
 impl Plant {
@@ -88,6 +92,7 @@ impl Plant {
             object_force: None,
             held: None,
             surface: simulation.surface,
+            hung: Vector4::zeros(),
             tendons,
         })
     }
@@ -164,12 +169,6 @@ impl Plant {
         self.motor_dot
     }
 
-    /// Turns a motor by `angle`, rad, as a person could by hand. A negative angle unwinds its tendon.
-    pub fn turn_motor(&mut self, motor: usize, angle: f64) {
-        self.motor[motor] += angle;
-        self.tendons.slide(&self.theta, &self.motor);
-    }
-
     /// Tears a tendon, 0 to 3.
     pub fn cut_tendon(&mut self, tendon: usize) {
         self.tendons.cut(tendon);
@@ -203,7 +202,7 @@ impl Plant {
 
     /// Returns the tensions that the gauge amplifiers pass on, N: those at the gauges, after the amplifiers' low-pass.
     pub fn filtered_tensions(&self) -> Vector4<f64> {
-        self.gauge_filter.as_ref().map_or_else(|| self.tensions(), |filter| filter.shown)
+        self.gauge_filter.as_ref().map_or_else(|| self.tensions(), |filter| filter.shown) + self.hung
     }
 
     /// Returns the position of the fingertip in the finger's frame, cm.
@@ -234,16 +233,6 @@ impl Plant {
     /// Applies the force of an object to the fingertip, N, in the finger's frame, until the next call.
     pub fn set_object_force(&mut self, force: Vector3<f64>) {
         self.object_force = Some(force);
-    }
-
-    /// Holds the joints at these angles, rad, as a person's hand does.
-    pub fn hold(&mut self, pose: Vector3<f64>) {
-        self.held = Some(HoldingHand::new(pose));
-    }
-
-    /// Removes the holding hand.
-    pub fn release(&mut self) {
-        self.held = None;
     }
 
     /// Places a surface in reach of the fingertip, or removes it.

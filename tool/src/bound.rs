@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use sun2xp::hand::{self, Fingers, Found};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::ShownPath;
-use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, RATES, Scheme};
+use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RATES, Scheme};
 
 /// Finds the bound on the eigenvalues of Kx up to which a finger is stable in every pose.
 ///
@@ -172,6 +172,29 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (false, None) => {}
     }
     Ok(())
+}
+
+/// Searches the bound of one finger with the default options, N/cm.
+///
+/// # Errors
+/// Returns an error if the finger has no bound.
+pub fn of_finger(configuration: &Configuration, number: FingerNumber) -> Result<f64, Failure> {
+    let arguments = Arguments {
+        config: None,
+        fingers: Vec::new(),
+        write: false,
+        scheme: None,
+        rate: None,
+        nominal: false,
+        free: false,
+        passivity: false,
+        samples: None,
+        seed: 1990,
+        json: false,
+    };
+    let searched = Searched { number, finger: &configuration.fingers[number.index()], rate: configuration.hand.rate };
+    let progress = Progress::new("bound", set::searches(&arguments) as u64);
+    Ok(set::search(&arguments, &searched, &progress)?.0)
 }
 
 fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -> Result<FingerReport, Failure> {

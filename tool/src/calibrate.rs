@@ -6,6 +6,7 @@ mod report;
 
 use crate::failure::Failure;
 use crate::print::{self, Progress, Screen};
+pub use pose::pose;
 use pose::{ask_to_hold, ask_to_release};
 use report::{Calibrated, Measured, Report};
 use std::io::{self, Write};

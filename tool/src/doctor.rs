@@ -15,7 +15,8 @@ use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use sun2xp::hand::{self, Configured, Fingers};
+use sun2xp::hand::{self, Configured, Fingers, HandError};
+use sun2xp::model::configuration::Configuration;
 
 /// Checks the kernel, the resource limits of this process, the cores and the ports. Measures wake-ups and round trips.
 /// Reports what to change. The motors stay off.
@@ -56,6 +57,16 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
         false => write!(io::stdout(), "{}", report(&findings, pass, &Screen::stdout()))?,
     }
     Ok(if pass { ExitStatus::SUCCESS } else { ExitStatus::FAILURE })
+}
+
+/// Returns the findings that are not good, each in one line.
+///
+/// # Errors
+/// Returns an error if the hand cannot be examined.
+pub fn complaints(configuration: &Configuration, duration: Duration) -> Result<Vec<String>, HandError> {
+    let findings = examine(configuration, Path::new("/"), duration)?;
+    let line = |Finding { subject, found, advice, .. }: Finding| format!("{subject}: {found}. {advice}");
+    Ok(findings.into_iter().filter(|finding| finding.verdict > Rating::Good).map(line).collect())
 }
 
 /// One row for each finding, with the advice below what was found, and the verdict in the last line.

@@ -7,6 +7,7 @@ mod board;
 mod boards;
 mod bound;
 mod calibrate;
+mod commission;
 mod completions;
 mod doctor;
 mod export;
@@ -50,6 +51,7 @@ enum Tool {
     Boards(boards::Arguments),
     Bound(bound::Arguments),
     Calibrate(calibrate::Arguments),
+    Commission(commission::Arguments),
     Completions(completions::Arguments),
     Doctor(doctor::Arguments),
     Export(export::Arguments),
@@ -83,6 +85,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Tool::Boards(arguments) => boards::run(&arguments).map(|()| ExitStatus::SUCCESS),
         Tool::Bound(arguments) => bound::run(&arguments).map(|()| ExitStatus::SUCCESS),
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Commission(arguments) => commission::run(&arguments),
         Tool::Completions(arguments) => completions::run(&arguments, command()).map(|()| ExitStatus::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
         Tool::Export(arguments) => export::run(&arguments).map(|()| ExitStatus::SUCCESS),

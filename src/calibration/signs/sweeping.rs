@@ -11,6 +11,9 @@ use nalgebra::Vector4;
 
 /// Speed of a sweep, cm/s.
 const SPEED: f64 = 0.5;
+/// A gauge responds alone if every other one changes by less than this part of its change. On a free finger the
+/// tensions change along the null vector of R, in which no entry is so small.
+const ALONE: f64 = 0.2;
 
 impl SignSearch {
     /// Sweeps the motor while the others are held, and doubles the amplitude until one side is tight and the other
@@ -65,9 +68,15 @@ impl SignSearch {
         sweep.dwell(instruments.period, sample.feedback.gauge_counts, &self.newton_per_count, lag)
     }
 
-    /// Stores the signs of the gauges, from the change between the slack end and the tight end.
+    /// Stores the signs of the gauges, from the change between the slack end and the tight end. If only one gauge
+    /// responds, something holds the finger, and the gauge belongs to the tendon that the motor pulls.
     fn note_gauges(&mut self, sweep: &Sweep, side: f64) -> Result<(), Obstacle> {
         let change = sweep.change_between_ends() * side;
+        let first = change.abs().imax();
+        let others = (0..4).filter(|&gauge| gauge != first).map(|gauge| change[gauge].abs()).fold(0.0, f64::max);
+        if first != self.motor && change[first].abs() > TIGHT && others < ALONE * change[first].abs() {
+            return Err(Obstacle::Swapped { motor: self.motor as u8 + 1, gauge: first as u8 + 1 });
+        }
         for gauge in 0..4 {
             if change[gauge].abs() < TIGHT {
                 continue;

@@ -11,9 +11,12 @@ use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Length by which every tendon is let out, cm: several times its stretch under the pretension.
 const LET_OUT: f64 = 0.15;
-/// Force of a motor that lets its tendon out, as a fraction of t_min. A motor that can control t_min has less friction
-/// than this force.
+/// Force with which a motor begins to let its tendon out, as a fraction of t_min. Most motors that can control t_min
+/// have less friction than this force.
 const PUSH: f64 = 0.8;
+/// Rise of this force while a motor sticks, 1/s, and its end, as fractions of t_min.
+const HARDER: f64 = 0.5;
+const HARDEST: f64 = 2.0;
 /// Time limit for letting the tendons out, s.
 const LETTING_OUT_LIMIT: f64 = 5.0;
 /// Settling time after the tendons are out, s.
@@ -62,7 +65,7 @@ impl GaugeZero {
                 let motor = inside.iter().position(|&inside| inside).unwrap_or(0) as u8 + 1;
                 return Err(Obstacle::MotorStuck { motor });
             }
-            let push = -PUSH * instruments.minimum;
+            let push = -(PUSH + HARDER * self.seconds).min(HARDEST) * instruments.minimum;
             return Ok(Continue(Activity::Pull(inside.map(|inside| if inside { push } else { 0.0 }))));
         };
         let since = self.seconds - out_at;

@@ -12,11 +12,14 @@ const INDENT: usize = 2;
 /// An order as one writes it, and what it does.
 type Entry = (&'static str, &'static str);
 
-const ACTIONS: [Entry; 7] = [
+const ACTIONS: [Entry; 10] = [
     ("force FINGER X Y Z", "push the fingertip, N"),
     ("wall FINGER PX PY PZ NX NY NZ K", "put a wall through P with normal N, stiffness K N/cm"),
     ("ball FINGER X Y Z RADIUS K", "put a ball"),
-    ("hold FINGER", "hold the finger in its current pose, like a jig"),
+    ("hold FINGER [A B C]", "hold the finger like a jig, in its current pose or at the joint angles A B C, degrees"),
+    ("turn FINGER MOTOR TURNS", "turn a motor by hand; negative turns pay its tendon out"),
+    ("tighten FINGER", "take up the slack of every tendon by hand"),
+    ("hang FINGER TENDON N", "hang a weight on a tendon between its gauge and the finger, N; 0 removes it"),
     ("free FINGER", "remove force, wall, ball and jig"),
     (
         "state FINGER",

@@ -21,7 +21,14 @@ pub enum Action {
     Force([f64; 3]),
     Touch(Surface),
     Hold,
+    /// Holds the finger at these joint angles, rad.
+    HoldAt([f64; 3]),
     Free,
+    /// Turns a motor, 0 to 3, by hand, rad.
+    Turn(usize, f64),
+    Tighten,
+    /// Hangs a weight on a tendon, 0 to 3, N.
+    Hang(usize, f64),
     State,
 }
 
@@ -71,10 +78,17 @@ impl Action {
             ("ball", &[x, y, z, radius, stiffness]) => {
                 Ok(Action::Touch(Surface::Ball { centre: [x, y, z], radius, stiffness }))
             }
+            ("turn" | "hang", &[part, _]) if ![1.0, 2.0, 3.0, 4.0].contains(&part) => {
+                Err(format!("{part} is not between 1 and 4"))
+            }
+            ("turn", &[motor, turns]) => Ok(Action::Turn(motor as usize - 1, turns * std::f64::consts::TAU)),
+            ("hang", &[tendon, newton]) => Ok(Action::Hang(tendon as usize - 1, newton)),
+            ("tighten", []) => Ok(Action::Tighten),
             ("hold", []) => Ok(Action::Hold),
+            ("hold", &[a, b, c]) => Ok(Action::HoldAt([a, b, c].map(f64::to_radians))),
             ("free", []) => Ok(Action::Free),
             ("state", []) => Ok(Action::State),
-            ("force" | "wall" | "ball" | "hold" | "free" | "state", _) => {
+            ("force" | "wall" | "ball" | "hold" | "free" | "turn" | "tighten" | "hang" | "state", _) => {
                 Err(format!("{name} does not take {} numbers; see sun2xp board --help", numbers.len()))
             }
             _ => Err(format!("{name} does not take these words; see sun2xp board --help")),
@@ -90,6 +104,10 @@ impl Action {
             Action::Force(force) => plant.set_external_force(force.into()),
             Action::Touch(surface) => plant.set_surface(Some(surface)),
             Action::Hold => plant.hold(plant.joints()),
+            Action::HoldAt(joints) => plant.hold(joints.into()),
+            Action::Turn(motor, angle) => plant.turn_motor(motor, angle),
+            Action::Tighten => plant.take_up_by_hand(),
+            Action::Hang(tendon, newton) => plant.hang(tendon, newton),
             Action::Free => {
                 plant.release();
                 plant.set_external_force(Vector3::zeros());
@@ -131,7 +149,7 @@ mod tests {
     #[test]
     fn every_order_of_the_manual_is_an_order() {
         let names: Vec<&str> = manual::names().collect();
-        assert_eq!(names.len(), 31);
+        assert_eq!(names.len(), 34);
         for name in names {
             // Without its numbers an order is incomplete, but it is known.
             let known = Order::read(name).err().is_none_or(|error| !error.contains("there is no order"));
@@ -141,7 +159,7 @@ mod tests {
     }
 
     fn is_trouble(name: &str) -> bool {
-        !["force", "wall", "ball", "hold", "free", "state", "quit"].contains(&name)
+        !["force", "wall", "ball", "hold", "turn", "tighten", "hang", "free", "state", "quit"].contains(&name)
     }
 
     #[test]
@@ -154,7 +172,10 @@ mod tests {
             ("wall 1 0 0 0 0 0 0 10", "no direction"),
             ("wall 1 0 0 0 1 0 0 -10", "negative"),
             ("ball 1 0 0 0 1 -10", "negative"),
-            ("shove 1", "no order shove: the orders are force, wall, ball, hold, free, state, quit, cut, slack, "),
+            (
+                "shove 1",
+                "no order shove: the orders are force, wall, ball, hold, turn, tighten, hang, free, state, quit, cut, slack, ",
+            ),
             ("shove", "drop, corrupt, delay, duplicate, reorder, stall, commands, good, unplug, replug; see"),
             ("good 1", "does not take these words"),
             ("state", "state needs the number of a finger"),

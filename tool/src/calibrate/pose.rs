@@ -28,7 +28,7 @@ pub fn ask_to_release(finger: i32, yes: bool) -> Result<(), Failure> {
 }
 
 /// Describes the joints in words, one per line.
-fn pose([side, base, middle]: [f64; 3]) -> String {
+pub fn pose([side, base, middle]: [f64; 3]) -> String {
     let toward = |angle: f64, positive, negative, zero| match angle {
         angle if angle > 0.0 => positive,
         angle if angle < 0.0 => negative,

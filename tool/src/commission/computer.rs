@@ -1,0 +1,67 @@
+//! The steps that need no motion: the board, the bound of the stiffness, and the computer.
+
+use super::desk::Desk;
+use super::outcome::Outcome;
+use super::person::{Act, Answer};
+use super::wrong::Wrong;
+use crate::failure::Failure;
+
+/// The step board.
+pub fn board(desk: &mut Desk) -> Result<Outcome, Failure> {
+    let mut outcome = Outcome::default();
+    let seen = desk.machine.board()?;
+    if seen.emergency_stop {
+        outcome.wrong(Wrong::EmergencyStop);
+    }
+    if seen.supply_fault {
+        outcome.wrong(Wrong::Supply);
+    }
+    if let (Some(refusal), true) = (seen.refusal, outcome.wrong.is_empty()) {
+        outcome.wrong(Wrong::Board(refusal));
+    }
+    if !outcome.passed() {
+        return Ok(outcome);
+    }
+    outcome.found(seen.name);
+    if desk.person.ask(Act::PressEmergencyStop)? == Answer::Cannot {
+        outcome.found("no emergency stop was tried");
+        return Ok(outcome);
+    }
+    let pressed = desk.machine.board()?;
+    desk.person.ask(Act::ReleaseEmergencyStop)?;
+    match pressed.emergency_stop || pressed.supply_fault {
+        true => outcome.found("the board sees the emergency stop"),
+        false => outcome.wrong(Wrong::EmergencyStopUnseen),
+    }
+    if desk.machine.board()?.emergency_stop {
+        outcome.wrong(Wrong::EmergencyStop);
+    }
+    Ok(outcome)
+}
+
+/// The step bound.
+pub fn bound(desk: &mut Desk) -> Result<Outcome, Failure> {
+    let mut outcome = Outcome::default();
+    desk.machine.configure(&desk.finger)?;
+    let bound = desk.machine.bound()?;
+    desk.finger.stiffness.bound = Some(bound);
+    outcome.found(format!("the finger is stable up to {bound:.2} N/cm"));
+    let initial = desk.finger.initial_stiffness().symmetric_eigenvalues().max();
+    if initial > bound {
+        outcome.wrong(Wrong::Refused(format!(
+            "stiffness.initial is {initial:.2} N/cm and above the bound: lower it in the configuration file"
+        )));
+    }
+    Ok(outcome)
+}
+
+/// The step computer.
+pub fn computer(desk: &mut Desk) -> Result<Outcome, Failure> {
+    let mut outcome = Outcome::default();
+    let complaints = desk.machine.computer()?;
+    if complaints.is_empty() {
+        outcome.found("the computer runs the finger in time");
+    }
+    complaints.into_iter().for_each(|complaint| outcome.wrong(Wrong::Computer(complaint)));
+    Ok(outcome)
+}

@@ -1,0 +1,156 @@
+//! Writes what a step has found into the configuration file, each key with a comment.
+
+use crate::failure::Failure;
+use std::path::Path;
+use sun2xp::files::{UpdateError, update_file};
+use sun2xp::hand::parse_configuration;
+use sun2xp::model::ShownPath;
+use sun2xp::model::configuration::ConfiguredFinger;
+use toml_edit::{Array, DocumentMut, Formatted, Item, Table, Value};
+
+/// Largest configuration file, bytes.
+const LARGEST: u64 = 1 << 20;
+/// The beginning of every comment of this tool. An older one above the same key is replaced.
+const MARK: &str = "# commission ";
+/// Number of significant digits of a number.
+const DIGITS: usize = 6;
+
+/// Writes the keys of `after` that differ from `before` into the table of the finger, with a comment above each.
+/// Everything else in the file is kept.
+pub fn store(
+    path: &Path,
+    finger: i32,
+    before: &ConfiguredFinger,
+    after: &ConfiguredFinger,
+    comment: &str,
+) -> Result<(), Failure> {
+    let (before, after) = (toml_edit::ser::to_document(before)?, toml_edit::ser::to_document(after)?);
+    let changed = differences(&before, &after);
+    if changed.is_empty() {
+        return Ok(());
+    }
+    let change = |text: &str| with(text, finger, &changed, comment).map(Some);
+    update_file(path, LARGEST, change).map_err(|error| match error {
+        UpdateError::File(error) => format!("cannot write {}: {error}", ShownPath(path)).into(),
+        UpdateError::Change(error) => error,
+    })
+}
+
+/// A key of a section, and its new value.
+struct Changed {
+    section: String,
+    key: String,
+    value: Value,
+}
+
+/// Returns the keys whose values differ.
+fn differences(before: &DocumentMut, after: &DocumentMut) -> Vec<Changed> {
+    let mut changed = Vec::new();
+    for (section, table) in after.iter() {
+        let Some(table) = table.as_table_like() else { continue };
+        for (key, value) in table.iter() {
+            let Some(value) = value.as_value() else { continue };
+            let old = before.get(section).and_then(|table| table.get(key)).and_then(Item::as_value);
+            let text = |value: &Value| rounded(value).to_string();
+            if old.map(text) != Some(text(value)) {
+                changed.push(Changed { section: section.into(), key: key.into(), value: rounded(value) });
+            }
+        }
+    }
+    changed
+}
+
+/// Rounds every number to [`DIGITS`] significant digits, without its layout.
+fn rounded(value: &Value) -> Value {
+    let digits = DIGITS - 1;
+    match value {
+        // The text of a number can be parsed.
+        Value::Float(number) => {
+            let number = *number.value();
+            Value::Float(Formatted::new(format!("{number:.digits$e}").parse().unwrap_or(number)))
+        }
+        Value::Array(values) => Value::Array(values.iter().map(rounded).collect::<Array>()),
+        Value::Integer(number) => Value::from(*number.value()),
+        Value::Boolean(truth) => Value::from(*truth.value()),
+        Value::String(text) => Value::from(text.value().as_str()),
+        other => other.clone(),
+    }
+}
+
+/// Returns the text with the changed keys.
+fn with(text: &str, finger: i32, changed: &[Changed], comment: &str) -> Result<String, Failure> {
+    let mut document: DocumentMut = text.parse()?;
+    let fingers = table(document.as_table_mut(), "finger")?;
+    let own = table(fingers, &finger.to_string())?;
+    for Changed { section, key, value } in changed {
+        let section = table(own, section)?;
+        section.set_implicit(false);
+        let kept = section.key(key).and_then(|key| key.leaf_decor().prefix()?.as_str().map(without_mark));
+        section.insert(key, Item::Value(value.clone()));
+        if let Some(mut key) = section.key_mut(key) {
+            let kept = kept.unwrap_or_default();
+            let gap = if kept.is_empty() || kept.ends_with('\n') { "" } else { "\n" };
+            key.leaf_decor_mut().set_prefix(format!("{kept}{gap}{MARK}{comment}\n"));
+        }
+    }
+    let text = document.to_string();
+    parse_configuration(&text).map_err(|error| format!("the results do not fit the configuration file: {error}"))?;
+    Ok(text)
+}
+
+/// Removes the comments of earlier runs.
+fn without_mark(prefix: &str) -> String {
+    prefix.lines().filter(|line| !line.starts_with(MARK)).map(|line| format!("{line}\n")).collect()
+}
+
+/// Returns the table with this key, as a table of its own even if it was an inline one.
+fn table<'a>(parent: &'a mut Table, key: &str) -> Result<&'a mut Table, Failure> {
+    let entry = parent.entry(key).or_insert_with(|| {
+        let mut new = Table::new();
+        new.set_implicit(true);
+        Item::Table(new)
+    });
+    if let Item::Value(Value::InlineTable(inline)) = entry {
+        *entry = Item::Table(std::mem::take(inline).into_table());
+        if let Some(mut key) = parent.key_mut(key) {
+            key.leaf_decor_mut().clear();
+        }
+    }
+    let entry = parent.get_mut(key).ok_or("a table has vanished")?;
+    entry.as_table_mut().ok_or_else(|| format!("{key} is not a table in the configuration file").into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn changed(change: impl Fn(&mut ConfiguredFinger), text: &str) -> String {
+        let before = ConfiguredFinger::default();
+        let mut after = before.clone();
+        change(&mut after);
+        let [before, after] = [&before, &after].map(|finger| toml_edit::ser::to_document(finger).expect("a document"));
+        with(text, 2, &differences(&before, &after), "2026-11-22, motors: signs").expect("written")
+    }
+
+    #[test]
+    fn a_key_gets_a_comment_and_everything_else_stays() {
+        let text = "# my hand\n[hand]\nrate = 500 # slow\n\n[finger.2]\nport = \"simulated\"\n";
+        let new = changed(|finger| finger.motor.sign[1] = -1, text);
+        assert!(new.starts_with(text), "{new}");
+        let rest = "\n[finger.2.motor]\n# commission 2026-11-22, motors: signs\nsign = [1, -1, 1, 1]\n";
+        assert!(new.ends_with(rest), "{new}");
+        let again = changed(|finger| finger.motor.sign[2] = -1, &new);
+        assert_eq!(again.matches(MARK).count(), 1, "{again}");
+        assert!(again.contains("sign = [1, 1, -1, 1]"), "{again}");
+    }
+
+    #[test]
+    fn comments_of_the_user_and_inline_tables_are_kept() {
+        let text = "[finger.2.gauge]\n# from the data sheet\nzero = [1.0, 2.0, 3.0, 4.0]\n\n[finger.2.encoder]\n";
+        let new = changed(|finger| finger.gauge.zero = [200.123_456_7; 4], text);
+        assert!(new.contains("# from the data sheet\n# commission 2026"), "{new}");
+        assert!(new.contains("zero = [200.123, 200.123, 200.123, 200.123]"), "{new}");
+        let new = changed(|finger| finger.motor.sign[0] = -1, "finger.2 = { port = \"simulated\" }\n");
+        assert!(new.contains("port = \"simulated\"") && new.contains("sign = [-1, 1, 1, 1]"), "{new}");
+    }
+}

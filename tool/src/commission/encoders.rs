@@ -1,0 +1,140 @@
+//! Which encoder counts when a motor turns, in which direction, and how much.
+
+use super::desk::Desk;
+use super::machine::Refused;
+use super::outcome::Outcome;
+use super::person::{Act, Answer};
+use super::wrong::Wrong;
+use crate::failure::Failure;
+use sun2xp::calibration::{Obstacle, Task};
+
+/// Averaging time, s.
+const READING: f64 = 0.2;
+/// An encoder has moved if it shows more than this part of a turn.
+const MOVED: f64 = 0.05;
+/// Largest error of a turn by hand.
+const BY_HAND: f64 = 0.15;
+/// The usual ratios of true to configured counts: channels and edges that were or were not counted.
+const RATIOS: [(u32, u32); 4] = [(1, 2), (2, 1), (1, 4), (4, 1)];
+
+/// The answer of the encoders to one turn of a motor.
+struct Turn {
+    /// Index of the encoder that counted.
+    encoder: usize,
+    /// Turns by its configured counts, with the sign of the raw count.
+    turns: f64,
+}
+
+/// The step.
+pub fn encoders(desk: &mut Desk) -> Result<Outcome, Failure> {
+    let mut outcome = Outcome::default();
+    let mut order = [0; 4];
+    for motor in 1..=4 {
+        match turn(desk, motor)? {
+            Ok(Turn { encoder, turns }) => {
+                desk.person.show(&format!("encoder {}: {turns:+.2} turns", encoder + 1));
+                order[motor - 1] = encoder + 1;
+                judge(desk, &mut outcome, motor, encoder, turns);
+            }
+            Err(wrong) => {
+                desk.person.show(&wrong.to_string());
+                outcome.wrong(wrong);
+            }
+        }
+    }
+    if order.contains(&0) {
+        name_the_missing(&mut outcome, &mut order);
+    }
+    if order != [1, 2, 3, 4] && !order.contains(&0) {
+        // The signs and scales belong to encoders that are not at their motors yet.
+        outcome.wrong.retain(|wrong| !wrong.compensated());
+        outcome.wrong(exchanged(desk, order)?);
+    }
+    if outcome.passed() {
+        let list = |values: &[String]| values.join(" ");
+        let signs = desk.finger.encoder.sign.map(|sign| format!("{sign:+}"));
+        let counts = desk.finger.encoder.counts_per_revolution.map(|counts| counts.to_string());
+        outcome.found(format!(
+            "each encoder counts with its motor; signs {}, counts per turn {}",
+            list(&signs),
+            list(&counts)
+        ));
+    }
+    Ok(outcome)
+}
+
+/// A motor whose encoder does not count, beside an encoder that counts for no other motor: the order is complete if
+/// only one is missing.
+fn name_the_missing(outcome: &mut Outcome, order: &mut [usize; 4]) {
+    let missing: Vec<usize> = (0..4).filter(|&motor| order[motor] == 0).collect();
+    let unused: Vec<usize> = (1..=4).filter(|encoder| !order.contains(encoder)).collect();
+    if let ([motor], [encoder]) = (&missing[..], &unused[..]) {
+        order[*motor] = *encoder;
+        // The dead encoder is the one that no motor turned.
+        for wrong in &mut outcome.wrong {
+            if *wrong == Wrong::EncoderDead(motor + 1) {
+                *wrong = Wrong::EncoderDead(*encoder);
+            }
+        }
+    }
+}
+
+/// Asks for one turn of a motor, and reads which encoder followed.
+fn turn(desk: &mut Desk, motor: usize) -> Result<Result<Turn, Wrong>, Failure> {
+    let before = desk.machine.read(READING)?.encoders;
+    if desk.person.ask(Act::TurnMotor(motor))? == Answer::Cannot {
+        return Ok(Err(Wrong::MotorBlocked(motor)));
+    }
+    let out = desk.machine.read(READING)?.encoders;
+    desk.person.ask(Act::TurnMotorBack(motor))?;
+    let counts = desk.finger.encoder.counts_per_revolution;
+    let turns: [f64; 4] = std::array::from_fn(|encoder| (out[encoder] - before[encoder]) / f64::from(counts[encoder]));
+    let first = (0..4).max_by(|&one, &other| turns[one].abs().total_cmp(&turns[other].abs())).unwrap_or(0);
+    Ok(match turns[first] {
+        few if few.abs() < MOVED => Err(Wrong::EncoderDead(motor)),
+        turns => Ok(Turn { encoder: first, turns }),
+    })
+}
+
+/// Takes sign and scale from a turn that paid the tendon out.
+fn judge(desk: &mut Desk, outcome: &mut Outcome, motor: usize, encoder: usize, turns: f64) {
+    let number = encoder + 1;
+    let configured = &mut desk.finger.encoder;
+    let sign = if turns > 0.0 { -1 } else { 1 };
+    if sign != configured.sign[encoder] {
+        configured.sign[encoder] = sign;
+        if sign < 0 {
+            outcome.wrong(Wrong::EncoderReversed(number));
+        }
+    }
+    let near = |ratio: f64| (turns.abs() / ratio - 1.0).abs() <= BY_HAND;
+    if near(1.0) {
+        return;
+    }
+    let before = configured.counts_per_revolution[encoder];
+    match RATIOS.into_iter().find(|&(up, down)| near(f64::from(up) / f64::from(down))) {
+        Some((up, down)) => {
+            configured.counts_per_revolution[encoder] = before * up / down;
+            outcome.wrong(Wrong::EncoderScale(number, before * up / down, before));
+        }
+        None => outcome.wrong(Wrong::EncoderUnclear(motor, turns.abs())),
+    }
+}
+
+/// Names what is exchanged: only the encoders, or motors with their encoders. A push shows which encoder a command
+/// turns.
+fn exchanged(desk: &mut Desk, order: [usize; 4]) -> Result<Wrong, Failure> {
+    desk.machine.configure(&desk.finger)?;
+    let pushed = desk.machine.carry_out(Task::Signs);
+    desk.machine.off();
+    match pushed {
+        Err(Refused::Obstacle(Obstacle::SwappedMotor { motor, encoder }))
+            if order[usize::from(motor) - 1] == usize::from(encoder) =>
+        {
+            Ok(Wrong::EncodersExchanged(order))
+        }
+        Err(Refused::Failure(failure)) => Err(failure),
+        // The cables belong together: the command of each number turns the encoder of the same number.
+        Ok(_) | Err(Refused::Obstacle(_)) => Ok(Wrong::MotorsAndEncodersExchanged(order)),
+    }
+}

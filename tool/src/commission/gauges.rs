@@ -1,0 +1,136 @@
+//! Zero, scale, direction and noise of the gauges, by hanging known weights on the tendons.
+
+use super::desk::Desk;
+use super::line::Line;
+use super::outcome::Outcome;
+use super::person::{Act, Answer};
+use super::wrong::Wrong;
+use crate::failure::Failure;
+
+/// Averaging time, s.
+const READING: f64 = 1.0;
+/// Part of its configured scale that a gauge shows at least of a weight, unless it is dead.
+const LIVES: f64 = 0.2;
+/// Largest noise of a gauge, N rms.
+const NOISE: f64 = 0.3;
+/// Largest residual of the line as a part of the largest weight.
+const RESIDUAL: f64 = 0.02;
+/// A scale that differs by more than this is reported.
+const SCALE: f64 = 0.05;
+/// A zero that differs by more than this is reported, N.
+const ZERO: f64 = 5.0;
+
+/// What the gauges show with one tendon under its weights.
+struct Weighed {
+    /// Index of the gauge that shows the weights.
+    gauge: usize,
+    line: Line,
+}
+
+/// The step.
+pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
+    let mut outcome = Outcome::default();
+    desk.person.ask(Act::Loosen)?;
+    let empty = desk.machine.read(READING)?;
+    let (mut order, mut lines) = ([0; 4], [None; 4]);
+    for tendon in 1..=4 {
+        let Some(Weighed { gauge, line }) = weigh(desk, tendon, &empty.gauges)? else {
+            outcome.wrong(Wrong::GaugeDead(tendon));
+            desk.person.show(&Wrong::GaugeDead(tendon).to_string());
+            continue;
+        };
+        desk.person.show(&format!(
+            "gauge {}: {:.5} N per count, {:.3} N rms from the line",
+            gauge + 1,
+            line.slope,
+            line.residual
+        ));
+        order[tendon - 1] = gauge + 1;
+        lines[gauge] = Some(line);
+    }
+    name_the_missing(&mut outcome, &mut order);
+    if order != [1, 2, 3, 4] && !order.contains(&0) {
+        outcome.wrong(Wrong::GaugesExchanged(order));
+    }
+    for (gauge, line) in lines.iter().enumerate() {
+        if let Some(line) = line {
+            judge(desk, &mut outcome, gauge, line, empty.noise[gauge]);
+        }
+    }
+    if outcome.wrong.iter().any(|wrong| matches!(wrong, Wrong::GaugesExchanged(_))) {
+        outcome.wrong.retain(|wrong| !wrong.compensated());
+    }
+    for (gauge, line) in lines.iter().enumerate() {
+        if let Some(line) = line {
+            outcome.found(format!(
+                "gauge {}: {:.5} N per count, zero at {:.1} counts, residual {:.3} N, noise {:.3} N rms",
+                gauge + 1,
+                line.slope,
+                line.zero,
+                line.residual,
+                empty.noise[gauge] * line.slope.abs()
+            ));
+        }
+    }
+    Ok(outcome)
+}
+
+/// If only one gauge did not answer, it is the one that answered to no other tendon.
+fn name_the_missing(outcome: &mut Outcome, order: &mut [usize; 4]) {
+    let missing: Vec<usize> = (0..4).filter(|&tendon| order[tendon] == 0).collect();
+    let unused: Vec<usize> = (1..=4).filter(|gauge| !order.contains(gauge)).collect();
+    if let ([tendon], [gauge]) = (&missing[..], &unused[..]) {
+        order[*tendon] = *gauge;
+        outcome.wrong.retain(|wrong| *wrong != Wrong::GaugeDead(tendon + 1));
+        outcome.wrong(Wrong::GaugeDead(*gauge));
+    }
+}
+
+/// Hangs every weight on one tendon. Returns `None` if no gauge shows it.
+fn weigh(desk: &mut Desk, tendon: usize, empty: &[f64; 4]) -> Result<Option<Weighed>, Failure> {
+    let mut readings = vec![(0.0, *empty)];
+    for newton in desk.weights.clone() {
+        if desk.person.ask(Act::Hang(tendon, newton))? == Answer::Cannot {
+            break;
+        }
+        readings.push((newton, desk.machine.read(READING)?.gauges));
+    }
+    desk.person.ask(Act::Unhang(tendon))?;
+    let Some(&(heaviest, last)) = readings.last() else { return Ok(None) };
+    let scale = desk.finger.gauge.newton_per_count;
+    let shown: [f64; 4] = std::array::from_fn(|gauge| ((last[gauge] - empty[gauge]) * scale[gauge]).abs());
+    let gauge = (0..4).max_by(|&one, &other| shown[one].total_cmp(&shown[other])).unwrap_or(0);
+    if heaviest == 0.0 || shown[gauge] < LIVES * heaviest {
+        return Ok(None);
+    }
+    let points: Vec<(f64, f64)> = readings.iter().map(|&(newton, counts)| (counts[gauge], newton)).collect();
+    Ok(Line::through(&points).map(|line| Weighed { gauge, line }))
+}
+
+/// Takes scale and zero of a gauge from its line. `noise` is in counts.
+fn judge(desk: &mut Desk, outcome: &mut Outcome, gauge: usize, line: &Line, noise: f64) {
+    let number = gauge + 1;
+    let configured = &mut desk.finger.gauge;
+    let heaviest = desk.weights.last().copied().unwrap_or_default();
+    let noise = noise * line.slope.abs();
+    if noise > NOISE {
+        outcome.wrong(Wrong::GaugeNoise(number, noise));
+    } else if line.residual > RESIDUAL * heaviest {
+        outcome.wrong(Wrong::GaugeNotLinear(number, line.residual));
+    }
+    if line.slope < 0.0 && configured.newton_per_count[gauge] > 0.0 {
+        outcome.wrong(Wrong::GaugeReversed(number));
+    }
+    let ratio = (configured.newton_per_count[gauge] / line.slope).abs();
+    if (ratio - 1.0).abs() > SCALE {
+        outcome.wrong(Wrong::GaugeScale(number, ratio));
+    }
+    // The zero of a reversed gauge is at the other end of its range.
+    let offset = (line.zero - configured.zero[gauge]) * line.slope;
+    let known = configured.zero[gauge] != 0.0;
+    if known && offset.abs() > ZERO && line.slope > 0.0 {
+        outcome.wrong(Wrong::GaugeZero(number, offset));
+    }
+    configured.newton_per_count[gauge] = line.slope;
+    configured.zero[gauge] = line.zero;
+}

@@ -1,0 +1,194 @@
+//! A finger at its port.
+
+use super::machine::{AtRest, BoardSeen, Machine, Reading, Refused};
+use crate::failure::Failure;
+use crate::print::Progress;
+use crate::{bound, doctor};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+use sun2xp::board::protocol::{Reason, Status};
+use sun2xp::board::{Link, LinkError, Terms};
+use sun2xp::calibration::{self, Findings, Task};
+use sun2xp::hand::{Fingers, Hand, HandError, SimulatedHand, find_boards, ports};
+use sun2xp::model::FingerNumber;
+use sun2xp::model::configuration::{BoardNumber, Configuration, ConfiguredFinger};
+use sun2xp::realtime::now;
+
+/// How long to wait for an answer of the board, ns.
+const HELLO: u64 = 1_500_000_000;
+/// Duration of the average of a spring, and interval of its samples.
+const RESTING: Duration = Duration::from_millis(600);
+const SAMPLING: Duration = Duration::from_millis(5);
+/// Settling time before such an average.
+const SETTLING: Duration = Duration::from_millis(1500);
+/// Duration of the examination of the computer.
+const EXAMINATION: Duration = Duration::from_secs(3);
+
+/// One finger of a configured hand. The hand is open only while it is needed.
+pub struct HandMachine {
+    configuration: Configuration,
+    finger: FingerNumber,
+    hand: Option<Hand>,
+}
+
+impl HandMachine {
+    /// The other fingers of the hand are left alone.
+    pub fn new(mut configuration: Configuration, finger: FingerNumber) -> Self {
+        configuration.hand.fingers = Fingers::one(finger);
+        Self { configuration, finger, hand: None }
+    }
+
+    /// Opens the finger with its motors off, if it is not open.
+    fn limp(&mut self) -> Result<&Hand, HandError> {
+        let hand = match self.hand.take() {
+            Some(hand) => hand,
+            None => Hand::open_limp(self.configuration.clone(), None, Fingers::ALL)?,
+        };
+        Ok(self.hand.insert(hand))
+    }
+
+    fn run(&mut self, task: Task) -> Result<Findings, Refused> {
+        let finger = self.finger.get();
+        let what = match task {
+            Task::Signs => "turning the motors",
+            Task::Zero => "zeroing",
+            Task::Identify => "identifying",
+        };
+        let shown = Progress::new(format!("finger {finger}, {what}"), 1000).with_every_name();
+        let progress = |progress: calibration::Progress| {
+            shown.now(progress.step.to_string());
+            shown.reach((progress.part * 1000.0) as u64);
+        };
+        let hand = self.limp()?;
+        let found = match task {
+            Task::Signs => hand.find_signs(finger, progress),
+            Task::Zero => hand.zero(finger, progress),
+            Task::Identify => hand.identify(finger, progress),
+        };
+        let calibrated = hand.calibrated(finger)?;
+        match found {
+            Ok(found) => {
+                self.configuration.fingers[self.finger.index()] = calibrated;
+                Ok(found)
+            }
+            Err(HandError::Calibration { obstacle, .. }) => Err(Refused::Obstacle(obstacle)),
+            Err(error) => Err(error.into()),
+        }
+    }
+}
+
+impl Machine for HandMachine {
+    fn board(&mut self) -> Result<BoardSeen, Failure> {
+        self.off();
+        let index = self.finger.index();
+        let fingers = Fingers::one(self.finger);
+        let mut configuration = self.configuration.clone();
+        find_boards(&mut configuration, fingers)?;
+        let configured = &configuration.fingers[index];
+        let simulated = SimulatedHand::start(&configuration, fingers)?;
+        let found = ports(&configuration, fingers, &simulated);
+        let (port, _) = found.first().ok_or("the finger has no port")?;
+        let mut link = Link::open(port, configured.baud)?;
+        let terms = Terms::new(&configuration.hand, configured);
+        let address = configuration.address(self.finger);
+        match link.shake_hands(address, &terms, now() + HELLO) {
+            Ok((identity, _)) => {
+                let number = BoardNumber(identity.unique_number);
+                let [major, minor, patch] = identity.firmware.0;
+                let name = format!("board {number} with firmware {major}.{minor}.{patch}, address {address}");
+                Ok(BoardSeen { name, ..BoardSeen::default() })
+            }
+            Err(LinkError::Refused { address, refused }) if refused.reason == Reason::Fault => {
+                let faults = Status(refused.detail);
+                Ok(BoardSeen {
+                    name: String::new(),
+                    emergency_stop: faults.has(Status::EMERGENCY_STOP),
+                    supply_fault: faults.has(Status::SUPPLY_FAULT),
+                    refusal: Some(LinkError::Refused { address, refused }.to_string()),
+                })
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn configure(&mut self, finger: &ConfiguredFinger) -> Result<(), Failure> {
+        if self.configuration.fingers[self.finger.index()] != *finger {
+            self.off();
+            self.configuration.fingers[self.finger.index()] = finger.clone();
+        }
+        Ok(())
+    }
+
+    fn read(&mut self, seconds: f64) -> Result<Reading, Failure> {
+        let finger = self.finger.get();
+        let hand = self.limp()?;
+        // The first cycles of an open hand have no measurement yet.
+        sleep(Duration::from_millis(100));
+        let first = hand.record(finger, None)?.newest;
+        sleep(Duration::from_secs_f64(seconds));
+        let kept = hand.record(finger, None)?;
+        let first = first.max(kept.oldest);
+        // The box may overwrite the oldest cycles meanwhile.
+        let cycles: Vec<_> =
+            (first..=kept.newest).filter_map(|cycle| hand.record(finger, Some(cycle)).ok()?.record.feedback).collect();
+        let number = cycles.len() as f64;
+        if cycles.is_empty() {
+            return Err("the board has sent no measurement".into());
+        }
+        let mean = |of: &dyn Fn(usize) -> f64| (0..cycles.len()).map(of).sum::<f64>() / number;
+        let encoders = std::array::from_fn(|part| mean(&|cycle| f64::from(cycles[cycle].motor_counts[part])));
+        let gauges: [f64; 4] = std::array::from_fn(|part| mean(&|cycle| f64::from(cycles[cycle].gauge_counts[part])));
+        let square = |cycle: usize, part: usize| (f64::from(cycles[cycle].gauge_counts[part]) - gauges[part]).powi(2);
+        let noise = std::array::from_fn(|part| mean(&|cycle| square(cycle, part)).sqrt());
+        Ok(Reading { encoders, gauges, noise })
+    }
+
+    fn carry_out(&mut self, task: Task) -> Result<Findings, Refused> {
+        self.run(task)
+    }
+
+    fn at_rest(&mut self) -> Result<AtRest, Failure> {
+        let finger = self.finger.get();
+        let hand = self.limp()?;
+        sleep(SETTLING);
+        let (mut sum, mut number, began) = (AtRest::default(), 0.0, Instant::now());
+        let add = |sum: &mut [f64], values: &[f64]| sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+        while began.elapsed() < RESTING {
+            let tip = hand.fingertip(finger)?;
+            add(&mut sum.tip, &tip.tip);
+            add(&mut sum.force, &tip.force);
+            add(&mut sum.tensions, &tip.tensions);
+            let cycle = hand.report(finger)?.cycle;
+            add(&mut sum.intended, cycle.desired_tensions.as_slice());
+            add(&mut sum.torques, cycle.motor_torques.as_slice());
+            number += 1.0;
+            sleep(SAMPLING);
+        }
+        Ok(AtRest {
+            tip: sum.tip.map(|value| value / number),
+            force: sum.force.map(|value| value / number),
+            tensions: sum.tensions.map(|value| value / number),
+            intended: sum.intended.map(|value| value / number),
+            torques: sum.torques.map(|value| value / number),
+        })
+    }
+
+    fn spring(&mut self) -> Result<(), Refused> {
+        self.off();
+        self.hand = Some(Hand::open(self.configuration.clone())?);
+        Ok(())
+    }
+
+    fn off(&mut self) {
+        self.hand = None;
+    }
+
+    fn bound(&mut self) -> Result<f64, Failure> {
+        bound::of_finger(&self.configuration, self.finger)
+    }
+
+    fn computer(&mut self) -> Result<Vec<String>, Failure> {
+        self.off();
+        Ok(doctor::complaints(&self.configuration, EXAMINATION)?)
+    }
+}

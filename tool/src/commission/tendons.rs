@@ -1,0 +1,76 @@
+//! Stiffness of the tendons and friction of the finger.
+
+use super::desk::Desk;
+use super::machine::Refused;
+use super::outcome::Outcome;
+use super::person::Act;
+use super::wrong::Wrong;
+use super::zeros::zero;
+use crate::failure::Failure;
+use sun2xp::calibration::{Findings, Identified, Task};
+
+/// A motor whose torque is off by more than this part is reported.
+const TORQUE: f64 = 0.15;
+/// A gauge whose gain relative to the others is off by more than this part since its weights is reported.
+const GAIN: f64 = 0.05;
+
+/// The step.
+pub fn tendons(desk: &mut Desk) -> Result<Outcome, Failure> {
+    let mut outcome = Outcome::default();
+    desk.person.ask(Act::LetGo)?;
+    desk.machine.configure(&desk.finger)?;
+    let found = match desk.machine.carry_out(Task::Identify) {
+        Ok(Findings::Identified(found)) => found,
+        Ok(other) => return Err(format!("the identification returned {other:?}").into()),
+        Err(Refused::Obstacle(obstacle)) => {
+            outcome.wrong(Wrong::Refused(obstacle.to_string()));
+            return Ok(outcome);
+        }
+        Err(Refused::Failure(failure)) => return Err(failure),
+    };
+    Findings::Identified(found).apply(&mut desk.finger);
+    report(&mut outcome, &found);
+    let vitals = &mut desk.vitals;
+    vitals.tendon_stiffness = Some(found.tendon_stiffness.into());
+    vitals.motor_friction = Some(found.motor_coulomb.into());
+    vitals.conduit_friction = Some(found.conduit.into());
+    vitals.pulley_friction = Some(found.pulley.into());
+    vitals.joint_friction = Some(found.joint_coulomb.into());
+    vitals.motor_ratio = Some(found.motor_ratio.into());
+    vitals.newton_per_count = Some(desk.finger.gauge.newton_per_count);
+    vitals.residual = Some(found.travel_residual);
+    // The stretch of the tendons is known only now, and the zeros depend on it.
+    zero(desk, &mut outcome)?;
+    Ok(outcome)
+}
+
+fn report(outcome: &mut Outcome, found: &Identified) {
+    let list = |values: &[f64], digits: usize| {
+        values.iter().map(|value| format!("{value:.digits$}")).collect::<Vec<_>>().join(" ")
+    };
+    outcome.found(format!(
+        "tendon stiffness {} N/cm, residual of the travel {:.1} um rms",
+        list(found.tendon_stiffness.as_slice(), 0),
+        found.travel_residual * 1e4
+    ));
+    outcome.found(format!("friction of the motors {} N cm", list(found.motor_coulomb.as_slice(), 3)));
+    outcome.found(format!(
+        "friction of conduits {}, of pulleys {}, of joints {} N cm",
+        list(found.conduit.as_slice(), 3),
+        list(found.pulley.as_slice(), 3),
+        list(found.joint_coulomb.as_slice(), 3)
+    ));
+    outcome.found(format!("gauge gains, new / by weights: {}", list(found.gauge_gain.as_slice(), 3)));
+    outcome.found(format!("torque of the motors, true / commanded: {}", list(found.motor_ratio.as_slice(), 2)));
+    for motor in 0..4 {
+        if (found.motor_ratio[motor] - 1.0).abs() > TORQUE {
+            outcome.wrong(Wrong::MotorTorque(motor + 1, found.motor_ratio[motor]));
+        }
+        if (found.gauge_gain[motor] - 1.0).abs() > GAIN {
+            outcome.wrong(Wrong::GaugeScale(motor + 1, 1.0 / found.gauge_gain[motor]));
+        }
+    }
+    if found.moment_arms.is_some() {
+        outcome.found("the moment arms differ from geometry.r: the measured ones are stored");
+    }
+}

@@ -1,0 +1,156 @@
+//! The person in front of a terminal, or a script at standard input.
+
+use super::outcome::Outcome;
+use super::person::{Act, Answer, Person};
+use super::progress_file::Done;
+use super::step::Step;
+use crate::failure::Failure;
+use crate::monitor::words::wrap;
+use crate::print::{Look, Screen, painted};
+use std::collections::BTreeMap;
+use std::io::{self, BufRead, IsTerminal, Write};
+use std::path::Path;
+use sun2xp::model::ShownPath;
+use sun2xp::model::configuration::ConfiguredFinger;
+
+/// Width of the text where the output is not a terminal, columns.
+const WIDTH: usize = 100;
+
+/// Why a commissioning ends early without an error of the hand.
+pub const LEFT: &str = "left at your request";
+
+/// Prompts on standard output, and answers on standard input.
+pub struct Terminal {
+    screen: Screen,
+    /// Every request counts as done at once.
+    yes: bool,
+    /// The steps of this session, for the numbers in the headings.
+    steps: Vec<Step>,
+}
+
+/// An answer to a prompt.
+enum Reply {
+    Enter,
+    No,
+}
+
+impl Terminal {
+    pub fn new(yes: bool, steps: Vec<Step>) -> Self {
+        Self { screen: Screen::stdout(), yes, steps }
+    }
+
+    /// Prints what is done already, and what is left.
+    pub fn heading(&self, finger: i32, file: &Path, done: &BTreeMap<Step, Done>) -> Result<(), Failure> {
+        self.line(Look::Title, &format!("Commissioning finger {finger} of {}", ShownPath(file)));
+        for (step, Done { when, .. }) in done.iter().filter(|(step, _)| !self.steps.contains(step)) {
+            self.line(Look::Dim, &format!("  done   {step}, {when}"));
+        }
+        if self.steps.is_empty() {
+            self.line(Look::Plain, "  Every step has passed. --step STEP does one of them again, --again all of them.");
+        }
+        Ok(())
+    }
+
+    fn line(&self, look: Look, text: &str) {
+        // Without a reader there is nobody to show it to, and the next question fails.
+        let _ = writeln!(io::stdout(), "{}", painted(&self.screen, look, text));
+    }
+
+    /// Prints a text whose further lines are below its first one.
+    fn paragraph(&self, look: Look, mark: &str, text: &str) {
+        let width = self.screen.width.unwrap_or(WIDTH).saturating_sub(mark.len());
+        for (number, line) in wrap(text, width).iter().enumerate() {
+            let mark = if number == 0 { mark } else { &" ".repeat(mark.len()) };
+            self.line(look, &format!("{mark}{line}"));
+        }
+    }
+
+    /// Prints a question, and reads a line.
+    fn reply(&self, question: &str, no: &str) -> Result<Reply, Failure> {
+        let width = self.screen.width.unwrap_or(WIDTH).saturating_sub(4);
+        let lines: Vec<String> = match question.split_once('\n') {
+            // A table below a text keeps its lines.
+            Some((text, table)) => wrap(text, width).into_iter().chain(table.lines().map(String::from)).collect(),
+            None => wrap(question, width),
+        };
+        let keys = format!("[Enter: done; n: {no}; q: leave]");
+        let mut output = io::stdout().lock();
+        write!(output, "  > {}\n    {} ", lines.join("\n    "), painted(&self.screen, Look::Dim, &keys))?;
+        if self.yes {
+            writeln!(output, "(--yes)")?;
+            return Ok(Reply::Enter);
+        }
+        if !io::stdin().is_terminal() {
+            // A script reads whole lines.
+            writeln!(output)?;
+        }
+        output.flush()?;
+        drop(output);
+        loop {
+            let mut line = String::new();
+            if io::stdin().lock().read_line(&mut line)? == 0 {
+                return Err("standard input ended at a question: run the tool in a terminal, or with --yes if \
+                            everything is done by a jig"
+                    .into());
+            }
+            match line.trim() {
+                "" | "y" | "yes" => return Ok(Reply::Enter),
+                "n" | "no" => return Ok(Reply::No),
+                "q" | "quit" => return Err(LEFT.into()),
+                _ => self.line(Look::Dim, "    Enter, n or q"),
+            }
+        }
+    }
+}
+
+impl Person for Terminal {
+    fn begin(&mut self, step: Step, _: &ConfiguredFinger) -> Result<(), Failure> {
+        let number = self.steps.iter().position(|&other| other == step).map_or(0, |place| place + 1);
+        self.line(Look::Title, &format!("\nStep {number} of {}: {step}", self.steps.len()));
+        self.paragraph(Look::Plain, "  does   ", step.does());
+        self.paragraph(Look::Plain, "  expect ", step.expect());
+        Ok(())
+    }
+
+    fn ask(&mut self, act: Act) -> Result<Answer, Failure> {
+        let no = match act {
+            Act::PressEmergencyStop => "there is none",
+            Act::TurnMotor(_) => "it does not turn",
+            _ => "I cannot",
+        };
+        match self.reply(act.text().trim_end(), no)? {
+            Reply::Enter => Ok(Answer::Done),
+            Reply::No => Ok(Answer::Cannot),
+        }
+    }
+
+    fn show(&mut self, line: &str) {
+        self.line(Look::Dim, &format!("    {line}"));
+    }
+
+    fn conclude(&mut self, outcome: &Outcome) {
+        for line in &outcome.found {
+            self.paragraph(Look::Plain, "  found  ", line);
+        }
+        for wrong in &outcome.wrong {
+            let (look, word) = if wrong.compensated() { (Look::Warning, "note ") } else { (Look::Bad, "WRONG") };
+            self.paragraph(look, &format!("  {word:<6} "), &wrong.to_string());
+            let remedy = wrong.remedy();
+            if !remedy.is_empty() {
+                self.paragraph(Look::Plain, "         ", &format!("{remedy}."));
+            }
+        }
+        match outcome.passed() {
+            true => self.line(Look::Good, "  passed"),
+            false => self.line(Look::Bad, "  not passed"),
+        }
+    }
+
+    fn again(&mut self, step: Step) -> Result<bool, Failure> {
+        if self.yes {
+            return Ok(false);
+        }
+        let question = format!("Remove the cause, then do the step {step} again.");
+        Ok(matches!(self.reply(&question, "end here")?, Reply::Enter))
+    }
+}

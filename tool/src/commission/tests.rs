@@ -1,0 +1,6 @@
+//! Commissionings of fingers in memory, whose person does what the tool asks for.
+
+mod bench;
+mod finger;
+mod kinds;
+mod sessions;

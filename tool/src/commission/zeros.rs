@@ -1,0 +1,80 @@
+//! Zeros of encoders and gauges, and the tension of each tendon when the finger has become a spring.
+
+use super::desk::Desk;
+use super::machine::Refused;
+use super::outcome::Outcome;
+use super::person::Act;
+use super::wrong::Wrong;
+use crate::failure::Failure;
+use sun2xp::calibration::{Findings, Task, Zeros};
+use sun2xp::model::configuration::ZeroingMethod;
+
+/// Permitted tension at rest as a part of the intended one.
+const TAUT: (f64, f64) = (0.75, 1.3);
+
+/// The step.
+pub fn zeros(desk: &mut Desk) -> Result<Outcome, Failure> {
+    let mut outcome = Outcome::default();
+    if zero(desk, &mut outcome)? {
+        tautness(desk, &mut outcome)?;
+    }
+    Ok(outcome)
+}
+
+/// Zeros the finger by its method. Returns whether it was done.
+pub fn zero(desk: &mut Desk, outcome: &mut Outcome) -> Result<bool, Failure> {
+    let at_pose = desk.finger.zeroing_method() == ZeroingMethod::Pose;
+    desk.person.ask(if at_pose { Act::HoldPose(desk.finger.zeroing.pose_degrees) } else { Act::LetGo })?;
+    desk.machine.configure(&desk.finger)?;
+    let zeros = match desk.machine.carry_out(Task::Zero) {
+        Ok(Findings::Zeros(zeros)) => zeros,
+        Ok(other) => return Err(format!("the zeroing returned {other:?}").into()),
+        Err(Refused::Obstacle(obstacle)) => {
+            outcome.wrong(Wrong::Refused(obstacle.to_string()));
+            return Ok(false);
+        }
+        Err(Refused::Failure(failure)) => return Err(failure),
+    };
+    note(desk, outcome, &zeros);
+    if at_pose {
+        desk.person.ask(Act::LetGo)?;
+    }
+    Ok(true)
+}
+
+fn note(desk: &mut Desk, outcome: &mut Outcome, zeros: &Zeros) {
+    let before = desk.finger.gauge.zero;
+    Findings::Zeros(*zeros).apply(&mut desk.finger);
+    let scale = desk.finger.gauge.newton_per_count;
+    let drift: [f64; 4] = std::array::from_fn(|gauge| (zeros.gauge[gauge] - before[gauge]) * scale[gauge]);
+    let list = |values: &[f64], digits: usize| {
+        values.iter().map(|value| format!("{value:+.digits$}")).collect::<Vec<_>>().join(" ")
+    };
+    outcome.found(format!("encoder zeros {:?}", zeros.encoder));
+    outcome.found(format!("gauge zeros, change since the last ones: {} N", list(&drift, 2)));
+    if let Some(range) = zeros.range_error {
+        let degrees = range.map(f64::to_degrees);
+        let differences = list(degrees.as_slice(), 2);
+        outcome.found(format!("ranges between the stops, measured minus configured: {differences} degrees"));
+    }
+    desk.vitals.encoder_zero = Some(zeros.encoder);
+    desk.vitals.gauge_zero = Some(zeros.gauge);
+}
+
+/// Compares the tension of each tendon at rest with the intended one.
+fn tautness(desk: &mut Desk, outcome: &mut Outcome) -> Result<(), Failure> {
+    let rest = desk.machine.at_rest()?;
+    for (tendon, (found, intended)) in (1..).zip(rest.tensions.into_iter().zip(rest.intended)) {
+        let part = found / intended;
+        outcome.found(format!(
+            "tendon {tendon}: {found:.2} N at rest, {:.0} % of the intended {intended:.2} N",
+            part * 100.0
+        ));
+        if !(TAUT.0..=TAUT.1).contains(&part) {
+            outcome.wrong(Wrong::TendonTension(tendon, part));
+        }
+    }
+    desk.vitals.tensions = Some(rest.tensions);
+    desk.vitals.torques = Some(rest.torques);
+    Ok(())
+}
