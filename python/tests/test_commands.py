@@ -43,7 +43,8 @@ def test_a_group_moves_two_fingers_and_leaves_the_third(hand):
 
 def test_a_path_is_followed_to_its_end(hand):
     hand.send_position(1, HOME)
-    hand.wait(1, timeout=30)
+    # A path begins with the rates that the set point has at that moment.
+    hand.wait(1, "settled", timeout=30)
     times = numpy.linspace(0.5, 2.0, 4)
     poses = HOME + 0.2 * numpy.sin(numpy.outer(times, [0.0, 1.0, 1.5]))
     stiffness = numpy.tile(numpy.diag([3.0, 3.0, 1.0]), (4, 1, 1))

@@ -19,6 +19,9 @@ from geometry_msgs.msg import PointStamped
 from std_msgs.msg import Float64MultiArray
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+#: The environment of nodes that the node of the other tests does not see. Its topics have the same names.
+APART = {"ROS_DOMAIN_ID": str(int(os.environ.get("ROS_DOMAIN_ID", 0)) % 100 + 1)}
+
 JOINTS = [f"{PREFIX}finger{finger}_joint{joint}" for finger in (1, 2, 3) for joint in (0, 1, 2)]
 
 
@@ -271,6 +274,31 @@ def test_a_hand_that_cannot_be_opened_ends_the_node_with_the_reason(ros, paramet
     assert process.returncode == 1 and "the hand was not opened" in said and text in said and "Traceback" not in said
 
 
+def test_a_hand_with_one_finger_has_only_its_topics(ros, tmp_path):
+    file = tmp_path / "hand.toml"
+    file.write_text("[hand]\nfingers = [2]\n[finger]\nport = 'simulated'\n")
+    program = (
+        "import rclpy\n"
+        "from sensor_msgs.msg import JointState\n"
+        "rclpy.init()\n"
+        "planner, states = rclpy.create_node('planner'), []\n"
+        "planner.create_subscription(JointState, 'joint_states', states.append, 10)\n"
+        "while not states:\n"
+        "    rclpy.spin_once(planner)\n"
+        "print(*states[0].name, *sorted(name for name, _ in planner.get_topic_names_and_types()))\n"
+    )
+    process = start(f"configuration:={file}", **APART)
+    try:
+        options = dict(env={**os.environ, **APART}, timeout=LONGEST, check=True, capture_output=True, text=True)
+        said = subprocess.run([sys.executable, "-c", program], **options).stdout.split()
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=LONGEST)
+    assert said[:3] == ["finger2_joint0", "finger2_joint1", "finger2_joint2"]
+    fingers = [topic for topic in said if topic.startswith("/finger")]
+    assert fingers == ["/finger2/stiffness", "/finger2/target", "/finger2/wrench"]
+
+
 def test_the_example_of_the_page_moves_a_finger(ros):
     page = (pathlib.Path(__file__).parents[2] / "docs/ros.md").read_text()
     (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
@@ -281,11 +309,9 @@ def test_the_example_of_the_page_moves_a_finger(ros):
         "while not states or abs(states[-1].position[0] - 0.1) > 0.02:\n"
         "    rclpy.spin_once(planner)\n"
     )
-    # Beside the node of the other tests, whose topics have the same names.
-    apart = {"ROS_DOMAIN_ID": str(int(os.environ.get("ROS_DOMAIN_ID", 0)) % 100 + 1)}
-    process = start("simulated:=nominal", **apart)
+    process = start("simulated:=nominal", **APART)
     try:
-        subprocess.run([sys.executable, "-c", example], env={**os.environ, **apart}, timeout=LONGEST, check=True)
+        subprocess.run([sys.executable, "-c", example], env={**os.environ, **APART}, timeout=LONGEST, check=True)
     finally:
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=LONGEST)
