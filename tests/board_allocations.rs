@@ -41,6 +41,46 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+/// Hardware of a program, every second exchange of which fails.
+struct Failing;
+
+impl FingerIo for Failing {
+    fn start(&mut self, _: &IoTerms) -> std::io::Result<IoSample> {
+        Ok(IoSample { tensions: [5.0; 4], ..Default::default() })
+    }
+
+    fn exchange(&mut self, command: &IoCommand) -> std::io::Result<IoSample> {
+        match command.number.is_multiple_of(2) {
+            true => Err(std::io::Error::from_raw_os_error(libc::EIO)),
+            false => Ok(IoSample { tensions: [6.0; 4], encoders: [7; 4], ..Default::default() }),
+        }
+    }
+
+    fn stop(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_cycle_with_hardware_of_the_program_allocates_nothing() {
+    let mut configuration = Configuration::default();
+    configuration.hand.watchdog_ms = 500;
+    let board = IoBoard::new(&configuration, FingerNumber::ONE, Box::new(Failing)).unwrap();
+    let mut link = Link::new(Connection::from(board));
+    let terms = Terms::new(&configuration.hand, &ConfiguredFinger::default());
+    link.shake_hands(1, &terms, now() + 2000 * MS).unwrap();
+
+    let before = REQUESTS.get();
+    let mut answered = 0;
+    for sequence in 0..20 {
+        let command = Command { toggle: true, enable: true, torques: [100; 4] };
+        link.send(&[OutgoingCommand { address: 1, sequence, command }]).unwrap();
+        answered += usize::from(link.receive(now() + MS).unwrap().is_some());
+    }
+    assert!(link.stop(1, now() + MS).unwrap());
+    assert_eq!((REQUESTS.get() - before, answered), (0, 10));
+}
+
 #[test]
 fn a_cycle_allocates_nothing_whether_answered_or_not() {
     let board = SimulatedBoard::new(&Configuration::default(), &[FingerNumber::ONE]).unwrap();
