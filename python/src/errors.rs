@@ -54,7 +54,9 @@ impl Refusal {
             Self::Argument(_) => "Refused",
             Self::Forked | Self::Recording(_) | Self::Defect => "Error",
             Self::Hand(error) => match error {
-                HandError::Faulted { .. } | HandError::FaultedAtOpening { .. } => "Fault",
+                HandError::Faulted { .. } | HandError::FaultedAtOpening { .. } | HandError::WrongWiring { .. } => {
+                    "Fault"
+                }
                 HandError::Configuration(ConfigurationError::Permanent { .. }) => "Refused",
                 HandError::Configuration(_) | HandError::NotStored { .. } => "ConfigurationError",
                 HandError::NotThereInTime(_) => "TimedOut",

@@ -108,6 +108,7 @@ fn found<'py>(py: Python<'py>, findings: &Findings) -> PyResult<Bound<'py, PyAny
             fields.set_item("gauge", signs.gauge)?;
             records::record(py, "Signs", &fields)
         }
+        Findings::RightWiring => Ok(py.None().into_bound(py)),
         Findings::Zeros(zeros) => {
             fields.set_item("encoder", zeros.encoder)?;
             fields.set_item("gauge", vector(py, &zeros.gauge))?;

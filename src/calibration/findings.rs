@@ -10,6 +10,8 @@ use nalgebra::{Matrix3x4, Vector3, Vector4};
 pub enum Findings {
     /// Results of [`Task::Signs`](super::Task::Signs).
     Signs(Signs),
+    /// [`Task::SelfTest`](super::Task::SelfTest) has found nothing wrong.
+    RightWiring,
     /// Results of [`Task::Zero`](super::Task::Zero).
     Zeros(Zeros),
     /// Results of [`Task::Identify`](super::Task::Identify).
@@ -126,6 +128,7 @@ impl Findings {
                     *scale = scale.abs() * f64::from(sign);
                 }
             }
+            Self::RightWiring => {}
             Self::Zeros(zeros) => {
                 finger.encoder.zero = zeros.encoder;
                 finger.gauge.zero = zeros.gauge;

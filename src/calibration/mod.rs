@@ -12,6 +12,7 @@ mod instruments;
 mod joint_guide;
 mod obstacle;
 mod routine;
+mod self_test;
 mod signs;
 mod step;
 mod stop_search;

@@ -169,6 +169,108 @@ pub enum Obstacle {
         /// The encoder's number, 1 to 4.
         encoder: u8,
     },
+    /// A motor turns another motor's encoder and pulls that motor's tendon.
+    #[error("motors {first} and {second} are swapped: the board drives each in place of the other. Swap their cables")]
+    SwappedMotors {
+        /// The motor's number, 1 to 4.
+        first: u8,
+        /// The other motor's number.
+        second: u8,
+    },
+    /// A motor pulls its own tendon, but another encoder moves.
+    #[error("encoders {first} and {second} are swapped: each counts the other motor. Swap their cables")]
+    SwappedEncoders {
+        /// The encoder's number, 1 to 4.
+        first: u8,
+        /// The other encoder's number.
+        second: u8,
+    },
+    /// A motor pulls another tendon.
+    #[error(
+        "tendons {first} and {second} are swapped: motor {first} pulls tendon {second}, and motor {second} pulls tendon \
+         {first}. Lead each tendon to its motor, or swap both motors with their encoders"
+    )]
+    SwappedTendons {
+        /// The tendon's number, 1 to 4.
+        first: u8,
+        /// The other tendon's number.
+        second: u8,
+    },
+    /// Two gauges show each other's tension.
+    #[error("gauges {first} and {second} are swapped: each shows the tension of the other tendon. Swap their cables")]
+    SwappedGauges {
+        /// The gauge's number, 1 to 4.
+        first: u8,
+        /// The other gauge's number.
+        second: u8,
+    },
+    /// A motor unwinds its tendon instead of pulling it.
+    #[error(
+        "motor {motor} turns backwards: it unwinds its tendon when it should pull. Swap the two wires of the motor, or \
+         change its entries in motor.sign and encoder.sign"
+    )]
+    ReversedMotor {
+        /// The motor's number, 1 to 4.
+        motor: u8,
+    },
+    /// An encoder counts backwards.
+    #[error(
+        "encoder {encoder} counts backwards: its count falls while its motor pulls the tendon in, or the reverse of \
+         encoder.sign. Swap its two channels, or change its entry in encoder.sign"
+    )]
+    ReversedEncoder {
+        /// The encoder's number, 1 to 4.
+        encoder: u8,
+    },
+    /// A gauge falls while its tendon is pulled.
+    #[error(
+        "gauge {gauge} is reversed: its reading falls while the tension rises. Swap its two signal wires, or change the \
+         sign of its entry in gauge.newton_per_count"
+    )]
+    ReversedGauge {
+        /// The gauge's number, 1 to 4.
+        gauge: u8,
+    },
+    /// A motor pulls, but its encoder does not count.
+    #[error(
+        "encoder {encoder} does not count although motor {encoder} pulls its tendon. Check the encoder and its cable"
+    )]
+    DeadEncoder {
+        /// The encoder's number, 1 to 4.
+        encoder: u8,
+    },
+    /// A motor neither turns nor pulls.
+    #[error(
+        "motor {motor} neither turns nor pulls: it is blocked, or it or its driver has no power. Check the motor, its \
+         cable and its supply"
+    )]
+    DeadMotor {
+        /// The motor's number, 1 to 4.
+        motor: u8,
+    },
+    /// A gauge does not respond to a pull.
+    #[error(
+        "gauge {gauge} rises by only {newton:.2} N while all tendons are pulled: it is dead. Check the gauge, its \
+         amplifier and its cable"
+    )]
+    SilentGauge {
+        /// The gauge's number, 1 to 4.
+        gauge: u8,
+        /// Rise, N.
+        newton: f64,
+    },
+    /// The scale of a gauge differs from that of the others.
+    #[error(
+        "gauge {gauge} reads {:.0} % too {}, compared with the other gauges: calibrate it again (sun2xp calibrate \
+         --identify), or check its amplifier and that nothing touches the finger",
+        percent.abs(), if *percent > 0.0 { "high" } else { "low" }
+    )]
+    GaugeScale {
+        /// The gauge's number, 1 to 4.
+        gauge: u8,
+        /// Difference, %.
+        percent: f64,
+    },
     /// The readings of a gauge contradict each other, or never changed.
     #[error(
         "gauge {tendon} does not rise and fall with the tension: it is dead, or its cable is swapped with another one. \

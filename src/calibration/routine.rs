@@ -4,6 +4,7 @@ use super::findings::Findings;
 use super::identification::Identification;
 use super::instruments::Instruments;
 use super::obstacle::Obstacle;
+use super::self_test::SelfTest;
 use super::signs::SignSearch;
 use super::step::{Progress, Sample};
 use super::zeroing::Zeroing;
@@ -23,6 +24,9 @@ pub enum Task {
     /// Finds the signs of motors, encoders and gauges. Every motor turns back and forth by a small amount, and pulls
     /// its tendon in short pulses.
     Signs,
+    /// Checks the wiring and the scales of the gauges of a calibrated finger within two seconds. Every motor pulls its
+    /// tendon a little.
+    SelfTest,
     /// Zeros the gauges, and the encoders by the configured method.
     Zero,
     /// Identifies the gains of the gauges, the friction of motors, conduits, pulleys and joints, the moment arms, and
@@ -60,6 +64,7 @@ pub struct Calibration {
 #[derive(Clone, Debug)]
 enum Routine {
     Signs(SignSearch),
+    SelfTest(SelfTest),
     Zero(Zeroing),
     Identify(Identification),
 }
@@ -72,6 +77,7 @@ impl Calibration {
     pub fn new(task: Task, finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         let routine = match task {
             Task::Signs => Routine::Signs(SignSearch::new(finger)),
+            Task::SelfTest => Routine::SelfTest(SelfTest::new(finger)),
             Task::Zero => Routine::Zero(Zeroing::new(finger)),
             Task::Identify => Routine::Identify(Identification::new(finger)),
         };
@@ -127,6 +133,9 @@ impl Calibration {
         let taking_over = |(activity, progress)| (Some(activity), progress);
         let stepped = match &mut self.routine {
             Routine::Signs(routine) => {
+                routine.step(&self.instruments, sample).map(|flow| flow.map_continue(taking_over))
+            }
+            Routine::SelfTest(routine) => {
                 routine.step(&self.instruments, sample).map(|flow| flow.map_continue(taking_over))
             }
             Routine::Zero(routine) => routine.step(&mut self.instruments, sample),

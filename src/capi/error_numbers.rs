@@ -95,6 +95,7 @@ pub fn of_hand(error: &HandError) -> c_int {
         HandError::Faulted { .. } | HandError::FaultedAtOpening { .. } => SUN2XP_ERROR_FAULTED,
         HandError::SimulatedPort(_) | HandError::System { .. } | HandError::BlackBox { .. } => SUN2XP_ERROR_SYSTEM,
         HandError::NotRealTime { .. } => SUN2XP_ERROR_REAL_TIME,
+        HandError::WrongWiring { .. } => SUN2XP_ERROR_FAULTED,
         HandError::Calibration { .. } | HandError::Interrupted(_) => SUN2XP_ERROR_CALIBRATION,
         HandError::Busy(_) => SUN2XP_ERROR_BUSY,
         HandError::NotThereInTime(_) | HandError::NoAnswer(_) => SUN2XP_ERROR_TIMED_OUT,

@@ -31,6 +31,8 @@ pub struct Calibrating {
     order: u32,
     /// Number of recoveries of the finger at the beginning.
     recoveries: u32,
+    /// Whether the finger stays limp after the results are in force.
+    stays_limp: bool,
     /// The results; `None` until the finger is ordered to restart with them.
     found: Option<(Findings, Found)>,
     asked: Instant,
@@ -74,6 +76,16 @@ impl Calibrating {
     /// Returns an error if there is no such finger, if the finger is faulted or busy, or if the routine cannot work
     /// with the configuration.
     pub fn begin(hand: &Hand, finger: i32, task: Task) -> Result<Self, HandError> {
+        let stays_limp = matches!(task, Task::Signs | Task::SelfTest);
+        Self::begin_task(hand, finger, task, stays_limp)
+    }
+
+    /// Begins the self-test of a finger that becomes a spring afterwards.
+    pub(super) fn begin_at_open(hand: &Hand, finger: i32) -> Result<Self, HandError> {
+        Self::begin_task(hand, finger, Task::SelfTest, false)
+    }
+
+    fn begin_task(hand: &Hand, finger: i32, task: Task, stays_limp: bool) -> Result<Self, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = hand.dispatcher.member(finger)?;
         let mut configuration = hand.configuration.read().clone();
@@ -91,7 +103,7 @@ impl Calibrating {
             let run = CalibrationRun { calibration, adjustable };
             Self::ordered(finger, member.mailbox.order(Order::Calibrate(run)))
         })?;
-        Ok(Self { finger, _claim: claim, order, recoveries, found: None, asked: Instant::now() })
+        Ok(Self { finger, _claim: claim, order, recoveries, stays_limp, found: None, asked: Instant::now() })
     }
 
     fn ordered(finger: FingerNumber, given: Result<Option<u32>, Fault>) -> Result<u32, HandError> {
@@ -100,7 +112,7 @@ impl Calibrating {
 
     /// Returns the state of the calibration. When the routine is done, its results are put in force before this
     /// returns `Done`: tendons are brought under tension, and the finger becomes a spring that holds its pose at its
-    /// initial stiffness. After [`Task::Signs`] the finger stays limp, because its zeros may be wrong. Must not be
+    /// initial stiffness. After [`Task::Signs`] and [`Task::SelfTest`] the finger stays limp. Must not be
     /// called again after `Done`.
     ///
     /// # Errors
@@ -125,7 +137,9 @@ impl Calibrating {
             if report.stage == Stage::Opening {
                 return Ok(CalibrationState::InProgress(Progress { step: Step::TakingUpSlack, part: 1.0 }));
             }
-            hand.note(found.clone());
+            if !matches!(findings, Findings::RightWiring) {
+                hand.note(found.clone());
+            }
             return Ok(CalibrationState::Done(*findings));
         }
         let in_progress = matches!(report.calibration, None | Some(Verdict::InProgress(_)));
@@ -146,7 +160,7 @@ impl Calibrating {
                 found.apply(&mut changed.fingers[finger.index()]);
                 check(&changed)?;
                 let adjustable = Adjustable::new(&changed, finger).map_err(|unusable| refusal(finger, unusable))?;
-                let limp = matches!(found, Findings::Signs(_));
+                let limp = self.stays_limp;
                 let to_store = Found::by_calibration(&found, finger, &changed);
                 let member = hand.dispatcher.member(finger)?;
                 self.order = hand.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
@@ -187,7 +201,12 @@ impl Hand {
         self.calibrate(finger, Task::Identify, progress)
     }
 
-    fn calibrate(&self, finger: i32, task: Task, mut progress: impl FnMut(Progress)) -> Result<Findings, HandError> {
+    pub(super) fn calibrate(
+        &self,
+        finger: i32,
+        task: Task,
+        mut progress: impl FnMut(Progress),
+    ) -> Result<Findings, HandError> {
         let mut calibrating = Calibrating::begin(self, finger, task)?;
         loop {
             match calibrating.poll(self)? {

@@ -125,6 +125,14 @@ pub enum HandError {
         /// Empty, or the reason why boards with the number cannot be used.
         twice: &'static str,
     },
+    /// The self-test of a finger has found a part that is wired wrongly. The motors of the finger are off.
+    #[error("finger {finger} (fault {}): {obstacle}", FaultKind::WrongWiring.number())]
+    WrongWiring {
+        /// The finger.
+        finger: FingerNumber,
+        /// What is wrong, and its remedy.
+        obstacle: Obstacle,
+    },
     /// The boards at two ports report the same unique number.
     #[error(
         "the boards of fingers {} ({}) and {} ({}) report the same unique number, {number}, and cannot be \

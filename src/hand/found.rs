@@ -76,6 +76,7 @@ impl Found {
     pub fn by_calibration(findings: &Findings, finger: FingerNumber, configuration: &Configuration) -> Self {
         let of = &configuration.fingers[finger.index()];
         let values = match findings {
+            Findings::RightWiring => Vec::new(),
             Findings::Signs(signs) => vec![
                 value("motor", "sign", whole(signs.motor)),
                 value("encoder", "sign", whole(signs.encoder)),

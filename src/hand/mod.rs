@@ -34,6 +34,7 @@ mod reconnection;
 mod recovery;
 mod reflexes;
 mod root;
+mod self_test;
 mod servo_threads;
 mod set_points;
 mod simulated_hand;

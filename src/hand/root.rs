@@ -114,8 +114,9 @@ impl Hand {
         waiting.map_err(|source| HandError::System { doing: "sleep until a given time (clock_nanosleep)", source })?;
         let (folder, file) = (black_box_folder(&configuration)?, file.map(from_here));
         let simulated = SimulatedHand::start(&configuration, opened)?;
-        let Connected { lines, reached, gate, repairs, events } =
-            reach(&configuration, opened, &simulated, &mut hardware, limp)?;
+        let tested = configuration.hand.self_test && !limp;
+        let connected = reach(&configuration, opened, &simulated, &mut hardware, limp || tested)?;
+        let Connected { lines, reached, gate, repairs, events } = connected;
         let recovery = Recovery::new(repairs);
         let dispatcher = Dispatcher::new(reached, configuration.hand.fingers, gate);
         let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOP_CONFIRMATION;
@@ -145,6 +146,9 @@ impl Hand {
         collecting.map_err(|source| HandError::System { doing: "start the thread that collects reports", source })?;
         hand.real_time = start(&hand.configuration.read(), lines, &mut hand.servos)?;
         hand.wait_for_every_finger()?;
+        if tested {
+            hand.test_every_finger()?;
+        }
         let reconnecting = hand.recovery.start();
         reconnecting.map_err(|source| HandError::System { doing: "start the thread that reopens ports", source })?;
         Ok(hand)

@@ -20,6 +20,8 @@ pub struct Sensors {
     gauge_zero: [f64; 4],
     /// Shown tension divided by the true one.
     gauge_gain: [f64; 4],
+    /// Factor of each gauge's gain by a defect.
+    rescaled: [f64; 4],
     /// Error of each gauge that does not depend on the tension, N.
     gauge_offset: [f64; 4],
     gauge_noise: f64,
@@ -48,6 +50,7 @@ impl Sensors {
             newton_per_count: finger.gauge.newton_per_count,
             gauge_zero: finger.gauge.zero,
             gauge_gain: finger.simulation.gauge_gain_ratio,
+            rescaled: [1.0; 4],
             gauge_offset: finger.simulation.gauge_offset,
             gauge_noise: finger.simulation.gauge_noise,
             random: Pcg64::seed_from_u64(finger.simulation.seed),
@@ -64,6 +67,11 @@ impl Sensors {
         self.dead[gauge] = Some(count.unwrap_or(self.shown[gauge]));
     }
 
+    /// Multiplies the gain of a gauge by `ratio`.
+    pub fn rescale_gauge(&mut self, gauge: usize, ratio: f64) {
+        self.rescaled[gauge] = ratio;
+    }
+
     /// Makes a gauge drift at `speed`, N/s.
     pub fn let_gauge_drift(&mut self, gauge: usize, speed: f64) {
         self.drift_speed[gauge] = speed;
@@ -77,6 +85,7 @@ impl Sensors {
     /// Repairs all sensors.
     pub fn repair(&mut self) {
         (self.dead, self.drift, self.drift_speed, self.jumped) = ([None; 4], [0.0; 4], [0.0; 4], [0; 4]);
+        self.rescaled = [1.0; 4];
     }
 
     /// Advances the drift of the gauges by `seconds`.
@@ -97,7 +106,7 @@ impl Sensors {
         });
         let gauge_counts = std::array::from_fn(|tendon| {
             let noise: f64 = StandardNormal.sample(&mut self.random);
-            let shown = self.gauge_gain[tendon] * tensions[tendon] + self.gauge_offset[tendon];
+            let shown = self.rescaled[tendon] * self.gauge_gain[tendon] * tensions[tendon] + self.gauge_offset[tendon];
             let tension = shown + self.drift[tendon] + self.gauge_noise * noise;
             let counts = tension / self.newton_per_count[tendon] + self.gauge_zero[tendon];
             let counts = counts.round().clamp(0.0, GAUGE_FULL_SCALE) as u16;

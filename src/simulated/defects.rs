@@ -2,6 +2,20 @@
 
 use crate::board::protocol::Status;
 use crate::simulated::finger::SimulatedFinger;
+use crate::simulated::wiring::Wiring;
+
+/// A connection between a board and its finger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Connection {
+    /// The cable of a motor.
+    Motor,
+    /// The cable of an encoder.
+    Encoder,
+    /// The cable of a gauge.
+    Gauge,
+    /// A tendon between its motor and the joints.
+    Tendon,
+}
 
 /// A defect of one finger. Tendons, motors, gauges and encoders have the numbers 1 to 4, as in the texts of faults.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +55,21 @@ pub enum Defect {
         /// Number of counts.
         counts: i32,
     },
+    /// Two parts are connected in each other's place.
+    Swapped(Connection, u8, u8),
+    /// A part is connected backwards. A tendon cannot be.
+    Reversed(Connection, u8),
+    /// The gain of a gauge has changed.
+    GaugeGain {
+        /// The gauge's number.
+        gauge: u8,
+        /// Ratio of the new gain to the old one.
+        ratio: f64,
+    },
+    /// A motor is not connected.
+    DeadMotor(u8),
+    /// An encoder no longer counts.
+    DeadEncoder(u8),
     /// A tactile element, counted from 0 as in the configuration, can no longer be read.
     DeadElement(u8),
     /// The board reports that its encoder counts are no longer valid.
@@ -62,6 +91,10 @@ impl SimulatedFinger {
             Defect::CutTendon(part) | Defect::JammedMotor(part) | Defect::HotMotor(part) => part,
             Defect::SlackTendon { tendon: part, .. } | Defect::DeadGauge { gauge: part, .. } => part,
             Defect::DriftingGauge { gauge: part, .. } | Defect::EncoderJump { encoder: part, .. } => part,
+            Defect::Swapped(_, part, other) if (1..=4).contains(&other) => part,
+            Defect::Swapped(..) => 0,
+            Defect::Reversed(_, part) | Defect::GaugeGain { gauge: part, .. } => part,
+            Defect::DeadMotor(part) | Defect::DeadEncoder(part) => part,
             Defect::DeadElement(_)
             | Defect::ZeroLost
             | Defect::EmergencyStop
@@ -78,6 +111,14 @@ impl SimulatedFinger {
             Defect::DeadGauge { count, .. } => self.sensors().kill_gauge(index, count),
             Defect::DriftingGauge { speed, .. } => self.sensors().let_gauge_drift(index, speed),
             Defect::EncoderJump { counts, .. } => self.sensors().jump(index, counts),
+            Defect::Swapped(connection, _, other) => self.swap(connection, index, usize::from(other) - 1),
+            Defect::Reversed(Connection::Motor, _) => self.wiring().reverse_motor(index),
+            Defect::Reversed(Connection::Encoder, _) => self.wiring().reverse_encoder(index),
+            Defect::Reversed(Connection::Gauge, _) => self.wiring().reverse_gauge(index),
+            Defect::Reversed(Connection::Tendon, _) => return false,
+            Defect::GaugeGain { ratio, .. } => self.sensors().rescale_gauge(index, ratio),
+            Defect::DeadMotor(_) => self.wiring().disconnect_motor(index),
+            Defect::DeadEncoder(_) => self.wiring().stop_encoder(index, 0),
             Defect::DeadElement(element) => return self.break_element(element.into()),
             Defect::ZeroLost => self.set_zero_valid(false),
             Defect::EmergencyStop => self.add_faults(Status::EMERGENCY_STOP),
@@ -88,10 +129,20 @@ impl SimulatedFinger {
         true
     }
 
+    fn swap(&mut self, connection: Connection, one: usize, other: usize) {
+        match connection {
+            Connection::Motor => self.wiring().swap_motors(one, other),
+            Connection::Encoder => self.wiring().swap_encoders(one, other),
+            Connection::Gauge => self.wiring().swap_gauges(one, other),
+            Connection::Tendon => self.wiring().swap_tendons(one, other),
+        }
+    }
+
     /// Removes all defects. Faults that the board has stored remain until the next Configure.
     pub fn repair(&mut self) {
         self.plant().repair();
         self.sensors().repair();
+        *self.wiring() = Wiring::default();
         self.repair_elements();
         self.set_zero_valid(true);
         self.set_faults(Status::default());

@@ -12,6 +12,7 @@ use crate::model::TendonsError;
 use crate::model::configuration::ConfiguredFinger;
 use crate::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 use crate::simulated::pads::Pads;
+use crate::simulated::wiring::Wiring;
 use identity::SHORTEST_WATCHDOG_MS;
 use nalgebra::{Vector3, Vector4};
 
@@ -41,6 +42,7 @@ pub struct SimulatedFinger {
     unique_number: [u8; 12],
     plant: Plant,
     sensors: Sensors,
+    wiring: Wiring,
     pads: Pads,
     /// Velocity of the tip relative to an object that several fingers share, cm/s, in the finger's frame.
     sliding: Vector3<f64>,
@@ -84,6 +86,7 @@ impl SimulatedFinger {
             unique_number: identity::unique_number(number, address),
             plant: Plant::new(finger, gravity)?,
             sensors: Sensors::new(finger),
+            wiring: Wiring::default(),
             pads: Pads::new(&finger.touch),
             sliding: Vector3::zeros(),
             state: State::Idle,
@@ -159,6 +162,11 @@ impl SimulatedFinger {
         self.zero_valid = valid;
     }
 
+    /// Returns the wiring between the board and the finger, which can be changed.
+    pub fn wiring(&mut self) -> &mut Wiring {
+        &mut self.wiring
+    }
+
     pub(super) fn sensors(&mut self) -> &mut Sensors {
         &mut self.sensors
     }
@@ -189,7 +197,7 @@ impl SimulatedFinger {
             State::Idle | State::Ready | State::Ended { .. } => {}
         }
         let newton_metres = self.motor_torques() * 0.01;
-        self.plant.step(newton_metres.into());
+        self.plant.step(self.wiring.torques(newton_metres.into()));
         self.sensors.pass(PLANT_STEP_SECONDS);
         self.feel();
     }
@@ -213,7 +221,7 @@ impl SimulatedFinger {
         self.latched = Status::default();
         (self.commanded_at, self.ended_at) = (None, None);
         self.state = State::Ready;
-        let (encoders, gauges) = self.sensors.read(&self.plant);
+        let (encoders, gauges) = self.wiring.counts(self.sensors.read(&self.plant));
         Frame::Configured(Configured { terms: *terms, encoders, gauges, status: self.status() })
     }
 
@@ -248,7 +256,7 @@ impl SimulatedFinger {
                 self.torques = [0; 4];
             }
         }
-        let (encoders, gauges) = self.sensors.read(&self.plant);
+        let (encoders, gauges) = self.wiring.counts(self.sensors.read(&self.plant));
         let mut status = self.status();
         if clipped {
             status |= Status::TORQUE_CLIPPED;

@@ -13,13 +13,15 @@ mod port;
 mod pseudo_terminal;
 mod scene;
 mod shared_time;
+mod wiring;
 
 pub use board::{SimulatedBoard, SimulatedBoardError};
 pub use cable::SimulatedCable;
 pub use coupled_ports::{CoupledPorts, CoupledPortsError, ObjectView};
-pub use defects::Defect;
+pub use defects::{Connection, Defect};
 pub use finger::SimulatedFinger;
 pub use line::LineFault;
 pub use pace::{Pace, PacedTime};
 pub use port::SimulatedPort;
 pub use scene::{ObjectState, Scene};
+pub use wiring::Wiring;

@@ -5,13 +5,14 @@ use sun2xp::calibration::{Calibration, Findings, Obstacle, Sample, Task, Verdict
 use sun2xp::control::{Activity, Controller, Feedback, MotorCommand, Report, SetPoint, State};
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
+use sun2xp::simulated::Wiring;
 
 pub struct Bench {
     pub plant: Plant,
     pub belief: ConfiguredFinger,
     rate: f64,
     gravity: Vector3<f64>,
-    sensors: Sensors,
+    pub sensors: Sensors,
     controller: Controller,
     state: State,
     command: MotorCommand,
@@ -25,6 +26,8 @@ pub struct Bench {
     pub motor_at: [usize; 4],
     /// What the board reports about its counts: whether their zero is valid.
     pub zero_valid: bool,
+    /// The cables between board and finger.
+    pub wiring: Wiring,
     /// Duration of the last routine, s.
     pub seconds: f64,
     /// Largest true tension, N.
@@ -58,6 +61,7 @@ impl Bench {
             gauge_at: [0, 1, 2, 3],
             motor_at: [0, 1, 2, 3],
             zero_valid: true,
+            wiring: Wiring::default(),
             seconds: 0.0,
             largest_tension: 0.0,
         }
@@ -65,6 +69,8 @@ impl Bench {
 
     fn feedback(&mut self) -> Feedback {
         let mut feedback = read(&mut self.sensors, &self.plant);
+        (feedback.motor_counts, feedback.gauge_counts) =
+            self.wiring.counts((feedback.motor_counts, feedback.gauge_counts));
         feedback.gauge_counts = self.gauge_at.map(|gauge| feedback.gauge_counts[gauge]);
         if let Some((gauge, count)) = self.dead_gauge {
             feedback.gauge_counts[gauge] = count;
@@ -76,7 +82,8 @@ impl Bench {
     fn advance(&mut self, feedback: &Feedback, previous: Option<&Controller>) {
         let steps = (1.0 / (self.rate * PLANT_STEP_SECONDS)).round() as usize;
         for _ in 0..steps {
-            self.plant.step(self.motor_at.map(|motor| self.command.motor_torques[motor] * 0.01));
+            let torques = self.motor_at.map(|motor| self.command.motor_torques[motor] * 0.01);
+            self.plant.step(self.wiring.torques(torques));
             self.largest_tension = self.largest_tension.max(self.plant.tensions().max());
         }
         let (state, feedback, activity) = (&mut self.state, Some(feedback), &self.activity);

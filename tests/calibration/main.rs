@@ -5,5 +5,6 @@ mod identifying;
 mod pose;
 mod refusing;
 mod rubbing;
+mod self_test;
 mod signs;
 mod zeroing;

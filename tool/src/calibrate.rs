@@ -123,6 +123,7 @@ impl Arguments {
         };
         match task {
             Task::Signs => hand.find_signs(finger, progress),
+            Task::SelfTest => hand.self_test(finger, progress).map(|()| Findings::RightWiring),
             Task::Zero => hand.zero(finger, progress),
             Task::Identify => hand.identify(finger, progress),
         }
@@ -142,6 +143,8 @@ impl Arguments {
         let options = |tasks: &[Task]| {
             let option = |task| match task {
                 Task::Signs => " --signs",
+                // The self-test is not a task of this command.
+                Task::SelfTest => "",
                 Task::Zero => " --zero",
                 Task::Identify => " --identify",
             };
@@ -164,6 +167,7 @@ impl Arguments {
 fn begin(finger: i32, task: Task) -> Progress {
     let doing = match task {
         Task::Signs => "finding signs",
+        Task::SelfTest => "checking the wiring",
         Task::Zero => "zeroing",
         Task::Identify => "identifying",
     };

@@ -24,6 +24,7 @@ impl HandError {
             | Self::NoAnswer(_)
             | Self::NotThereInTime(_) => libc::ETIMEDOUT,
             Self::Calibration { .. } | Self::Interrupted(_) => libc::ECANCELED,
+            Self::WrongWiring { .. } => libc::EIO,
             Self::SameNumber { .. } => libc::ENOTUNIQ,
             Self::NotOpened(_) | Self::NotInHand { .. } | Self::NoSuchBoard { .. } => libc::ENODEV,
             Self::Busy(_) => libc::EBUSY,

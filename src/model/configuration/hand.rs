@@ -95,6 +95,8 @@ pub struct ConfiguredHand {
     pub release_ramp_ms: u16,
     /// Time without a command after which the board goes to its end state, ms: 2 to 1000.
     pub watchdog_ms: u16,
+    /// Whether opening the hand checks the wiring of every finger before the finger becomes a spring.
+    pub self_test: bool,
     /// Time-out for the board's reply and for the tensioning of a finger during open, ms. It is a time and not a number
     /// of cycles.
     pub open_timeout_ms: u32,
@@ -137,6 +139,7 @@ impl Default for ConfiguredHand {
             // periods from the last good reply, and then sends a Stop. With 20 ms, a Stop that leaves late in its
             // period would be too late.
             watchdog_ms: 18,
+            self_test: false,
             open_timeout_ms: 10_000,
             on_fault: OnFault::Finger,
             out_of_range: OutOfRange::Refuse,

@@ -1,7 +1,7 @@
 //! Orders of `sun2xp board` that cause faults.
 
 use sun2xp::model::Shown;
-use sun2xp::simulated::{Defect, LineFault, SimulatedPort};
+use sun2xp::simulated::{Connection, Defect, LineFault, SimulatedPort};
 
 /// A fault of the board or its cable, or the end of faults.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,17 +88,13 @@ impl Trouble {
             "sensor",
             "reset",
         ];
-        if !NAMES.contains(&name) {
+        if !NAMES.contains(&name) && !WIRING.contains(&name) {
             return Ok(None);
         }
         let numbers: Vec<f64> = rest.iter().map(|word| number(word)).collect::<Result<_, _>>()?;
         let (finger, numbers) = match numbers[..] {
             [finger, ref numbers @ ..] => (whole(finger)?, numbers),
             [] => return Err(format!("{name} needs the number of a finger")),
-        };
-        let part = |part: f64| match whole(part)? {
-            part @ 1..=4 => Ok(part),
-            part => Err(format!("{part} is not between 1 and 4")),
         };
         let defect = match (name, numbers) {
             ("cut", &[tendon]) => Defect::CutTendon(part(tendon)?),
@@ -117,6 +113,7 @@ impl Trouble {
             ("supply", &[]) => Defect::Supply,
             ("sensor", &[]) => Defect::Sensor,
             ("reset", &[]) => Defect::Reset,
+            (name, numbers) if WIRING.contains(&name) => wiring_defect(name, numbers)?,
             _ => return Err(format!("{name} does not take these numbers; see sun2xp board --help")),
         };
         Ok(Some(Trouble::Finger(finger, defect)))
@@ -155,6 +152,47 @@ impl Trouble {
                 Err(error) => format!("error {error}"),
             },
         }
+    }
+}
+
+/// The orders that change the wiring.
+const WIRING: [&str; 10] = [
+    "swap-motors",
+    "swap-encoders",
+    "swap-gauges",
+    "swap-tendons",
+    "reverse-motor",
+    "reverse-encoder",
+    "reverse-gauge",
+    "gauge-gain",
+    "dead-motor",
+    "dead-encoder",
+];
+
+/// Reads the numbers of an order that changes the wiring.
+fn wiring_defect(name: &str, numbers: &[f64]) -> Result<Defect, String> {
+    Ok(match (name, numbers) {
+        ("swap-motors", &[one, other]) => Defect::Swapped(Connection::Motor, part(one)?, part(other)?),
+        ("swap-encoders", &[one, other]) => Defect::Swapped(Connection::Encoder, part(one)?, part(other)?),
+        ("swap-gauges", &[one, other]) => Defect::Swapped(Connection::Gauge, part(one)?, part(other)?),
+        ("swap-tendons", &[one, other]) => Defect::Swapped(Connection::Tendon, part(one)?, part(other)?),
+        ("reverse-motor", &[motor]) => Defect::Reversed(Connection::Motor, part(motor)?),
+        ("reverse-encoder", &[encoder]) => Defect::Reversed(Connection::Encoder, part(encoder)?),
+        ("reverse-gauge", &[gauge]) => Defect::Reversed(Connection::Gauge, part(gauge)?),
+        ("gauge-gain", &[gauge, ratio]) if (0.0..=10.0).contains(&ratio) => {
+            Defect::GaugeGain { gauge: part(gauge)?, ratio }
+        }
+        ("dead-motor", &[motor]) => Defect::DeadMotor(part(motor)?),
+        ("dead-encoder", &[encoder]) => Defect::DeadEncoder(part(encoder)?),
+        _ => return Err(format!("{name} does not take these numbers; see sun2xp board --help")),
+    })
+}
+
+/// The number of a motor, encoder, gauge or tendon.
+fn part(number: f64) -> Result<u8, String> {
+    match whole(number)? {
+        part @ 1..=4 => Ok(part),
+        part => Err(format!("{part} is not between 1 and 4")),
     }
 }
 
@@ -197,6 +235,9 @@ mod tests {
             ("dead-gauge 1 2 4095", Trouble::Finger(1, Defect::DeadGauge { gauge: 2, count: Some(4095) })),
             ("jump 1 2 -300", Trouble::Finger(1, Defect::EncoderJump { encoder: 2, counts: -300 })),
             ("dead-element 1 0", Trouble::Finger(1, Defect::DeadElement(0))),
+            ("swap-gauges 1 2 4", Trouble::Finger(1, Defect::Swapped(Connection::Gauge, 2, 4))),
+            ("reverse-motor 1 3", Trouble::Finger(1, Defect::Reversed(Connection::Motor, 3))),
+            ("gauge-gain 2 1 0.8", Trouble::Finger(2, Defect::GaugeGain { gauge: 1, ratio: 0.8 })),
             ("reset 3", Trouble::Finger(3, Defect::Reset)),
             ("mend 3", Trouble::Mend(3)),
             ("drop 0.05", Trouble::Line(LineFault::Drop, 0.05, FOREVER)),

@@ -31,7 +31,7 @@ const ACTIONS: [Entry; 10] = [
     ("quit", "end the program"),
 ];
 
-const DEFECTS: [Entry; 14] = [
+const DEFECTS: [Entry; 19] = [
     ("cut FINGER TENDON", "tear a tendon"),
     ("slack FINGER TENDON GRIP", "let a tendon slip at tensions above GRIP, N"),
     ("jam FINGER MOTOR", "block a motor"),
@@ -39,6 +39,11 @@ const DEFECTS: [Entry; 14] = [
     ("dead-element FINGER ELEMENT", "make a tactile element, counted from 0, unreadable"),
     ("dead-gauge FINGER GAUGE [COUNT]", "freeze a gauge at COUNT, or at its current count"),
     ("drift-gauge FINGER GAUGE SPEED", "let a gauge drift, N/s"),
+    ("swap-motors FINGER A B", "swap the cables of two motors; also swap-encoders and swap-gauges"),
+    ("swap-tendons FINGER A B", "lead two tendons to each other's motor"),
+    ("reverse-motor FINGER MOTOR", "connect a motor backwards; also reverse-encoder and reverse-gauge"),
+    ("gauge-gain FINGER GAUGE RATIO", "multiply the gain of a gauge"),
+    ("dead-motor FINGER MOTOR", "disconnect a motor; also dead-encoder"),
     ("jump FINGER ENCODER COUNTS", "add COUNTS to the count of an encoder"),
     ("zero-lost FINGER", "declare the encoder counts invalid"),
     ("emergency FINGER", "activate the emergency stop input"),

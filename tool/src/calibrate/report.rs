@@ -50,7 +50,7 @@ impl Measured {
     pub fn all(findings: &Findings) -> Vec<Self> {
         let new = |name, values: &[f64], digits| Self { name, values: values.to_vec(), digits };
         match findings {
-            Findings::Signs(_) => Vec::new(),
+            Findings::Signs(_) | Findings::RightWiring => Vec::new(),
             Findings::Zeros(zeros) => {
                 let errors = zeros.joint_error.map(f64::to_degrees);
                 let range = zeros.range_error.map(|range| range.map(f64::to_degrees));

@@ -1,0 +1,108 @@
+//! Checks the wiring of a calibrated finger within two seconds: each motor moves its own encoder and pulls its own
+//! tendon, in the configured directions, and every gauge shows the tension.
+//!
+//! First each motor alone pulls until an encoder moves. Then all motors are held in place and wind in until the tendons
+//! are tight. Each one pulls for some milliseconds, which its own gauge shows first, because the links delay the pull at
+//! the other gauges. At last all motors wind in a little more. The tensions of a finger that nothing touches rise along the null vector of R, whatever the
+//! friction of the motors, so the rises of the gauges show whether their scales agree.
+
+mod holding;
+mod pushing;
+mod verdict;
+
+use super::findings::Findings;
+use super::instruments::Instruments;
+use super::step::{Progress, Sample, Step, Stepped};
+use crate::control::signals::{Activity, Feedback};
+use crate::model::LinkDynamics;
+use crate::model::configuration::ConfiguredFinger;
+use holding::Holding;
+use nalgebra::{Vector3, Vector4};
+use pushing::Pushing;
+use std::ops::ControlFlow::{Break, Continue};
+use verdict::judge;
+
+/// Approximate duration of the test, s.
+const DURATION: f64 = 1.6;
+
+#[derive(Clone, Debug)]
+pub(super) struct SelfTest {
+    seconds: f64,
+    /// Travel at the beginning, cm.
+    start: Option<Vector4<f64>>,
+    last: Vector4<f64>,
+    phase: Phase,
+    /// Pull of each motor that overcomes its configured friction, N.
+    friction: Vector4<f64>,
+    dynamics: LinkDynamics,
+}
+
+// The servo does not use the heap, so every phase has the size of the largest one.
+#[allow(clippy::large_enum_variant)]
+#[derive(Clone, Debug)]
+enum Phase {
+    /// One motor pulls alone.
+    Pushing(Pushing),
+    /// All motors are held.
+    Holding(Holding),
+}
+
+/// The measurements of a cycle.
+#[derive(Clone, Copy, Debug)]
+struct Readings {
+    /// Travel of each motor since the beginning, cm. Positive values pull the tendon in, if the wiring is right.
+    travel: Vector4<f64>,
+    /// Speed of each motor, cm/s.
+    speed: Vector4<f64>,
+    /// Tensions by the gauges, N.
+    tensions: Vector4<f64>,
+}
+
+impl SelfTest {
+    pub fn new(finger: &ConfiguredFinger) -> Self {
+        let radius = Vector4::from(finger.geometry.motor_radius);
+        let links = &finger.links;
+        Self {
+            seconds: 0.0,
+            start: None,
+            last: Vector4::zeros(),
+            phase: Phase::Pushing(Pushing::of(0)),
+            friction: Vector4::from(finger.friction.motor_coulomb).component_div(&radius),
+            dynamics: LinkDynamics::new(finger.links(), links.masses, links.radii, Vector3::zeros()),
+        }
+    }
+
+    /// Runs one cycle of the current phase.
+    pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> Stepped {
+        self.seconds += instruments.period;
+        let readings = self.read(instruments, sample.feedback);
+        let pulls = match &mut self.phase {
+            Phase::Pushing(pushing) => {
+                let pulls = pushing.step(instruments, &readings)?;
+                if pushing.motor() == 4 {
+                    self.phase = Phase::Holding(Holding::new(&readings.travel));
+                }
+                pulls
+            }
+            Phase::Holding(holding) => match holding.step(instruments, &self.friction, &readings)? {
+                Continue(pulls) => pulls,
+                Break(responses) => {
+                    let travel = readings.travel + self.start.unwrap_or_default();
+                    judge(&responses, instruments, &self.dynamics, &travel)?;
+                    return Ok(Break(Findings::RightWiring));
+                }
+            },
+        };
+        let progress = Progress { step: Step::TryingMotors, part: (self.seconds / DURATION).min(1.0) };
+        Ok(Continue((Activity::Turn(pulls.component_mul(&instruments.signed_radius)), progress)))
+    }
+
+    fn read(&mut self, instruments: &Instruments, feedback: &Feedback) -> Readings {
+        let travel = instruments.travel(feedback);
+        let start = *self.start.get_or_insert(travel);
+        let travel = travel - start;
+        let speed = (travel - self.last) / instruments.period;
+        self.last = travel;
+        Readings { travel, speed, tensions: instruments.tensions(feedback) }
+    }
+}

@@ -1,0 +1,166 @@
+//! One motor pulls alone, with a torque that rises until an encoder moves. If that is not its own encoder, forward, the
+//! motor pulls until a gauge shows what is wrong.
+
+use super::Readings;
+use crate::calibration::average::Average;
+use crate::calibration::instruments::Instruments;
+use crate::calibration::obstacle::Obstacle;
+use nalgebra::Vector4;
+
+/// Rest before each push, in which the readings are averaged, s.
+const REST: f64 = 0.025;
+/// A motor is at rest if it moves by less than this distance in that time, cm.
+const AT_REST: f64 = 0.001;
+/// Longest wait for the motors to come to rest, s. Tight tendons unwind motors that have just been switched off.
+const LONGEST_WAIT: f64 = 0.3;
+/// Rise of the pull, t_min/s.
+const RISE: f64 = 25.0;
+/// Largest pull, in t_min.
+const HARDEST: f64 = 3.0;
+/// An encoder has moved if it has moved by more than this distance, cm at the tendon.
+const MOVED: f64 = 0.004;
+/// Pull after an encoder has moved wrongly, in t_min.
+const PULL: f64 = 1.2;
+/// The motor then pulls for at most this time, s, and this distance, cm, because it may unwind its tendon.
+const LONGEST: f64 = 0.12;
+const FARTHEST: f64 = 0.12;
+/// A gauge has responded if it has changed by more than this, in t_min.
+const RESPONDED: f64 = 0.35;
+/// Damping of a motor after its push, N s/cm, and its duration, s.
+const DAMPING: f64 = 2.0;
+const BRAKING: f64 = 0.02;
+
+/// A push of one motor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pushing {
+    motor: usize,
+    stage: Stage,
+    /// Time in the stage, s.
+    seconds: f64,
+    waited: f64,
+    tensions: Average,
+    travel: Average,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Stage {
+    Resting,
+    /// The pull rises.
+    Rising,
+    /// The motor pulls, and this encoder has moved in this direction, which is wrong.
+    Pulling {
+        encoder: usize,
+        direction: f64,
+    },
+    Braking,
+}
+
+impl Pushing {
+    pub fn of(motor: usize) -> Self {
+        let (tensions, travel) = (Average::default(), Average::default());
+        Self { motor, stage: Stage::Resting, seconds: 0.0, waited: 0.0, tensions, travel }
+    }
+
+    /// Returns the number of the motor that pulls, from 0. It is 4 after the last one.
+    pub fn motor(&self) -> usize {
+        self.motor
+    }
+
+    /// Runs one cycle and returns the pulls of the motors, N.
+    pub fn step(&mut self, instruments: &Instruments, readings: &Readings) -> Result<Vector4<f64>, Obstacle> {
+        self.seconds += instruments.period;
+        let minimum = instruments.minimum;
+        let moved = readings.travel - self.travel.mean();
+        let risen = readings.tensions - self.tensions.mean();
+        let pull = match self.stage {
+            Stage::Resting => {
+                self.rest(instruments.period, readings, &moved);
+                0.0
+            }
+            Stage::Rising => {
+                let first = moved.iamax();
+                if moved[first].abs() > MOVED {
+                    // The encoder of a motor that pulls hard has not moved, but the pull has unwound another motor.
+                    if first != self.motor && moved[first] < 0.0 && risen[self.motor] > RESPONDED * minimum {
+                        return Err(Obstacle::DeadEncoder { encoder: self.motor as u8 + 1 });
+                    }
+                    self.enter(match first == self.motor && moved[first] > 0.0 {
+                        true => Stage::Braking,
+                        false => Stage::Pulling { encoder: first, direction: moved[first].signum() },
+                    });
+                } else if RISE * self.seconds > HARDEST {
+                    return Err(self.nothing_moved(&risen, minimum));
+                }
+                RISE * self.seconds
+            }
+            Stage::Pulling { encoder, direction } => {
+                self.pull(encoder, direction, &moved, &risen, minimum)?;
+                PULL
+            }
+            Stage::Braking => {
+                if self.seconds > BRAKING {
+                    *self = Self::of(self.motor + 1);
+                    return Ok(Vector4::zeros());
+                }
+                (-readings.speed[self.motor] * DAMPING / minimum).clamp(-PULL, 0.0)
+            }
+        };
+        let motor = self.motor;
+        Ok(Vector4::from_fn(|other, _| if other == motor { pull * minimum } else { 0.0 }))
+    }
+
+    fn enter(&mut self, stage: Stage) {
+        (self.stage, self.seconds) = (stage, 0.0);
+    }
+
+    /// Averages the readings until all motors have been at rest.
+    fn rest(&mut self, period: f64, readings: &Readings, moved: &Vector4<f64>) {
+        self.waited += period;
+        if self.seconds > 1.5 * period && moved.amax() > AT_REST && self.waited < LONGEST_WAIT {
+            *self = Self { waited: self.waited, ..Self::of(self.motor) };
+            return;
+        }
+        self.tensions.add(readings.tensions);
+        self.travel.add(readings.travel);
+        if self.seconds > REST {
+            self.enter(Stage::Rising);
+        }
+    }
+
+    /// Waits for the response of a gauge, and names what is wrong.
+    fn pull(
+        &self,
+        encoder: usize,
+        direction: f64,
+        moved: &Vector4<f64>,
+        risen: &Vector4<f64>,
+        minimum: f64,
+    ) -> Result<(), Obstacle> {
+        let (motor, number, other) = (self.motor, self.motor as u8 + 1, encoder as u8 + 1);
+        let first = risen.iamax();
+        let responded = risen[first].abs() > RESPONDED * minimum;
+        if !responded && self.seconds < LONGEST && moved.amax() < FARTHEST {
+            return Ok(());
+        }
+        let (low, high) = (number.min(other), number.max(other));
+        Err(if encoder != motor {
+            match responded {
+                true if first == encoder => Obstacle::SwappedMotors { first: low, second: high },
+                true if first == motor => Obstacle::SwappedEncoders { first: low, second: high },
+                _ => Obstacle::SwappedMotor { motor: number, encoder: other },
+            }
+        } else if direction < 0.0 && responded && first == motor && risen[first] > 0.0 {
+            Obstacle::ReversedEncoder { encoder: number }
+        } else {
+            Obstacle::ReversedMotor { motor: number }
+        })
+    }
+
+    fn nothing_moved(&self, risen: &Vector4<f64>, minimum: f64) -> Obstacle {
+        let number = self.motor as u8 + 1;
+        match risen.iamax() == self.motor && risen.amax() > RESPONDED * minimum {
+            true => Obstacle::DeadEncoder { encoder: number },
+            false => Obstacle::DeadMotor { motor: number },
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! Names what is wrong from the responses of the gauges.
+
+use super::holding::{LATE, LENGTH, Responses};
+use crate::calibration::instruments::Instruments;
+use crate::calibration::obstacle::Obstacle;
+use crate::model::LinkDynamics;
+use nalgebra::{Vector3, Vector4};
+
+/// A gauge is dead if it rises by less than this part of the usual rise.
+const DEAD: f64 = 0.12;
+/// Two gauges respond to each other's motor if their shares of the largest responses exceed those of the configured
+/// gauges by more than this, of at most 2.
+const LEADING: f64 = 0.15;
+/// Largest difference of a gauge's scale from the others that is not named.
+const SCALE: f64 = 0.13;
+/// Step of the prediction of a pulse, s. The links vibrate with at most 80 Hz.
+const STEP: f64 = 0.000_25;
+/// N cm s^2 in one kg m^2.
+const CENTIMETRES: f64 = 100.0;
+/// Two tendons differ at rest if the logarithm of the ratio of their pretensions exceeds this value.
+const DIFFERENT: f64 = 0.2;
+
+/// Names the part that is wired wrongly. `travel` is the travel of the motors from their zeros, cm.
+pub(super) fn judge(
+    responses: &Responses,
+    instruments: &Instruments,
+    dynamics: &LinkDynamics,
+    travel: &Vector4<f64>,
+) -> Result<(), Obstacle> {
+    let number = |index: usize| index as u8 + 1;
+    let raised = &responses.raised;
+    let usual = median(&raised.abs());
+    for gauge in 0..4 {
+        if raised[gauge].abs() < DEAD * usual {
+            let newton = raised[gauge] * instruments.pretension[gauge];
+            return Err(Obstacle::SilentGauge { gauge: number(gauge), newton });
+        }
+    }
+    if let Some((one, other)) = swapped_pair(&responses.pulses) {
+        let (first, second) = (number(one), number(other));
+        return Err(match tendons_are_swapped(responses, (one, other), instruments, dynamics, travel) {
+            true => Obstacle::SwappedTendons { first, second },
+            false => Obstacle::SwappedGauges { first, second },
+        });
+    }
+    if let Some(gauge) = (0..4).find(|&gauge| raised[gauge] < 0.0) {
+        return Err(Obstacle::ReversedGauge { gauge: number(gauge) });
+    }
+    let scales = raised / usual;
+    let worst = scales.add_scalar(-1.0).iamax();
+    match (scales[worst] - 1.0) * 100.0 {
+        percent if percent.abs() > SCALE * 100.0 => Err(Obstacle::GaugeScale { gauge: number(worst), percent }),
+        _ => Ok(()),
+    }
+}
+
+/// The pair of gauges that respond to each other's motor, if this explains the responses much better than the
+/// configured wiring does.
+fn swapped_pair(responses: &[Vector4<f64>; 4]) -> Option<(usize, usize)> {
+    let share = |motor: usize, gauge: usize| responses[motor][gauge].abs() / responses[motor].amax().max(f64::EPSILON);
+    let gain =
+        |&(one, other): &(usize, usize)| share(one, other) + share(other, one) - share(one, one) - share(other, other);
+    let pairs = (0..4).flat_map(|one| (one + 1..4).map(move |other| (one, other)));
+    pairs.max_by(|a, b| gain(a).total_cmp(&gain(b))).filter(|pair| gain(pair) > LEADING)
+}
+
+/// Returns whether the tendons of a swapped pair are swapped, and not their gauges. With swapped gauges each of them
+/// shows the rise of the other tendon, which differs unless both tendons have the same pretension. Otherwise the pulses
+/// show which tendon a motor has pulled: the joints that it moves slacken or stretch the other tendons.
+fn tendons_are_swapped(
+    responses: &Responses,
+    (one, other): (usize, usize),
+    instruments: &Instruments,
+    dynamics: &LinkDynamics,
+    travel: &Vector4<f64>,
+) -> bool {
+    let expected = (instruments.pretension[one] / instruments.pretension[other]).ln();
+    if expected.abs() > DIFFERENT {
+        // The rises are divided by those that the gauges show with swapped tendons too.
+        let shown = (responses.raised[one].abs() / responses.raised[other].abs()).ln();
+        return shown.abs() < expected.abs() / 2.0;
+    }
+    let mut swapped_travel = *travel;
+    swapped_travel.swap_rows(one, other);
+    let joints = |travel| instruments.joints(travel, &instruments.pretension);
+    let (right, swapped) = (joints(travel), joints(&swapped_travel));
+    let (mut with_gauges, mut with_tendons) = (0.0, 0.0);
+    for (motor, tendon) in [(one, other), (other, one)] {
+        let response = &responses.late[motor];
+        let mut shown = predicted(instruments, dynamics, &right, motor);
+        shown.swap_rows(one, other);
+        with_gauges += misfit(response, &shown);
+        with_tendons += misfit(response, &predicted(instruments, dynamics, &swapped, tendon));
+    }
+    with_tendons < with_gauges
+}
+
+/// The mean rises of the tensions in the time of [`Responses::late`], up to a factor, if the motor of a tendon pulls and
+/// all motors but this one stand still. `joints` are the joint angles, rad.
+fn predicted(instruments: &Instruments, dynamics: &LinkDynamics, joints: &Vector3<f64>, tendon: usize) -> Vector4<f64> {
+    let r = &instruments.tendons.r;
+    let inverse = (dynamics.inertia(joints) * CENTIMETRES).try_inverse().unwrap_or_default();
+    let (mut angles, mut rates, mut sum) = (Vector3::zeros(), Vector3::zeros(), Vector4::zeros());
+    let mut seconds = 0.0;
+    while seconds < LATE.1 {
+        seconds += STEP;
+        let mut travel = -(r.transpose() * angles);
+        // The motor accelerates during the pulse, and continues after it.
+        travel[tendon] += match seconds < LENGTH {
+            true => 0.5 * seconds * seconds,
+            false => LENGTH * (seconds - 0.5 * LENGTH),
+        };
+        let tensions = travel.component_div(&instruments.compliance);
+        rates += inverse * (r * tensions) * STEP;
+        angles += rates * STEP;
+        if seconds > LATE.0 {
+            sum += tensions;
+        }
+    }
+    sum
+}
+
+/// The squared difference of a response from a prediction, whose factor is unknown.
+fn misfit(response: &Vector4<f64>, predicted: &Vector4<f64>) -> f64 {
+    let factor = response.dot(predicted) / predicted.norm_squared().max(f64::MIN_POSITIVE);
+    (response - predicted * factor).norm_squared()
+}
+
+/// The mean of the middle two of four values.
+fn median(values: &Vector4<f64>) -> f64 {
+    (values.sum() - values.min() - values.max()) / 2.0
+}
