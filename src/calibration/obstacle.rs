@@ -187,8 +187,8 @@ pub enum Obstacle {
     },
     /// A motor pulls another tendon.
     #[error(
-        "tendons {first} and {second} are swapped: motor {first} pulls tendon {second}, and motor {second} pulls tendon \
-         {first}. Lead each tendon to its motor, or swap both motors with their encoders"
+        "tendons {first} and {second} are swapped: motor {first} pulls tendon {second}, and motor {second} pulls \
+         tendon {first}. Lead each tendon to its motor, or swap both motors with their encoders"
     )]
     SwappedTendons {
         /// The tendon's number, 1 to 4.
@@ -224,8 +224,8 @@ pub enum Obstacle {
     },
     /// A gauge falls while its tendon is pulled.
     #[error(
-        "gauge {gauge} is reversed: its reading falls while the tension rises. Swap its two signal wires, or change the \
-         sign of its entry in gauge.newton_per_count"
+        "gauge {gauge} is reversed: its reading falls while the tension rises. Swap its two signal wires, or change \
+         the sign of its entry in gauge.newton_per_count"
     )]
     ReversedGauge {
         /// The gauge's number, 1 to 4.

@@ -2,12 +2,14 @@
 //! tendon, in the configured directions, and every gauge shows the tension.
 //!
 //! First each motor alone pulls until an encoder moves. Then all motors are held in place and wind in until the tendons
-//! are tight. Each one pulls for some milliseconds, which its own gauge shows first, because the links delay the pull at
-//! the other gauges. At last all motors wind in a little more. The tensions of a finger that nothing touches rise along the null vector of R, whatever the
-//! friction of the motors, so the rises of the gauges show whether their scales agree.
+//! are tight. Each one pulls for some milliseconds, which its own gauge shows first, because the links delay the pull
+//! at the other gauges. At last all motors wind in a little more. The tensions of a finger that nothing touches rise
+//! along the null vector of R, whatever the friction of the motors, so the rises of the gauges show whether their
+//! scales agree.
 
 mod holding;
 mod pushing;
+mod readings;
 mod verdict;
 
 use super::findings::Findings;
@@ -19,6 +21,7 @@ use crate::model::configuration::ConfiguredFinger;
 use holding::Holding;
 use nalgebra::{Vector3, Vector4};
 use pushing::Pushing;
+use readings::Readings;
 use std::ops::ControlFlow::{Break, Continue};
 use verdict::judge;
 
@@ -45,17 +48,6 @@ enum Phase {
     Pushing(Pushing),
     /// All motors are held.
     Holding(Holding),
-}
-
-/// The measurements of a cycle.
-#[derive(Clone, Copy, Debug)]
-struct Readings {
-    /// Travel of each motor since the beginning, cm. Positive values pull the tendon in, if the wiring is right.
-    travel: Vector4<f64>,
-    /// Speed of each motor, cm/s.
-    speed: Vector4<f64>,
-    /// Tensions by the gauges, N.
-    tensions: Vector4<f64>,
 }
 
 impl SelfTest {

@@ -1,6 +1,6 @@
 //! All motors are held in place. They tighten the tendons, pull one by one, and raise all tensions together.
 
-use super::Readings;
+use super::readings::Readings;
 use crate::calibration::average::Average;
 use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;

@@ -1,7 +1,7 @@
 //! One motor pulls alone, with a torque that rises until an encoder moves. If that is not its own encoder, forward, the
 //! motor pulls until a gauge shows what is wrong.
 
-use super::Readings;
+use super::readings::Readings;
 use crate::calibration::average::Average;
 use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;

@@ -95,8 +95,8 @@ fn tendons_are_swapped(
     with_tendons < with_gauges
 }
 
-/// The mean rises of the tensions in the time of [`Responses::late`], up to a factor, if the motor of a tendon pulls and
-/// all motors but this one stand still. `joints` are the joint angles, rad.
+/// The mean rises of the tensions in the time of [`Responses::late`], up to a factor, if the motor of a tendon pulls
+/// and all motors but this one stand still. `joints` are the joint angles, rad.
 fn predicted(instruments: &Instruments, dynamics: &LinkDynamics, joints: &Vector3<f64>, tendon: usize) -> Vector4<f64> {
     let r = &instruments.tendons.r;
     let inverse = (dynamics.inertia(joints) * CENTIMETRES).try_inverse().unwrap_or_default();
