@@ -207,7 +207,7 @@ pub enum Obstacle {
     /// A motor unwinds its tendon instead of pulling it.
     #[error(
         "motor {motor} turns backwards: it unwinds its tendon when it should pull. Swap the two wires of the motor, or \
-         change its entries in motor.sign and encoder.sign"
+         change its entry in motor.sign"
     )]
     ReversedMotor {
         /// The motor's number, 1 to 4.
@@ -215,8 +215,8 @@ pub enum Obstacle {
     },
     /// An encoder counts backwards.
     #[error(
-        "encoder {encoder} counts backwards: its count falls while its motor pulls the tendon in, or the reverse of \
-         encoder.sign. Swap its two channels, or change its entry in encoder.sign"
+        "encoder {encoder} counts backwards while its motor pulls the tendon in. Swap its two channels, or change its \
+         entry in encoder.sign"
     )]
     ReversedEncoder {
         /// The encoder's number, 1 to 4.
