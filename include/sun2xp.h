@@ -1707,6 +1707,7 @@ int sun2xp_reset_timing(sun2xp_hand *hand, int finger);
 #define SUN2XP_FAULT_SET_POINT_EXPIRED      51 /* set point expired */
 #define SUN2XP_FAULT_REFLEX_STOP            52 /* stopped by a reflex */
 #define SUN2XP_FAULT_HARDWARE_FAILED        53 /* hardware failed */
+#define SUN2XP_FAULT_WRONG_WIRING           54 /* wrong wiring */
 /*
  Result of sun2xp_fault.
 

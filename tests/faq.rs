@@ -30,9 +30,9 @@ fn refused(text: &str) -> String {
 /// Returns the errors in the order of the page.
 fn errors() -> Vec<String> {
     let mut errors = vec![
-        refused("[hand]\nfingers = [1]\n[finger.1]\nport = \"/dev/ttyUSB7\"\n"),
+        refused("[finger.1]\nport = \"/dev/ttyUSB7\"\n[hand]\nfingers = [1]\n"),
         refused("[finger]\nbuad = 1_000_000\n"),
-        refused("[hand]\nfingers = [1]\n[finger.1]\nport = \"/dev/ttyUSB7\"\nbaud = 115_200\n"),
+        refused("[finger.1]\nport = \"/dev/ttyUSB7\"\nbaud = 115_200\n[hand]\nfingers = [1]\n"),
         refused("[finger]\nport = \"/dev/ttyUSB7\"\nbaud = 2_000_000\n"),
     ];
     let mut configuration = Configuration::default();

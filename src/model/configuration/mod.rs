@@ -8,6 +8,7 @@ mod contact;
 mod controller;
 mod encoder;
 mod events;
+mod finger_port;
 mod friction;
 mod gauge;
 mod geometry;
@@ -221,23 +222,6 @@ impl Default for ConfiguredFinger {
 }
 
 impl ConfiguredFinger {
-    /// Returns whether the finger has a simulated board instead of a port.
-    #[must_use]
-    pub fn simulated(&self) -> bool {
-        self.board.is_none() && self.port == "simulated"
-    }
-
-    /// Gives the finger a simulated board instead of its port.
-    pub fn simulate(&mut self) {
-        (self.port, self.board) = ("simulated".into(), None);
-    }
-
-    /// Returns whether two fingers are on one port: by its path, or because one board has both.
-    pub fn shares_port(&self, other: &Self) -> bool {
-        let named = |finger: &Self| finger.port != "simulated";
-        self.board.is_some() && self.board == other.board || named(self) && named(other) && self.port == other.port
-    }
-
     /// Returns the link lengths.
     #[must_use]
     pub fn links(&self) -> Links {

@@ -3,7 +3,7 @@
 use super::finding::{Finding, Rating, lacking};
 use std::fs::read_to_string;
 use std::path::Path;
-use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
+use sun2xp::model::configuration::Configuration;
 
 /// Memory that three servo threads lock for stacks, rings and mailboxes, with a reserve, bytes.
 const LOCKED: u64 = 6 << 20;
@@ -82,14 +82,9 @@ fn throttling(runtime: &str, period: &str) -> Finding {
     }
 }
 
-/// The fingers that the hand has.
-fn of_hand(configuration: &Configuration) -> impl Iterator<Item = &ConfiguredFinger> {
-    configuration.hand.fingers.members().map(|number| &configuration.fingers[number.index()])
-}
-
 fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) -> Finding {
     let subject = "real-time priority";
-    let wanted = of_hand(configuration).map(|finger| finger.priority).max().unwrap_or(0);
+    let wanted = configuration.of_hand().map(|finger| finger.priority).max().unwrap_or(0);
     let limit = limit.unwrap_or(0);
     if wanted == 0 {
         let advice = "The servos have the jitter of ordinary threads: set finger.priority to 80";
@@ -124,7 +119,7 @@ fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> F
 
 fn cores(configuration: &Configuration, allowed: &[usize], isolated: &[usize]) -> Finding {
     let subject = "cores";
-    let mut wanted: Vec<usize> = of_hand(configuration).filter_map(|finger| finger.core).collect();
+    let mut wanted: Vec<usize> = configuration.of_hand().filter_map(|finger| finger.core).collect();
     wanted.sort_unstable();
     wanted.dedup();
     let configured = if wanted.is_empty() { "none, so the scheduler selects them".into() } else { numbers(&wanted) };
