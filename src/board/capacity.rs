@@ -1,6 +1,7 @@
 //! Computes, before a port is opened, whether a serial line can carry the cyclic traffic.
 
 use super::protocol::{Kind, TURNAROUND_MICROSECONDS};
+use crate::model::Counted;
 use thiserror::Error;
 
 /// Start bit, eight data bits, stop bit.
@@ -13,11 +14,13 @@ pub const USABLE_SHARE: f64 = 0.8;
 /// A rate that the line cannot carry.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error(
-    "{fingers} finger(s) at {rate} Hz do not fit on a port at {baud} baud: a command of {command} bytes takes \
-     {command_us:.0} us, the response of the board {turnaround} us, and {fingers} replies of {reply} bytes \
+    "{who} at {rate} Hz {verb} not fit on a port at {baud} baud: a command of {command} bytes takes \
+     {command_us:.0} us, the response of the board {turnaround} us, and {replies} of {reply} bytes \
      {replies_us:.0} us (10 bits a byte), {needed_us:.0} us in all, but only {share:.0} % of a period, {usable_us:.0} \
      us, are usable. Set baud = {least_baud} or more for every finger of the port and in its board, set hand.rate = \
      {fastest_rate:.0} or less, or put fewer fingers on the port",
+    who = Counted(*.fingers as u64, "finger", "fingers"), verb = if *.fingers == 1 { "does" } else { "do" },
+    replies = Counted(*.fingers as u64, "reply", "replies"),
     command = Kind::Command.wire_length(), reply = Kind::Reply.wire_length(), turnaround = TURNAROUND_MICROSECONDS,
     share = 100.0 * USABLE_SHARE
 )]
@@ -117,6 +120,9 @@ mod tests {
         for part in ["1110 us in all", "80 % of a period, 800 us, are usable", "baud = 2000000", "hand.rate = 720"] {
             assert!(text.contains(part), "{part:?} is not in: {text}");
         }
+        assert!(text.starts_with("3 fingers at 1000 Hz do not fit") && text.contains(" 3 replies of "), "{text}");
+        let one = capacity(115_200, 1, 1000.0).unwrap_err().to_string();
+        assert!(one.starts_with("1 finger at 1000 Hz does not fit") && one.contains(" 1 reply of "), "{one}");
         assert!(capacity(2_000_000, 3, 1000.0).is_ok());
         assert!(capacity(1_000_000, 3, refusal.fastest_rate).is_ok());
     }

@@ -3,6 +3,7 @@
 use super::port_error::PortError;
 use super::protocol::{HIGHEST_ADDRESS, Kind, Reason, Refused, VERSION};
 use super::terms::TermsError;
+use crate::model::Counted;
 use thiserror::Error;
 
 /// Why the host cannot work with a board. The texts name the cause and the remedy.
@@ -22,8 +23,9 @@ pub enum LinkError {
     },
     /// Bytes were received, but no valid frame.
     #[error(
-        "{bytes} bytes were received, but no valid frame ({damaged} damaged): finger.baud differs from the baud rate \
-         of the board, or the device at this port uses another protocol. Check finger.baud and finger.port"
+        "{} received, but no valid frame ({damaged} damaged): finger.baud differs from the baud rate \
+         of the board, or the device at this port uses another protocol. Check finger.baud and finger.port",
+        Counted(*bytes, "byte was", "bytes were")
     )]
     Unintelligible {
         /// Bytes received.

@@ -3,6 +3,7 @@
 
 pub mod configuration;
 mod contact;
+mod counted;
 mod direction;
 mod finger_number;
 mod fingers;
@@ -18,6 +19,7 @@ mod tendons;
 mod validation;
 
 pub use contact::{Contact, ContactError, spring};
+pub use counted::Counted;
 pub use direction::direction;
 pub use finger_number::FingerNumber;
 pub use fingers::Fingers;

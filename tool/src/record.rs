@@ -14,7 +14,7 @@ use files::{Files, Limits};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use sun2xp::model::FingerNumber;
+use sun2xp::model::{Counted, FingerNumber};
 use sun2xp::telemetry::{Description, Ended, Message, Reader};
 
 /// Longest time for which the recorder waits for messages before it looks at its other limits.
@@ -112,7 +112,8 @@ fn note_losses(lost: [u64; 3], files: &mut Files, counts: &mut Counts, display: 
     for (finger, lost) in FingerNumber::ALL.into_iter().zip(lost).filter(|(_, lost)| *lost > 0) {
         counts.lost += lost;
         files.write_lost(finger, lost)?;
-        display.line(&format!("{lost} cycles of finger {finger} are lost, and marked in /lost"));
+        display
+            .line(&format!("finger {finger}: {} lost, and marked in /lost", Counted(lost, "cycle is", "cycles are")));
     }
     Ok(())
 }

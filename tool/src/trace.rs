@@ -11,7 +11,7 @@ use sun2xp::control::Feedback;
 use sun2xp::finger::events::{Event, EventKind};
 use sun2xp::finger::{Fault, FaultKind, Stage};
 use sun2xp::model::configuration::FINGERS;
-use sun2xp::model::{Part, ShownPath};
+use sun2xp::model::{Counted, Part, ShownPath};
 use sun2xp::simulated::ObjectState;
 use sun2xp::telemetry::{Description, Message, Sample, View};
 
@@ -127,7 +127,7 @@ pub fn read_with(file: &Path, reach: &dyn Fn(f64), visit: Visit) -> Result<(Desc
             }
             recording::Item::Message(message) => message,
             recording::Item::Lost { finger, cycles } => {
-                let text = format!("{cycles} cycles are not recorded");
+                let text = format!("{} not recorded", Counted(cycles, "cycle is", "cycles are"));
                 let finger = Some(finger.get());
                 visit(Item::Mark(Mark { time, finger, cycle: None, kind: MarkKind::Gap, text }))?;
                 continue;

@@ -1,4 +1,5 @@
 use super::fields::{FieldReader, FieldWriter};
+use crate::model::Counted;
 use std::fmt;
 
 /// Board to host: the board received a valid frame and did not act on it.
@@ -104,7 +105,8 @@ impl fmt::Display for Refused {
                 )
             }
             Reason::UnknownFrame => {
-                write!(f, "it does not support frame type {request} with {detail} bytes. Update its firmware")
+                let bytes = Counted(detail.into(), "byte", "bytes");
+                write!(f, "it does not support frame type {request} with {bytes}. Update its firmware")
             }
             Reason::Other(number) => {
                 write!(f, "it gives the reason number {number}, which is unknown to this library. Update the library")

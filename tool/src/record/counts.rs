@@ -1,6 +1,7 @@
 //! What has been recorded.
 
 use std::fmt::{self, Display, Formatter};
+use sun2xp::model::Counted;
 use sun2xp::telemetry::Message;
 
 /// Numbers of recorded cycles and events, and of lost cycles.
@@ -24,6 +25,7 @@ impl Counts {
 
 impl Display for Counts {
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{} cycles, {} events, {} cycles lost", self.cycles, self.events, self.lost)
+        let [cycles, lost] = [self.cycles, self.lost].map(|number| Counted(number, "cycle", "cycles"));
+        write!(formatter, "{cycles}, {}, {lost} lost", Counted(self.events, "event", "events"))
     }
 }

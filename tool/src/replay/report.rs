@@ -5,6 +5,7 @@ use crate::print::{Cell, Look, Screen, Table};
 use serde::Serialize;
 use std::ops::Range;
 use sun2xp::finger::ControlRecord;
+use sun2xp::model::Counted;
 
 /// Most gaps that are listed. Further ones are counted.
 const MOST_GAPS: usize = 20;
@@ -142,13 +143,23 @@ impl FingerReport {
         for (stage, count) in &contents.stages {
             row("stage", format!("{count} {stage}"));
         }
-        row("lost", format!("{} replies, at most {} in a row", contents.lost_replies, contents.most_lost_in_a_row));
+        row(
+            "lost",
+            format!(
+                "{}, at most {} in a row",
+                Counted(contents.lost_replies, "reply", "replies"),
+                contents.most_lost_in_a_row
+            ),
+        );
         let Tally { set_points, adjustments, restarts, skipped_periods, .. } = contents;
         row(
             "events",
             format!(
-                "{set_points} set points, {adjustments} adjustments, {restarts} restarts, {skipped_periods} periods \
-                 skipped"
+                "{}, {}, {}, {} skipped",
+                Counted(*set_points, "set point", "set points"),
+                Counted(*adjustments, "adjustment", "adjustments"),
+                Counted(*restarts, "restart", "restarts"),
+                Counted(*skipped_periods, "period", "periods")
             ),
         );
         row("motors", format!("at most {:.3} N cm", contents.largest_motor_torque));
@@ -167,10 +178,10 @@ impl FingerReport {
         }
         let more = self.gaps - self.first_gaps.len() as u64;
         if more > 0 {
-            row(format!("{more} more gaps, {} missing cycles in all", self.missing_cycles));
+            row(format!("{}, {} missing cycles in all", Counted(more, "more gap", "more gaps"), self.missing_cycles));
         }
         if self.without_state > 0 {
-            let text = format!("{} cycles, because no recorded state is before them", self.without_state);
+            let text = format!("{}, which no recorded state precedes", Counted(self.without_state, "cycle", "cycles"));
             table.row([Cell::new(Look::Dim, "not replayed"), text.into()]);
         }
     }
@@ -178,7 +189,10 @@ impl FingerReport {
     fn add_result_to(&self, table: &mut Table) {
         let result = match self.pass() {
             true => {
-                let text = format!("{} cycles, every motor command the same to the last bit", self.replayed);
+                let text = format!(
+                    "{}, every motor command the same to the last bit",
+                    Counted(self.replayed, "cycle", "cycles")
+                );
                 Cell::new(Look::Good, text)
             }
             false => Cell::new(Look::Bad, format!("{} of {} cycles differ", self.different, self.replayed)),
