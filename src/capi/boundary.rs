@@ -31,13 +31,25 @@ pub(super) const MEMORY_OF_THREAD: usize = 64 * 1024;
 /// no cancellation point.
 #[inline(always)]
 pub(super) fn guarded(name: &'static str, handle: Handle, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
-    uncancelled(|| {
-        let environment = Environment::enter_default();
-        let errno = process::errno();
-        let result = finish(name, handle, errno, unless_forked(call));
-        environment.restore();
-        result
-    })
+    let mut call = ManuallyDrop::new(call);
+    // SAFETY: `quick` calls this once.
+    let mut call = || unsafe { ManuallyDrop::take(&mut call) }();
+    let cancellation = DeferredCancellation::begin();
+    let result = quick(name, handle, &mut call);
+    cancellation.end();
+    result
+}
+
+/// Runs a quick call in its own frame, as [`contained`] does. It is compiled once for all calls, which keeps the
+/// library small.
+#[inline(never)]
+#[allow(improper_ctypes_definitions, reason = "called from this file only")]
+extern "C" fn quick(name: &'static str, handle: Handle, call: &mut dyn FnMut() -> Result<(), Refusal>) -> c_int {
+    let environment = Environment::enter_default();
+    let errno = process::errno();
+    let result = finish(name, handle, errno, unless_forked(call));
+    environment.restore();
+    result
 }
 
 /// Runs a slow call in its own thread. Returns 0, or a negative number if it is refused. `prepare` copies the arguments
@@ -49,19 +61,41 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
     memory: usize,
     prepare: impl FnOnce() -> Result<C, Refusal>,
 ) -> c_int {
-    uncancelled(|| {
-        let blocked = SignalsBlocked::all();
-        slow(name, handle, &blocked, || {
-            if !is_memory_free(memory) {
-                return Err(Refusal::NoMemory);
-            }
-            // The planner may have handlers of SIGSEGV and SIGBUS that make pages accessible. `prepare` may read such
-            // pages.
-            let call = blocked.with_faults_unblocked(prepare)?;
-            let start = |source| HandError::System { doing: "start a thread for this call", source };
-            let delegated = DelegatedCall::begin(&blocked, || caught(call)).map_err(start)?;
-            delegated.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked))
-        })
+    let mut prepare = ManuallyDrop::new(prepare);
+    let mut prepare = |blocked: &SignalsBlocked| -> Result<Work, Refusal> {
+        // SAFETY: `elsewhere` calls this once.
+        let prepare = unsafe { ManuallyDrop::take(&mut prepare) };
+        // The planner may have handlers of SIGSEGV and SIGBUS that make pages accessible. `prepare` may read such
+        // pages.
+        let call = blocked.with_faults_unblocked(prepare)?;
+        Ok(Box::new(|| caught(call)))
+    };
+    let cancellation = DeferredCancellation::begin();
+    let result = elsewhere(name, handle, memory, &mut prepare);
+    cancellation.end();
+    result
+}
+
+/// The part of a slow call that its own thread runs.
+type Work = Box<dyn FnOnce() -> Result<(), Refusal> + Send>;
+
+/// Runs a slow call in its own thread, as [`delegated`] does. It is compiled once for all calls.
+#[inline(never)]
+#[allow(improper_ctypes_definitions, reason = "called from this file only")]
+extern "C" fn elsewhere(
+    name: &'static str,
+    handle: Handle,
+    memory: usize,
+    prepare: &mut dyn FnMut(&SignalsBlocked) -> Result<Work, Refusal>,
+) -> c_int {
+    let blocked = SignalsBlocked::all();
+    slow(name, handle, &blocked, || {
+        if !is_memory_free(memory) {
+            return Err(Refusal::NoMemory);
+        }
+        let start = |source| HandError::System { doing: "start a thread for this call", source };
+        let delegated = DelegatedCall::begin(&blocked, prepare(&blocked)?).map_err(start)?;
+        delegated.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked))
     })
 }
 
@@ -76,7 +110,9 @@ pub(super) fn delegated_or_done_here(
     uncancelled(|| {
         let blocked = SignalsBlocked::all();
         slow(name, handle, &blocked, || {
-            match is_memory_free(MEMORY_OF_THREAD).then(|| DelegatedCall::begin(&blocked, move || caught(call))) {
+            match is_memory_free(MEMORY_OF_THREAD)
+                .then(|| DelegatedCall::begin(&blocked, Box::new(move || caught(call))))
+            {
                 Some(Ok(delegated)) => delegated.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked)),
                 _ => {
                     let _whole = NoCancellation::begin();

@@ -7,7 +7,7 @@ use crate::capi::process;
 use crate::capi::refusal::Refusal;
 use crate::capi::reporting;
 use crate::hand::{self, Configured, Hand, HandError};
-use parking_lot::{Mutex, MutexGuard, RwLock};
+use parking_lot::{MappedRwLockReadGuard, Mutex, MutexGuard, RwLock, RwLockReadGuard};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
@@ -21,7 +21,8 @@ struct Place {
     /// wait for this lock.
     lifecycle: Mutex<()>,
     /// Locked for writing only to insert or remove a hand.
-    hand: RwLock<Option<Opened>>,
+    /// Boxed, so that the table is small and all zeros, and takes no place in the library's file.
+    hand: RwLock<Option<Box<Opened>>>,
     /// The value of the handle of the open hand; 0 if there is none.
     handle: AtomicUsize,
     events: HandEvents,
@@ -126,7 +127,7 @@ fn open_at(place: usize, from: SourceWithIo) -> Result<Handle, Refusal> {
     let handle = Handle::new(OPENED.fetch_add(1, Ordering::Relaxed), place);
     let Place { events, hand: slot, handle: value, .. } = &TABLE[place];
     events.open(handle, &hand);
-    *slot.write() = Some(Opened { handle, hand });
+    *slot.write() = Some(Box::new(Opened { handle, hand }));
     value.store(handle.value(), Ordering::Release);
     Ok(handle)
 }
@@ -207,16 +208,23 @@ fn each_at_exit(call: impl Fn(&Hand)) {
     }
 }
 
+/// Locks an open hand for reading.
+fn opened(handle: Handle) -> Result<MappedRwLockReadGuard<'static, Hand>, Refusal> {
+    let opened = Place::named_by(handle)?.hand.read();
+    RwLockReadGuard::try_map(opened, |opened| match opened {
+        Some(opened) if opened.handle == handle => Some(&opened.hand),
+        _ => None,
+    })
+    .map_err(|_| Refusal::NoHand)
+}
+
 /// Runs `call` on an open hand.
 #[inline]
 pub(super) fn with<T, E: Into<Refusal>>(
     handle: Handle,
     call: impl FnOnce(&Hand) -> Result<T, E>,
 ) -> Result<T, Refusal> {
-    let place = Place::named_by(handle)?;
-    let opened = place.hand.read();
-    let opened = opened.as_ref().filter(|opened| opened.handle == handle).ok_or(Refusal::NoHand)?;
-    call(&opened.hand).map_err(E::into)
+    call(&*opened(handle)?).map_err(E::into)
 }
 
 /// Runs `call`, which moves an open hand or changes how it moves. It is refused while the process exits, because the

@@ -15,8 +15,10 @@ const TEXT: usize = 2048;
 
 /// The last refusal of a hand.
 struct Entry {
+    /// Number of this refusal among those of the thread, from 1; 0 if the entry is unused.
+    count: u64,
     handle: Handle,
-    /// SUN2XP_ERROR_..., or 0 if the entry is unused.
+    /// SUN2XP_ERROR_...
     number: c_int,
     errno: c_int,
     call: Text<48>,
@@ -35,15 +37,15 @@ pub(super) struct Found {
 
 struct Errors {
     entries: [Entry; REMEMBERED],
-    /// The entries in the order of their refusals, the newest first.
-    order: [u8; REMEMBERED],
 }
 
 thread_local! {
+    // All bytes are zero, so that the value takes no place in the library's file.
     static ERRORS: RefCell<Errors> = const {
         RefCell::new(Errors {
             entries: [const {
                 Entry {
+                    count: 0,
                     handle: Handle::NULL,
                     number: 0,
                     errno: 0,
@@ -52,7 +54,6 @@ thread_local! {
                     remedy: Text::EMPTY,
                 }
             }; REMEMBERED],
-            order: [0, 1, 2, 3],
         })
     };
 }
@@ -60,17 +61,25 @@ thread_local! {
 impl Errors {
     /// The entry for a new refusal of a hand: that of the same hand, or else the oldest.
     fn entry(&mut self, handle: Handle) -> &mut Entry {
-        let same = |&entry: &u8| {
-            let entry = &self.entries[usize::from(entry)];
-            entry.number != 0 && entry.handle == handle
-        };
-        let position = self.order.iter().position(same).unwrap_or(REMEMBERED - 1);
-        self.order[..=position].rotate_right(1);
-        &mut self.entries[usize::from(self.order[0])]
+        let newest = self.newest().count;
+        let same = |entry: &Entry| entry.count != 0 && entry.handle == handle;
+        let index = self
+            .entries
+            .iter()
+            .position(same)
+            .unwrap_or_else(|| (0..REMEMBERED).min_by_key(|&index| self.entries[index].count).unwrap_or_default());
+        let entry = &mut self.entries[index];
+        entry.count = newest + 1;
+        entry
     }
 
     fn newest(&self) -> &Entry {
-        &self.entries[usize::from(self.order[0])]
+        self.entries[1..].iter().fold(
+            &self.entries[0],
+            |newest, entry| {
+                if entry.count > newest.count { entry } else { newest }
+            },
+        )
     }
 }
 
@@ -110,9 +119,9 @@ pub(super) fn find(handle: Handle) -> Found {
     ERRORS.with(|errors| {
         let none = || Found { number: 0, errno: 0, call: c"".as_ptr(), text: c"".as_ptr(), remedy: c"".as_ptr() };
         let Ok(errors) = errors.try_borrow() else { return none() };
-        let mut entries = errors.order.iter().map(|&entry| &errors.entries[usize::from(entry)]);
-        let found = entries.find(|entry| entry.number != 0 && (handle == Handle::NULL || entry.handle == handle));
-        found.map_or_else(none, |entry| Found {
+        let entries = errors.entries.iter();
+        let found = entries.filter(|entry| entry.count != 0 && (handle == Handle::NULL || entry.handle == handle));
+        found.max_by_key(|entry| entry.count).map_or_else(none, |entry| Found {
             number: entry.number,
             errno: entry.errno,
             call: entry.call.as_c_string(),

@@ -3,6 +3,7 @@
 use crate::control::{Feedback, MotorCommand, Report};
 use crate::finger::{ControlInput, Stage};
 use crate::model::configuration::ConfiguredFinger;
+use crate::model::snapshot;
 use crate::realtime::CycleTiming;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -60,6 +61,7 @@ pub struct ControllerSource {
     /// Gravity in the finger's frame, m/s^2.
     pub gravity: Vector3<f64>,
     /// The finger's configuration.
+    #[serde(serialize_with = "snapshot::serialize")]
     pub finger: ConfiguredFinger,
 }
 

@@ -7,6 +7,7 @@ use crate::control::State;
 use crate::files::replace_file;
 use crate::finger::{ControllerSource, CycleRecord};
 use crate::model::configuration::ConfiguredHand;
+use crate::model::snapshot;
 use serde::{Deserialize, Serialize};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -34,11 +35,13 @@ pub struct Origin {
     /// Number of the finger, 1 to 3.
     pub finger: i32,
     /// The hand's configuration, with the rate.
+    #[serde(serialize_with = "snapshot::serialize")]
     pub hand: ConfiguredHand,
     /// Every controller that the cycles name.
     #[serde(deserialize_with = "reading::controllers")]
     pub controllers: Vec<ControllerSource>,
     /// State of the first cycle's controller before that cycle.
+    #[serde(serialize_with = "snapshot::serialize")]
     pub state: State,
 }
 
@@ -136,6 +139,8 @@ impl Recording {
     /// # Errors
     /// Returns the error that the system reports.
     pub fn write(&self, output: impl Write) -> io::Result<()> {
+        // A reference, so that the code is compiled once for all kinds of outputs.
+        let output: &mut dyn Write = &mut { output };
         let mut output = BufWriter::new(output);
         let header = Header {
             sun2xp_black_box: VERSION,

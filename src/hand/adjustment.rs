@@ -4,7 +4,7 @@
 use crate::control::{JointSpring, SetPoint};
 use crate::finger::{Adjustable, Replaced};
 use crate::hand::admission::Admission;
-use crate::hand::configuration_file::{Wrong, deserialize, overlay};
+use crate::hand::configuration_file::{Wrong, deserialize, overlay, to_document};
 use crate::hand::dispatcher::Member;
 use crate::hand::opening::{admission, check};
 use crate::hand::{ConfigurationError, Hand, HandError, SetPointError};
@@ -119,7 +119,7 @@ fn adjusted(
     if let Some(key) = permanent(over.as_table(), "") {
         return Err(ConfigurationError::Permanent { key });
     }
-    let present = toml_edit::ser::to_document(finger).map_err(|error| refused(Wrong::at(None, error.to_string())))?;
+    let present = to_document(finger).map_err(refused)?;
     let mut merged = present.as_table().clone();
     overlay(&mut merged, over.as_table());
     let mut changed: ConfiguredFinger = deserialize(&merged).map_err(refused)?;

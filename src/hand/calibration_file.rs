@@ -3,7 +3,7 @@
 
 mod editing;
 
-use super::configuration_file::{LARGEST, parse};
+use super::configuration_file::{LARGEST, parse, to_document};
 use crate::files::{UpdateError, update_file};
 use crate::hand::ConfigurationError;
 use crate::hand::found::{Found, FoundValue, Misfit};
@@ -89,7 +89,7 @@ fn write_finger(document: &mut DocumentMut, found: &Found, before: &Configuratio
 /// The numbers at a key, including default values. It is empty if the key is not set.
 fn numbers_at(finger: &ConfiguredFinger, section: &str, key: &str) -> Vec<f64> {
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
-    let document = toml_edit::ser::to_document(finger).unwrap_or_default();
+    let document = to_document(finger).unwrap_or_default();
     let value = document.get(section).and_then(|section| section.get(key)).and_then(Item::as_value);
     match value {
         Some(Value::Array(values)) => {

@@ -14,6 +14,7 @@ use crate::model::{FingerNumber, Fingers, ShownPath};
 use std::path::{Path, PathBuf};
 pub(super) use text::overlay;
 pub use values::deserialize;
+pub(super) use values::to_document;
 pub use wrong::Wrong;
 
 /// Largest configuration file, bytes: more than sixty times the size of docs/sun2xp.toml, which contains every key.

@@ -2,6 +2,7 @@
 //! the values that were found, and the part of the configuration on which these values depend.
 
 use crate::calibration::Findings;
+use crate::hand::configuration_file::to_document;
 use crate::model::FingerNumber;
 use crate::model::configuration::Configuration;
 use std::collections::BTreeMap;
@@ -196,7 +197,7 @@ fn whole<T: Into<i64>>(values: [T; 4]) -> Numbers {
 fn excerpt(configuration: &Configuration, finger: FingerNumber, keys: &[&str]) -> BTreeMap<String, String> {
     let mut leaves = BTreeMap::new();
     // Every configuration can be serialised, because it was read from a TOML text or could have been read from one.
-    let finger = toml_edit::ser::to_document(&configuration.fingers[finger.index()]).unwrap_or_default();
+    let finger = to_document(&configuration.fingers[finger.index()]).unwrap_or_default();
     for &key in keys {
         if key == RATE {
             leaves.insert(key.into(), configuration.hand.rate.to_string());

@@ -26,6 +26,7 @@ impl Links {
     }
 
     /// Returns [`Links::jacobian`]. The sine and cosine of joint 0 come from the caller, which needs them too.
+    #[inline]
     fn jacobian_turned(&self, (s0, c0): (f64, f64), theta: &Vector3<f64>) -> Matrix3<f64> {
         let [l0, l1, l2] = self.0;
         let (s1, c1) = theta[1].sin_cos();

@@ -15,6 +15,7 @@ mod link_weight;
 mod part;
 pub mod path;
 mod shown;
+pub(crate) mod snapshot;
 mod tendons;
 mod validation;
 

@@ -37,7 +37,7 @@ impl<T: Send + 'static> DelegatedCall<T> {
     ///
     /// # Errors
     /// Returns the system's error if it cannot start a thread.
-    pub fn begin(_blocked: &SignalsBlocked, work: impl FnOnce() -> T + Send + 'static) -> io::Result<Self> {
+    pub fn begin(_blocked: &SignalsBlocked, work: Box<dyn FnOnce() -> T + Send>) -> io::Result<Self> {
         // A worker that is still in `WORKER` is not joined. It ends by itself.
         drop(take_worker());
         let outcome = Arc::new(Outcome { result: Mutex::new(None), done: AtomicU32::new(0) });
@@ -98,7 +98,7 @@ mod tests {
             std::thread::sleep(Duration::from_millis(20));
             std::thread::current().id() != own
         };
-        let call = DelegatedCall::begin(&blocked, work).expect("a thread");
+        let call = DelegatedCall::begin(&blocked, Box::new(work)).expect("a thread");
         assert_eq!(call.wait(&blocked, || false), Some(true));
     }
 
@@ -106,7 +106,7 @@ mod tests {
     fn a_wait_ends_when_there_is_a_reason_to_give_up() {
         let blocked = SignalsBlocked::all();
         let (stay, leave) = std::sync::mpsc::channel::<()>();
-        let call = DelegatedCall::begin(&blocked, move || leave.recv().is_err()).expect("a thread");
+        let call = DelegatedCall::begin(&blocked, Box::new(move || leave.recv().is_err())).expect("a thread");
         assert_eq!(call.wait(&blocked, || true), None);
         drop(stay);
     }

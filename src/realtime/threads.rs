@@ -52,7 +52,7 @@ pub fn spawn<T: Send + 'static>(
     priority: Priority,
     body: impl FnOnce(RealtimeRefusals) -> T + Send + 'static,
 ) -> io::Result<JoinHandle<T>> {
-    start(name, STACK_BYTES, move || body(apply(priority)))
+    start(name, STACK_BYTES, Box::new(move || body(apply(priority))))
 }
 
 /// Like [`spawn`], but the new thread has the scheduling of the calling thread, because it works on behalf of that
@@ -61,13 +61,14 @@ pub(super) fn spawn_alike<T: Send + 'static>(
     name: &str,
     body: impl FnOnce() -> T + Send + 'static,
 ) -> io::Result<JoinHandle<T>> {
-    start(name, CALL_STACK_BYTES, body)
+    start(name, CALL_STACK_BYTES, Box::new(body))
 }
 
+/// `body` is boxed, because the standard library's code of a thread is large and generic over the body.
 fn start<T: Send + 'static>(
     name: &str,
     stack: usize,
-    body: impl FnOnce() -> T + Send + 'static,
+    body: Box<dyn FnOnce() -> T + Send>,
 ) -> io::Result<JoinHandle<T>> {
     // The new thread inherits this signal mask.
     let _blocked = SignalsBlocked::all();

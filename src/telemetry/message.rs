@@ -5,6 +5,7 @@ use crate::finger::events::Event;
 use crate::finger::{ControllerSource, CycleRecord, Fault, Losses, Stage};
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredHand};
+use crate::model::snapshot;
 use crate::realtime::Distribution;
 use crate::simulated::ObjectState;
 use serde::{Deserialize, Serialize};
@@ -107,6 +108,7 @@ pub enum Outgoing<'a> {
         /// The data from which the controller is constructed.
         source: &'a ControllerSource,
         /// The hand's configuration.
+        #[serde(serialize_with = "snapshot::serialize")]
         hand: &'a ConfiguredHand,
     },
     /// See [`Message::Keyframe`].
@@ -116,6 +118,7 @@ pub enum Outgoing<'a> {
         /// Number of the cycle.
         cycle: u64,
         /// The state before that cycle.
+        #[serde(serialize_with = "snapshot::serialize")]
         state: &'a State,
     },
     /// See [`Message::Cycle`].
@@ -150,6 +153,7 @@ pub struct Description {
     /// The fingers that are open.
     pub fingers: Vec<FingerNumber>,
     /// The configuration with which the hand was opened. [`Message::Controller`] has later changes.
+    #[serde(serialize_with = "snapshot::serialize")]
     pub configuration: Configuration,
 }
 

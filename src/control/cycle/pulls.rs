@@ -45,6 +45,7 @@ impl Controller {
     }
 
     /// Runs the tendon controller, which converts desired tensions to pulls of at most `limit`, N.
+    #[inline]
     pub(super) fn control_tensions(
         &self,
         state: &mut State,
@@ -64,6 +65,7 @@ impl Controller {
 
     /// Commands the pulls `asked`, limited to `limit`, N. If an activity begins, or this controller replaces another
     /// one, the pulls change without a jump.
+    #[inline]
     pub(super) fn command_pulls(&self, state: &mut State, asked: &Vector4<f64>, limit: &Vector4<f64>, begins: bool) {
         let goes_on_from = state.goes_on_from.take();
         if let Some(before) = goes_on_from.or(begins.then_some(state.pulls)) {

@@ -42,6 +42,7 @@ impl MotorHeating {
     }
 
     /// Returns the largest pull that each motor may give now, N.
+    #[inline]
     pub fn limit(&self, heat: &Heat) -> Vector4<f64> {
         let part = self.part(heat);
         Vector4::from_fn(|motor, _| {

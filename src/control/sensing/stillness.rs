@@ -23,6 +23,7 @@ impl Stillness {
     }
 
     /// Records motor angles, rad, that were measured `period` seconds after the previous ones.
+    #[inline]
     pub fn note(&mut self, motor_angles: &Vector4<f64>, period: f64) {
         if (motor_angles - self.at).amax() <= LARGEST_MOTION {
             self.seconds += period;

@@ -45,6 +45,7 @@ impl AdmissibleStiffness {
     ///
     /// The largest eigenvalue of a sum of matrices is at most the sum of their largest eigenvalues. For the soft
     /// limits, the trace is used instead of the largest eigenvalue, because it is at least as large.
+    #[inline]
     pub fn scale(&self, k_theta: &Matrix3<f64>, limits: &Vector3<f64>) -> f64 {
         let [largest, ..] = eigenvalues(&(self.inverse * k_theta * self.inverse.transpose()));
         let left = self.share - limits.dot(&self.compliance);

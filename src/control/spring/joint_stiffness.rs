@@ -97,6 +97,7 @@ impl JointStiffness {
     }
 
     /// Computes a spring at joint angles, rad.
+    #[inline]
     pub(crate) fn posed(&self, spring: &Spring, joints: &Vector3<f64>) -> PosedSpring<'_> {
         let jacobian = self.links.spatial_jacobian(joints);
         let stiffened = spring.stiffness * jacobian;
@@ -157,6 +158,7 @@ impl PosedSpring<'_> {
     }
 
     /// Returns tau, N cm, of the spring between `desired`, rad, and the joints.
+    #[inline]
     pub fn torques(&self, desired: &Vector3<f64>) -> Vector3<f64> {
         let mut torques = Vector3::zeros();
         if self.exact < 1.0 {

@@ -20,6 +20,7 @@ impl Slew {
     }
 
     /// Moves `anchor` by one cycle toward `target`, both in rad.
+    #[inline]
     pub fn advance(&self, anchor: &mut Vector3<f64>, target: &Vector3<f64>) {
         let way = target - *anchor;
         let farthest = way.amax();

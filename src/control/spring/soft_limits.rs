@@ -45,6 +45,7 @@ impl SoftLimits {
     }
 
     /// Returns the push at joint angles, rad.
+    #[inline]
     pub fn push(&self, joints: &Vector3<f64>) -> Push {
         let within = joints.zip_zip_map(&self.low, &self.high, |joint, low, high| joint.max(low).min(high));
         let beyond = within - joints;

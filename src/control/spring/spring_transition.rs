@@ -40,6 +40,7 @@ fn share(law: Law) -> f64 {
 
 impl Spring {
     /// Moves everything except the anchor toward the given values by the fraction `part` of the difference.
+    #[inline]
     fn approach(&mut self, exact: f64, stiffness: &Matrix6<f64>, damping: f64, part: f64) {
         self.exact += (exact - self.exact) * part;
         self.stiffness += (stiffness - self.stiffness) * part;
@@ -75,6 +76,7 @@ impl SpringTransition {
     /// Returns the springs of this cycle: the spring of the tip, and the joint spring if there is one. They approach
     /// the springs of `set_point` from cycle to cycle, except that they have the anchor of `set_point` at once. The
     /// first call starts with the springs of `set_point`.
+    #[inline]
     pub fn advance<'a>(
         &self,
         stages: &'a mut Option<SpringStages>,

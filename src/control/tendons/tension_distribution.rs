@@ -73,6 +73,7 @@ impl TensionDistribution {
     /// Returns the distribution in which no tension exceeds `limit`, N, which is the tension that the motor of each
     /// tendon can give now. A limit below the tension at zero joint torque is raised to that tension. The distribution
     /// then permits no torque that would raise the tension further.
+    #[inline]
     pub fn below(&self, limit: &Vector4<f64>) -> BoundedDistribution<'_> {
         BoundedDistribution { of: self, maximum: self.maximum.inf(limit).sup(&self.at_rest) }
     }
@@ -90,6 +91,7 @@ impl BoundedDistribution<'_> {
     /// q_i/q_j, where A = Q tau and s is the scale. Eq. 20 selects the largest of these tau_g. It gives tendon i the
     /// largest of these tensions, so each of them must be at most t_max. These 16 conditions, one for each pair i, j,
     /// bound s.
+    #[inline]
     pub fn distribute(&self, torques: &Vector3<f64>) -> DistributedTensions {
         let Self { of, maximum } = self;
         let wanted = of.from_torque * torques;

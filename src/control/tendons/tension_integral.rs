@@ -52,6 +52,7 @@ impl TensionIntegral {
     /// Returns the pull, N. It is the sum of the integral and `rest`, the pull without the integral, N. While the motor
     /// is at its limit, the integral does not grow further toward that limit. When a warm motor's limit falls, the
     /// integral is reduced with it.
+    #[inline]
     pub fn complete(&self, state: &mut TendonState, input: &TendonInput, rest: &Vector4<f64>) -> Vector4<f64> {
         Vector4::from_fn(|tendon, _| {
             let limit = input.limit[tendon];

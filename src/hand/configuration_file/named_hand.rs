@@ -1,5 +1,6 @@
 //! The key `simulation.hand`: a name that stands for the values of other keys.
 
+use super::values::to_document;
 use super::wrong::Wrong;
 use crate::model::configuration::ConfiguredSimulation;
 use toml_edit::{Item, Table};
@@ -10,7 +11,7 @@ pub(super) fn add_named_values(finger: &mut Table) -> Result<(), Wrong> {
     let Some(simulation) = finger.get_mut("simulation").and_then(Item::as_table_like_mut) else { return Ok(()) };
     let name = simulation.get("hand").and_then(Item::as_str);
     let Some(values) = name.and_then(ConfiguredSimulation::named) else { return Ok(()) };
-    let values = toml_edit::ser::to_document(&values).map_err(|error| Wrong::at(None, error.to_string()))?;
+    let values = to_document(&values)?;
     for (key, value) in values.iter() {
         if !simulation.contains_key(key) {
             simulation.insert(key, value.clone());

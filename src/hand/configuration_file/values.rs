@@ -10,18 +10,28 @@ mod choice;
 mod content;
 
 use super::wrong::{Wrong, one_of};
+use crate::model::Counted;
+use crate::model::snapshot::snapshot;
 use choice::Choice;
 use content::Content;
+use serde::Serialize;
+use serde::de::Error;
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeOwned, DeserializeSeed, MapAccess, SeqAccess, Visitor};
 use serde::forward_to_deserialize_any;
 use std::fmt::Display;
 use std::ops::Range;
-use toml_edit::{Item, Table, TableLike, Value};
+use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 
 /// Converts a table to a type of the configuration. Keys that the type does not have are refused.
 pub fn deserialize<T: DeserializeOwned>(table: &Table) -> Result<T, Wrong> {
     T::deserialize(Node { content: Content::Table(table), span: table.span() })
+}
+
+/// Converts a part of a configuration to a table.
+pub fn to_document(part: &impl Serialize) -> Result<DocumentMut, Wrong> {
+    let part = snapshot(part).map_err(Wrong::custom)?;
+    toml_edit::ser::to_document(&part).map_err(Wrong::custom)
 }
 
 /// A value or a table, with its position.
@@ -134,7 +144,10 @@ impl<'de> serde::Deserializer<'de> for Node<'_> {
         };
         let found = array.len();
         if found != length {
-            return Err(Wrong::at(self.span, format!("has {found} entries, and must have {length}")));
+            return Err(Wrong::at(
+                self.span,
+                format!("has {}, and must have {length}", Counted(found as u64, "entry", "entries")),
+            ));
         }
         visitor.visit_seq(Entries { entries: array.iter().enumerate() })
     }

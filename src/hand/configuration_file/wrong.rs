@@ -6,21 +6,27 @@ use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
 use toml_edit::TomlError;
 
-/// Text that is not valid TOML, an unknown key, or an invalid value.
+/// Text that is not valid TOML, an unknown key, or an invalid value. It is boxed, because serde's code for each type
+/// moves it at many places.
 #[derive(Debug)]
-pub struct Wrong {
+pub struct Wrong(Box<Details>);
+
+#[derive(Debug)]
+struct Details {
     /// Dotted path of the key, as far as it is known.
-    pub path: String,
+    path: String,
     /// Position in the text.
-    pub span: Option<Range<usize>>,
+    span: Option<Range<usize>>,
     /// What is wrong, without the path.
-    pub reason: String,
+    reason: String,
 }
 
 impl Wrong {
     /// An error with this reason at this position.
+    #[cold]
+    #[inline(never)]
     pub fn at(span: Option<Range<usize>>, reason: String) -> Self {
-        Self { path: String::new(), span, reason }
+        Self(Box::new(Details { path: String::new(), span, reason }))
     }
 
     /// A syntax error. The parser's messages contain no part of the text.
@@ -34,15 +40,16 @@ impl Wrong {
     /// The same error at this position, unless its position is known already.
     #[inline(never)]
     pub fn or_at(mut self, span: Option<Range<usize>>) -> Self {
-        self.span = self.span.or(span);
+        self.0.span = self.0.span.take().or(span);
         self
     }
 
     /// The same error inside this key.
     #[inline(never)]
     pub fn in_key(mut self, key: &str) -> Self {
-        let point = if self.path.is_empty() || self.path.starts_with('[') { "" } else { "." };
-        self.path = format!("{key}{point}{}", self.path);
+        let path = &mut self.0.path;
+        let point = if path.is_empty() || path.starts_with('[') { "" } else { "." };
+        *path = format!("{key}{point}{path}");
         self
     }
 
@@ -54,15 +61,16 @@ impl Wrong {
 
     /// The line of `text` with the error, counted from 1.
     pub fn line(&self, text: &str) -> Option<usize> {
-        let before = text.get(..self.span.as_ref()?.start)?;
+        let before = text.get(..self.0.span.as_ref()?.start)?;
         Some(before.matches('\n').count() + 1)
     }
 }
 
 impl Display for Wrong {
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
-        let colon = if self.path.is_empty() { "" } else { ": " };
-        write!(formatter, "{}{colon}{}", self.path, self.reason)
+        let Details { path, reason, .. } = &*self.0;
+        let colon = if path.is_empty() { "" } else { ": " };
+        write!(formatter, "{path}{colon}{reason}")
     }
 }
 
@@ -70,6 +78,7 @@ impl std::error::Error for Wrong {}
 
 impl Error for Wrong {
     /// Called for errors that serde finds itself.
+    #[inline(never)]
     fn custom<T: Display>(reason: T) -> Self {
         Self::at(None, Shown(&reason.to_string()).to_string())
     }
@@ -78,16 +87,24 @@ impl Error for Wrong {
         Self::at(None, format!("must be {expected}"))
     }
 
+    #[inline(never)]
     fn unknown_variant(variant: &str, expected: &'static [&'static str]) -> Self {
         Self::at(None, format!("must be {}, not \"{}\"", one_of(expected), Shown(variant)))
     }
 
+    #[inline(never)]
     fn unknown_field(field: &str, expected: &'static [&'static str]) -> Self {
         Self::at(None, format!("unknown key `{}`, expected {}", Shown(field), one_of(expected)))
     }
 
+    #[inline(never)]
     fn missing_field(field: &'static str) -> Self {
         Self::at(None, format!("`{field}` is missing"))
+    }
+
+    #[inline(never)]
+    fn duplicate_field(field: &'static str) -> Self {
+        Self::at(None, format!("duplicate field `{field}`"))
     }
 }
 
