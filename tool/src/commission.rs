@@ -31,13 +31,14 @@ use outcome::Outcome;
 use person::GRAVITY;
 use progress_file::{ProgressFile, path_beside};
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 use step::Step;
 use sun2xp::hand::Configured;
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::model::{FingerNumber, ShownPath};
 use terminal::{LEFT, Terminal};
+pub use vitals::Vitals;
 
 /// Leads through the bring-up of a finger, and writes what it finds into the configuration file.
 ///
@@ -77,7 +78,8 @@ pub struct Arguments {
     yes: bool,
 }
 
-fn finger(text: &str) -> Result<FingerNumber, String> {
+/// Reads the number of a finger.
+pub fn finger(text: &str) -> Result<FingerNumber, String> {
     let number: i32 = text.parse().map_err(|_| "not a number")?;
     FingerNumber::try_from(number).map_err(|_| "not 1, 2 or 3".into())
 }
@@ -127,6 +129,43 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     let text = "The finger is commissioned. sun2xp health compares it with today at any later time.";
     writeln!(io::stdout(), "\n{text}")?;
     Ok(ExitStatus::SUCCESS)
+}
+
+/// A finger on two days: its measurements, and its configuration with them.
+pub struct Examined {
+    pub before: (Vitals, ConfiguredFinger),
+    pub today: (Vitals, ConfiguredFinger),
+}
+
+/// Measures a commissioned finger again, without changing a file.
+pub fn examine(file: &Path, finger: FingerNumber, yes: bool, quiet: bool) -> Result<Examined, Failure> {
+    let configured = Configured::read(file)?;
+    let beside = path_beside(file);
+    let vitals = ProgressFile::read(&beside)?.fingers.remove(&finger.get()).unwrap_or_default().vitals;
+    if vitals.tendon_stiffness.is_none() {
+        let advice = format!("run sun2xp commission --config {} --finger {finger} first", ShownPath(file));
+        return Err(format!("{} has no measurements of finger {finger}: {advice}", ShownPath(&beside)).into());
+    }
+    let before = configured.configuration.fingers[finger.index()].clone();
+    let steps = vec![Step::Zeros, Step::Tendons];
+    let mut terminal = Terminal::new(yes, steps.clone());
+    terminal.quiet = quiet;
+    let mut machine = HandMachine::new(configured.configuration, finger);
+    let mut desk = Desk {
+        machine: &mut machine,
+        person: &mut terminal,
+        finger: before.clone(),
+        weights: Vec::new(),
+        vitals: Vitals::default(),
+    };
+    for step in steps {
+        let outcome = desk.carry_out(step)?;
+        if let Some(wrong) = outcome.wrong.iter().find(|wrong| !wrong.compensated()) {
+            return Err(format!("the step {step} stopped: {wrong}").into());
+        }
+    }
+    let today = (desk.vitals.clone(), desk.finger.clone());
+    Ok(Examined { before: (vitals, before), today })
 }
 
 impl Arguments {

@@ -12,6 +12,7 @@ mod completions;
 mod doctor;
 mod export;
 mod failure;
+mod health;
 mod interrupt;
 mod jog;
 mod manual;
@@ -55,6 +56,7 @@ enum Tool {
     Completions(completions::Arguments),
     Doctor(doctor::Arguments),
     Export(export::Arguments),
+    Health(health::Arguments),
     Jog(jog::Arguments),
     Manual(manual::Arguments),
     Model(model::Arguments),
@@ -89,6 +91,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Tool::Completions(arguments) => completions::run(&arguments, command()).map(|()| ExitStatus::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
         Tool::Export(arguments) => export::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Health(arguments) => health::run(&arguments),
         Tool::Jog(arguments) => jog::run(&arguments).map(|()| ExitStatus::SUCCESS),
         Tool::Manual(arguments) => manual::run(&arguments, command()).map(|()| ExitStatus::SUCCESS),
         Tool::Model(arguments) => model::run(&arguments).map(|()| ExitStatus::SUCCESS),

@@ -24,6 +24,8 @@ pub struct Terminal {
     screen: Screen,
     /// Every request counts as done at once.
     yes: bool,
+    /// Nothing is printed, because standard output is for other programs.
+    pub quiet: bool,
     /// The steps of this session, for the numbers in the headings.
     steps: Vec<Step>,
 }
@@ -36,7 +38,7 @@ enum Reply {
 
 impl Terminal {
     pub fn new(yes: bool, steps: Vec<Step>) -> Self {
-        Self { screen: Screen::stdout(), yes, steps }
+        Self { screen: Screen::stdout(), yes, quiet: false, steps }
     }
 
     /// Prints what is done already, and what is left.
@@ -52,6 +54,9 @@ impl Terminal {
     }
 
     fn line(&self, look: Look, text: &str) {
+        if self.quiet {
+            return;
+        }
         // Without a reader there is nobody to show it to, and the next question fails.
         let _ = writeln!(io::stdout(), "{}", painted(&self.screen, look, text));
     }
@@ -67,6 +72,9 @@ impl Terminal {
 
     /// Prints a question, and reads a line.
     fn reply(&self, question: &str, no: &str) -> Result<Reply, Failure> {
+        if self.quiet && self.yes {
+            return Ok(Reply::Enter);
+        }
         let width = self.screen.width.unwrap_or(WIDTH).saturating_sub(4);
         let lines: Vec<String> = match question.split_once('\n') {
             // A table below a text keeps its lines.

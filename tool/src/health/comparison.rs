@@ -1,0 +1,213 @@
+//! What has changed since the commissioning, and what to do about it.
+
+use crate::commission::Vitals;
+use serde::Serialize;
+use sun2xp::model::configuration::ConfiguredFinger;
+
+/// Largest change of a gauge zero, N.
+const ZERO: f64 = 1.0;
+/// Largest change of the zero of an encoder, cm of tendon.
+const TRAVEL: f64 = 0.05;
+/// Largest relative change of a stiffness.
+const STIFFNESS: f64 = 0.1;
+/// Largest relative change of a gauge gain.
+const GAIN: f64 = 0.05;
+/// Permitted tension at rest relative to that of the commissioning.
+const TENSION: f64 = 0.25;
+/// Friction may rise by this factor and in addition by this value: motors and joints, N cm; conduits and pulleys.
+const FRICTION: (f64, f64, f64) = (1.5, 0.03, 0.03);
+
+/// A change beyond its limit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Complaint {
+    /// The kind, for other programs.
+    pub kind: &'static str,
+    pub part: String,
+    pub before: String,
+    pub today: String,
+    pub advice: &'static str,
+}
+
+/// Lists what has changed. A value that is missing on either day is not compared.
+pub fn compare(
+    before: &Vitals,
+    configured: &ConfiguredFinger,
+    today: &Vitals,
+    found: &ConfiguredFinger,
+) -> Vec<Complaint> {
+    let mut all = Vec::new();
+    zeros(&mut all, before, configured, today);
+    let relative = |limit: f64| move |before: f64, today: f64| (today / before - 1.0).abs() > limit;
+    let more = |offset: f64| move |before: f64, today: f64| today > FRICTION.0 * before + offset;
+    let softer = "The tendon ages, frays or slips in its clamp: inspect it, and replace it";
+    each(
+        &mut all,
+        ("tendon_stiffness", "tendon", "N/cm"),
+        (before.tendon_stiffness, today.tendon_stiffness),
+        relative(STIFFNESS),
+        softer,
+    );
+    let rubs = "Lubricate or replace the bearings of the motor; look for a drum that rubs";
+    each(
+        &mut all,
+        ("motor_friction", "friction of motor", "N cm"),
+        (before.motor_friction, today.motor_friction),
+        more(FRICTION.1),
+        rubs,
+    );
+    let conduit = "Clean, lubricate or replace the conduit of the tendon";
+    each(
+        &mut all,
+        ("conduit_friction", "friction of conduit", ""),
+        (before.conduit_friction, today.conduit_friction),
+        more(FRICTION.2),
+        conduit,
+    );
+    let pulley = "Clean and lubricate the pulleys of the tendon";
+    each(
+        &mut all,
+        ("pulley_friction", "friction of the pulleys of tendon", ""),
+        (before.pulley_friction, today.pulley_friction),
+        more(FRICTION.2),
+        pulley,
+    );
+    let joint = "Clean and lubricate the joint";
+    each(
+        &mut all,
+        ("joint_friction", "friction of joint (counted from 1)", "N cm"),
+        (before.joint_friction, today.joint_friction),
+        more(FRICTION.1),
+        joint,
+    );
+    gauges_and_tensions(&mut all, before, today, found);
+    all
+}
+
+/// Compares the scales of the gauges and the tensions at rest.
+fn gauges_and_tensions(all: &mut Vec<Complaint>, before: &Vitals, today: &Vitals, found: &ConfiguredFinger) {
+    let relative = |limit: f64| move |before: f64, today: f64| (today / before - 1.0).abs() > limit;
+    let gauge = "Weigh the gauge again: sun2xp commission --step gauges";
+    let gains = before.newton_per_count.map(|_| found.gauge.newton_per_count);
+    each(all, ("gauge_gain", "scale of gauge", "N"), (before.newton_per_count, gains), relative(GAIN), gauge);
+    let loose = "Tension the tendon, and look for friction in its path";
+    each(
+        all,
+        ("tension", "tension at rest of tendon", "N"),
+        (before.tensions, today.tensions),
+        relative(TENSION),
+        loose,
+    );
+}
+
+/// Compares the values of each part.
+fn each<const PARTS: usize>(
+    all: &mut Vec<Complaint>,
+    (kind, part, unit): (&'static str, &str, &str),
+    values: (Option<[f64; PARTS]>, Option<[f64; PARTS]>),
+    changed: impl Fn(f64, f64) -> bool,
+    advice: &'static str,
+) {
+    let (Some(before), Some(today)) = values else { return };
+    for (number, (before, today)) in (1..).zip(before.into_iter().zip(today)) {
+        if changed(before, today) {
+            let text = |value: f64| format!("{value:.3} {unit}").trim_end().to_owned();
+            let (before, today) = (text(before), text(today));
+            all.push(Complaint { kind, part: format!("{part} {number}"), before, today, advice });
+        }
+    }
+}
+
+/// Compares the zeros of gauges and encoders.
+fn zeros(all: &mut Vec<Complaint>, before: &Vitals, configured: &ConfiguredFinger, today: &Vitals) {
+    if let (Some(before), Some(today)) = (before.gauge_zero, today.gauge_zero) {
+        for gauge in 0..4 {
+            let newton = (today[gauge] - before[gauge]) * configured.gauge.newton_per_count[gauge];
+            if newton.abs() > ZERO {
+                let advice = "Overloaded, loose or drifting: zero it again, and replace it if it drifts on";
+                let part = format!("zero of gauge {}", gauge + 1);
+                let (before, today) = ("0 N".into(), format!("{newton:+.1} N"));
+                all.push(Complaint { kind: "gauge_zero", part, before, today, advice });
+            }
+        }
+    }
+    let (Some(before), Some(today)) = (before.encoder_zero, today.encoder_zero) else { return };
+    for motor in 0..4 {
+        let turn = std::f64::consts::TAU / f64::from(configured.encoder.counts_per_revolution[motor]);
+        let counts = f64::from(today[motor].wrapping_sub(before[motor])) * f64::from(configured.encoder.sign[motor]);
+        let travel = counts * turn * configured.geometry.motor_radius[motor];
+        if travel.abs() <= TRAVEL {
+            continue;
+        }
+        // A tendon only becomes longer, so its motor winds in farther. An encoder slips either way.
+        let (kind, advice) = match travel > 0.0 {
+            true => (
+                "longer_tendon",
+                "The tendon is longer (knot, creep), or its encoder slipped: tighten its clamp, and zero again",
+            ),
+            false => {
+                ("encoder_slip", "The encoder slipped or lost counts: check its coupling and cable, and zero again")
+            }
+        };
+        let part = format!("zero of encoder {}", motor + 1);
+        let (before, today) = ("0 mm".into(), format!("{:+.2} mm of tendon", travel * 10.0));
+        all.push(Complaint { kind, part, before, today, advice });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn healthy() -> Vitals {
+        Vitals {
+            gauge_zero: Some([200.0; 4]),
+            newton_per_count: Some([100.0 / 4095.0; 4]),
+            encoder_zero: Some([1000; 4]),
+            tensions: Some([7.5, 13.2, 13.2, 7.5]),
+            tendon_stiffness: Some([300.0; 4]),
+            motor_friction: Some([0.07; 4]),
+            conduit_friction: Some([0.05; 4]),
+            pulley_friction: Some([0.0; 4]),
+            joint_friction: Some([0.05; 3]),
+            ..Vitals::default()
+        }
+    }
+
+    fn named(change: impl Fn(&mut Vitals)) -> Vec<(&'static str, String)> {
+        let (before, finger) = (healthy(), ConfiguredFinger::default());
+        let mut today = before.clone();
+        change(&mut today);
+        compare(&before, &finger, &today, &finger).into_iter().map(|one| (one.kind, one.part)).collect()
+    }
+
+    #[test]
+    fn small_changes_are_healthy() {
+        assert_eq!(named(|_| {}), []);
+        let small = named(|today| {
+            (today.gauge_zero, today.encoder_zero) = (Some([215.0; 4]), Some([1100; 4]));
+            (today.tendon_stiffness, today.motor_friction) = (Some([285.0; 4]), Some([0.09; 4]));
+        });
+        assert_eq!(small, []);
+    }
+
+    #[test]
+    fn every_ageing_is_named_with_its_part() {
+        let only = |kind, part: &str| vec![(kind, part.to_owned())];
+        assert_eq!(
+            named(|today| today.gauge_zero = Some([200.0, 200.0, 300.0, 200.0])),
+            only("gauge_zero", "zero of gauge 3")
+        );
+        let soft = named(|today| today.tendon_stiffness = Some([300.0, 240.0, 300.0, 300.0]));
+        assert_eq!(soft, only("tendon_stiffness", "tendon 2"));
+        let slipped = named(|today| today.encoder_zero = Some([1000, 1000, 1000, 400]));
+        assert_eq!(slipped, only("encoder_slip", "zero of encoder 4"));
+        let longer = named(|today| today.encoder_zero = Some([1600, 1000, 1000, 1000]));
+        assert_eq!(longer, only("longer_tendon", "zero of encoder 1"));
+        let rubs = named(|today| today.motor_friction = Some([0.07, 0.07, 0.2, 0.07]));
+        assert_eq!(rubs, only("motor_friction", "friction of motor 3"));
+        let dry = named(|today| today.conduit_friction = Some([0.05, 0.15, 0.05, 0.05]));
+        assert_eq!(dry, only("conduit_friction", "friction of conduit 2"));
+        let loose = named(|today| today.tensions = Some([4.0, 13.2, 13.2, 7.5]));
+        assert_eq!(loose, only("tension", "tension at rest of tendon 1"));
+    }
+}
