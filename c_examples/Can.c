@@ -1,5 +1,5 @@
-/* Can.c - a hand whose drives are at a CAN bus: the program gives the library its own hardware (docs/other-hardware.md).
-   GNU C99, Linux.
+/* Can.c - a hand whose drives are at a CAN bus: the program gives the library its own hardware
+   (docs/other-hardware.md). GNU C99, Linux.
 
        Can [INTERFACE]
 

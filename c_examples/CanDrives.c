@@ -2,8 +2,9 @@
 
        CanDrives INTERFACE | FOLDER
 
-   Answers every frame of torques with encoder counts and tensions, and then advances that finger by 1 ms. Each drive has
-   a watchdog: without torques for the time of the last start it releases its motors. Ends after 10 s without a frame. */
+   Answers every frame of torques with encoder counts and tensions, and then advances that finger by 1 ms. Each drive
+   has a watchdog: without torques for the time of the last start it releases its motors. Ends after 10 s without a
+   frame. */
 
 #define _GNU_SOURCE
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* can_bus.h - CAN frames over SocketCAN, or over Unix datagram sockets where the machine has no CAN interface. Both ends
-   of the example use it. GNU C99, Linux. */
+/* can_bus.h - CAN frames over SocketCAN, or over Unix datagram sockets where the machine has no CAN interface. Both
+   ends of the example use it. GNU C99, Linux. */
 
 #ifndef CAN_BUS_H
 #define CAN_BUS_H

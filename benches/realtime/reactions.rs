@@ -45,8 +45,8 @@ const PRIORITY: u8 = 80;
 const BOARD_PRIORITY: u8 = 20;
 const WATCH_PRIORITY: u8 = 90;
 
-/// The machine paused if a core did not run a thread above all servos for so long in total, ns. A reply may take half of
-/// a period, and a board or a servo that loses this part of the other half misses its period.
+/// The machine paused if a core did not run a thread above all servos for this long in total, ns. A reply may take half
+/// of a period, and a board or a servo that loses this part of the other half misses its period.
 const PAUSE: u64 = PERIOD / 5;
 
 /// Longest time until the fingers are under control.

@@ -174,7 +174,8 @@ mod tests {
             ("ball 1 0 0 0 1 -10", "negative"),
             (
                 "shove 1",
-                "no order shove: the orders are force, wall, ball, hold, turn, tighten, hang, free, state, quit, cut, slack, ",
+                "no order shove: the orders are force, wall, ball, hold, turn, tighten, hang, free, state, quit, cut, \
+                 slack, ",
             ),
             ("shove", "drop, corrupt, delay, duplicate, reorder, stall, commands, good, unplug, replug; see"),
             ("good 1", "does not take these words"),
