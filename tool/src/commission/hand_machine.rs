@@ -51,6 +51,7 @@ impl HandMachine {
         let finger = self.finger.get();
         let what = match task {
             Task::Signs => "turning the motors",
+            Task::SelfTest => "checking the wiring",
             Task::Zero => "zeroing",
             Task::Identify => "identifying",
         };
@@ -62,6 +63,7 @@ impl HandMachine {
         let hand = self.limp()?;
         let found = match task {
             Task::Signs => hand.find_signs(finger, progress),
+            Task::SelfTest => hand.self_test(finger, progress).map(|()| Findings::RightWiring),
             Task::Zero => hand.zero(finger, progress),
             Task::Identify => hand.identify(finger, progress),
         };
@@ -71,7 +73,9 @@ impl HandMachine {
                 self.configuration.fingers[self.finger.index()] = calibrated;
                 Ok(found)
             }
-            Err(HandError::Calibration { obstacle, .. }) => Err(Refused::Obstacle(obstacle)),
+            Err(HandError::Calibration { obstacle, .. } | HandError::WrongWiring { obstacle, .. }) => {
+                Err(Refused::Obstacle(obstacle))
+            }
             Err(error) => Err(error.into()),
         }
     }
