@@ -171,6 +171,7 @@
 
        [hand]
        rate = 1000.0
+       fingers = [1]
        [finger.1]
        port = "/dev/ttyUSB0"
 

@@ -1457,9 +1457,9 @@ int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
 
  All keys take effect together, within a cycle and without a jump in torque; other keys stay as they are.
  The change lasts until sun2xp_close: the file is not written. A new controller.law applies from the next
- sun2xp_send_position on. These keys cannot change while the hand is open: port, baud, reconnect,
- address, thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
- motor.torque_constant, stiffness.initial and simulation.
+ sun2xp_send_position on. These keys cannot change while the hand is open: port, board, baud,
+ reconnect, address, thread, core, priority, base, turn_degrees, encoder, motor.sign,
+ motor.torque_limit, motor.torque_constant, stiffness.initial and simulation.
 
  A configured stiffness.bound was chosen for the configured controller.scheme. If keys changes
  controller.scheme but does not set stiffness.bound, the smaller of the configured bound and the default
