@@ -107,7 +107,7 @@ pub extern "C" fn sun2xp_recover(hand: *mut sun2xp_hand, finger: c_int) -> c_int
     let hand = Handle::of(hand);
     delegated("sun2xp_recover", hand, MEMORY_OF_CALL, || {
         Ok(move || {
-            let mut all = hand_table::with(hand, |hand| Ok::<_, hand::HandError>(fingers(hand, finger)))?;
+            let mut all = hand_table::command(hand, |hand| Ok::<_, hand::HandError>(fingers(hand, finger)))?;
             all.try_for_each(|finger| long_operations::recover(hand, finger))
         })
     })
