@@ -1,5 +1,5 @@
-//! Every configuration that the documentation prints, exactly as printed: it is opened on boards, and all fingers are
-//! moved.
+//! Every configuration that the documentation prints, exactly as printed: it is opened on boards, and all fingers
+//! of the hand are moved.
 
 use crate::rig::{Board, PATIENT, close, settles, turn};
 use std::collections::BTreeMap;
@@ -67,10 +67,11 @@ fn moves(what: &str, file: &Path, text: &str) {
     // A busy machine delays the bytes of a pseudo-terminal by several ms, as no cable does.
     configured.configuration.hand.watchdog_ms = 1000;
     let hand = Hand::open_as(configured).unwrap_or_else(|error| panic!("{what}: {error}"));
-    for finger in 1..=3 {
+    let fingers = hand.fingers();
+    for finger in fingers.numbers() {
         hand.send_position(finger, POSE).unwrap_or_else(|error| panic!("{what}: {error}"));
     }
-    (1..=3).for_each(|finger| settles(&hand, finger, POSE));
+    fingers.numbers().for_each(|finger| settles(&hand, finger, POSE));
     close(hand);
 }
 
