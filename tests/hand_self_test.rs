@@ -5,7 +5,7 @@ use sun2xp::hand::{Hand, HandError};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::model::{FingerNumber, Fingers};
 use sun2xp::realtime::Priority;
-use sun2xp::simulated::{Connection, Defect, Pace, SimulatedBoard, SimulatedPort};
+use sun2xp::simulated::{Defect, Pace, SimulatedBoard, SimulatedPort, WiredPart};
 
 /// Opens a hand of finger 2, whose board has these defects, with the self-test.
 fn opened(defects: &[Defect]) -> (SimulatedPort, Result<Hand, HandError>) {
@@ -32,8 +32,8 @@ fn a_finger_that_is_wired_correctly_becomes_a_spring() {
 #[test]
 fn a_finger_that_is_wired_wrongly_does_not_become_a_spring() {
     for (defect, named) in [
-        (Defect::Swapped(Connection::Motor, 1, 3), "motors 1 and 3 are swapped"),
-        (Defect::Reversed(Connection::Encoder, 4), "encoder 4 counts backwards"),
+        (Defect::Swapped(WiredPart::Motor, 1, 3), "motors 1 and 3 are swapped"),
+        (Defect::Reversed(WiredPart::Encoder, 4), "encoder 4 counts backwards"),
         (Defect::GaugeGain { gauge: 2, ratio: 0.8 }, "gauge 2 reads"),
     ] {
         let (port, hand) = opened(&[defect]);

@@ -4,9 +4,9 @@ use crate::board::protocol::Status;
 use crate::simulated::finger::SimulatedFinger;
 use crate::simulated::wiring::Wiring;
 
-/// A connection between a board and its finger.
+/// A part of the wiring between a board and its finger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Connection {
+pub enum WiredPart {
     /// The cable of a motor.
     Motor,
     /// The cable of an encoder.
@@ -56,9 +56,9 @@ pub enum Defect {
         counts: i32,
     },
     /// Two parts are connected in each other's place.
-    Swapped(Connection, u8, u8),
+    Swapped(WiredPart, u8, u8),
     /// A part is connected backwards. A tendon cannot be.
-    Reversed(Connection, u8),
+    Reversed(WiredPart, u8),
     /// The gain of a gauge has changed.
     GaugeGain {
         /// The gauge's number.
@@ -112,10 +112,10 @@ impl SimulatedFinger {
             Defect::DriftingGauge { speed, .. } => self.sensors().let_gauge_drift(index, speed),
             Defect::EncoderJump { counts, .. } => self.sensors().jump(index, counts),
             Defect::Swapped(connection, _, other) => self.swap(connection, index, usize::from(other) - 1),
-            Defect::Reversed(Connection::Motor, _) => self.wiring().reverse_motor(index),
-            Defect::Reversed(Connection::Encoder, _) => self.wiring().reverse_encoder(index),
-            Defect::Reversed(Connection::Gauge, _) => self.wiring().reverse_gauge(index),
-            Defect::Reversed(Connection::Tendon, _) => return false,
+            Defect::Reversed(WiredPart::Motor, _) => self.wiring().reverse_motor(index),
+            Defect::Reversed(WiredPart::Encoder, _) => self.wiring().reverse_encoder(index),
+            Defect::Reversed(WiredPart::Gauge, _) => self.wiring().reverse_gauge(index),
+            Defect::Reversed(WiredPart::Tendon, _) => return false,
             Defect::GaugeGain { ratio, .. } => self.sensors().rescale_gauge(index, ratio),
             Defect::DeadMotor(_) => self.wiring().disconnect_motor(index),
             Defect::DeadEncoder(_) => self.wiring().stop_encoder(index, 0),
@@ -129,12 +129,12 @@ impl SimulatedFinger {
         true
     }
 
-    fn swap(&mut self, connection: Connection, one: usize, other: usize) {
+    fn swap(&mut self, connection: WiredPart, one: usize, other: usize) {
         match connection {
-            Connection::Motor => self.wiring().swap_motors(one, other),
-            Connection::Encoder => self.wiring().swap_encoders(one, other),
-            Connection::Gauge => self.wiring().swap_gauges(one, other),
-            Connection::Tendon => self.wiring().swap_tendons(one, other),
+            WiredPart::Motor => self.wiring().swap_motors(one, other),
+            WiredPart::Encoder => self.wiring().swap_encoders(one, other),
+            WiredPart::Gauge => self.wiring().swap_gauges(one, other),
+            WiredPart::Tendon => self.wiring().swap_tendons(one, other),
         }
     }
 

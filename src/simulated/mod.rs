@@ -18,7 +18,7 @@ mod wiring;
 pub use board::{SimulatedBoard, SimulatedBoardError};
 pub use cable::SimulatedCable;
 pub use coupled_ports::{CoupledPorts, CoupledPortsError, ObjectView};
-pub use defects::{Connection, Defect};
+pub use defects::{Defect, WiredPart};
 pub use finger::SimulatedFinger;
 pub use line::LineFault;
 pub use pace::{Pace, PacedTime};

@@ -1,7 +1,7 @@
 //! Orders of `sun2xp board` that cause faults.
 
 use sun2xp::model::Shown;
-use sun2xp::simulated::{Connection, Defect, LineFault, SimulatedPort};
+use sun2xp::simulated::{Defect, LineFault, SimulatedPort, WiredPart};
 
 /// A fault of the board or its cable, or the end of faults.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -172,13 +172,13 @@ const WIRING: [&str; 10] = [
 /// Reads the numbers of an order that changes the wiring.
 fn wiring_defect(name: &str, numbers: &[f64]) -> Result<Defect, String> {
     Ok(match (name, numbers) {
-        ("swap-motors", &[one, other]) => Defect::Swapped(Connection::Motor, part(one)?, part(other)?),
-        ("swap-encoders", &[one, other]) => Defect::Swapped(Connection::Encoder, part(one)?, part(other)?),
-        ("swap-gauges", &[one, other]) => Defect::Swapped(Connection::Gauge, part(one)?, part(other)?),
-        ("swap-tendons", &[one, other]) => Defect::Swapped(Connection::Tendon, part(one)?, part(other)?),
-        ("reverse-motor", &[motor]) => Defect::Reversed(Connection::Motor, part(motor)?),
-        ("reverse-encoder", &[encoder]) => Defect::Reversed(Connection::Encoder, part(encoder)?),
-        ("reverse-gauge", &[gauge]) => Defect::Reversed(Connection::Gauge, part(gauge)?),
+        ("swap-motors", &[one, other]) => Defect::Swapped(WiredPart::Motor, part(one)?, part(other)?),
+        ("swap-encoders", &[one, other]) => Defect::Swapped(WiredPart::Encoder, part(one)?, part(other)?),
+        ("swap-gauges", &[one, other]) => Defect::Swapped(WiredPart::Gauge, part(one)?, part(other)?),
+        ("swap-tendons", &[one, other]) => Defect::Swapped(WiredPart::Tendon, part(one)?, part(other)?),
+        ("reverse-motor", &[motor]) => Defect::Reversed(WiredPart::Motor, part(motor)?),
+        ("reverse-encoder", &[encoder]) => Defect::Reversed(WiredPart::Encoder, part(encoder)?),
+        ("reverse-gauge", &[gauge]) => Defect::Reversed(WiredPart::Gauge, part(gauge)?),
         ("gauge-gain", &[gauge, ratio]) if (0.0..=10.0).contains(&ratio) => {
             Defect::GaugeGain { gauge: part(gauge)?, ratio }
         }
@@ -235,8 +235,8 @@ mod tests {
             ("dead-gauge 1 2 4095", Trouble::Finger(1, Defect::DeadGauge { gauge: 2, count: Some(4095) })),
             ("jump 1 2 -300", Trouble::Finger(1, Defect::EncoderJump { encoder: 2, counts: -300 })),
             ("dead-element 1 0", Trouble::Finger(1, Defect::DeadElement(0))),
-            ("swap-gauges 1 2 4", Trouble::Finger(1, Defect::Swapped(Connection::Gauge, 2, 4))),
-            ("reverse-motor 1 3", Trouble::Finger(1, Defect::Reversed(Connection::Motor, 3))),
+            ("swap-gauges 1 2 4", Trouble::Finger(1, Defect::Swapped(WiredPart::Gauge, 2, 4))),
+            ("reverse-motor 1 3", Trouble::Finger(1, Defect::Reversed(WiredPart::Motor, 3))),
             ("gauge-gain 2 1 0.8", Trouble::Finger(2, Defect::GaugeGain { gauge: 1, ratio: 0.8 })),
             ("reset 3", Trouble::Finger(3, Defect::Reset)),
             ("mend 3", Trouble::Mend(3)),
