@@ -1,0 +1,3 @@
+//! `sun2xp serve`: offers a hand to planners on other machines.
+
+#![deny(unsafe_code)]

@@ -1,0 +1,3 @@
+//! The program `sun2xp-serve`, which `sun2xp serve` starts.
+
+fn main() {}
