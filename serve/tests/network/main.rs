@@ -1,0 +1,30 @@
+//! The service over lines that fail: two network namespaces with a line between them that loses and delays packets,
+//! or is cut. Tests that need a namespace are left out where this process may not make one.
+
+mod line;
+mod line_tests;
+mod namespace;
+mod shaper;
+#[allow(dead_code)]
+#[path = "../../../tests/common/tools.rs"]
+mod tools;
+mod tun;
+
+use line::Line;
+use std::io::ErrorKind;
+
+/// Makes a line, or returns `None` if this process may not make one. Then the test is listed as skipped.
+fn permitted_line(seed: u64) -> Option<Line> {
+    const PART: &str = "a line between two namespaces";
+    if !tools::available("ip", PART) {
+        return None;
+    }
+    match Line::new(seed) {
+        Ok(line) => Some(line),
+        Err(error) if matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::NotFound) => {
+            tools::not_permitted(PART, &format!("namespaces and tun interfaces need root: {error}"));
+            None
+        }
+        Err(error) => panic!("{PART}: {error}"),
+    }
+}
