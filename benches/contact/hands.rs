@@ -1,4 +1,4 @@
-//! The fingers that are measured, and what their controllers assume of them.
+//! The fingers that are measured, and what their controllers assume about them.
 
 use nalgebra::Vector3;
 use sun2xp::model::configuration::{ConfiguredContact, ConfiguredFinger, NamedHand, Scheme};

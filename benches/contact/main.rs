@@ -1,4 +1,5 @@
-//! Contact without sensors: the forces that simulated fingers detect, how fast, and their false alarms.
+//! Measures the detection of contacts without tactile sensors: which forces simulated fingers detect, how fast they
+//! detect them, and how many false alarms there are.
 //!
 //!     cargo bench --bench contact                       all tables of docs/contact.md
 //!     cargo bench --bench contact -- nominal            the hands with this word in their name
@@ -13,7 +14,7 @@ mod finger;
 mod hands;
 mod motion;
 mod noticed;
-#[allow(dead_code, reason = "what the other benchmark needs of it")]
+#[allow(dead_code, reason = "the stiffness benchmark uses the other functions")]
 #[path = "../stiffness/parallel.rs"]
 mod parallel;
 
@@ -26,13 +27,13 @@ use sun2xp::model::configuration::ConfiguredContact;
 
 #[derive(Parser)]
 struct Arguments {
-    /// A word in the names of the hands.
+    /// Measures only the hands with this word in their names.
     #[arg(default_value = "")]
     hand: String,
     /// Limit of the simulated time for false alarms, minutes.
     #[arg(long, default_value_t = 60.0)]
     minutes: f64,
-    /// Seeds for the detected forces.
+    /// Number of seeds with which the detected forces are measured.
     #[arg(long, default_value_t = 10)]
     seeds: u64,
     /// Keys of [finger.contact], as TOML.
@@ -85,7 +86,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Prints the table of contacts that follow a motion.
 fn after(hands: &[&Hand], contact: &ConfiguredContact, seeds: u64) -> Result<(), Box<dyn Error>> {
-    println!("\nA force of {FORCE} N after a motion of up to 1, 3 rad/s, or a jump of the set point:\n");
+    println!("\nA force of {FORCE} N after a motion at up to 1 or 3 rad/s, or after a jump of the set point:\n");
     println!(
         "| hand | fastest joint rate, rad/s | force begins after the motion, s | detected | error, N cm: mean, worst |"
     );

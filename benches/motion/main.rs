@@ -2,8 +2,9 @@
 //!
 //!     cargo bench --bench motion
 //!
-//! The default finger runs with its whole servo and its simulated board, in memory and in simulated time. The path has
-//! one point for every period. The lag is the distance of the true tip from that point.
+//! The default finger runs with its whole servo and its simulated board, in memory and in simulated time. The wanted
+//! motion determines one point for each period. The lag is the distance of the true tip from the point for the same
+//! period.
 
 #[allow(dead_code)]
 #[path = "../../tests/common/finger_on_a_cable.rs"]
@@ -219,8 +220,8 @@ fn at_the_limits() {
             least = least.min(bench.served.mailbox.report().cycle.torque_scale);
         }
         lag.row(&format!(
-            "all joints by {name} to and fro at the default limits, up to {rate:.1} rad/s, {:.0} % of the torque \
-             admitted: lag",
+            "all joints by {name} to and fro at the default limits, up to {rate:.1} rad/s, tension bounds that permit \
+             {:.0} % of the torque: lag",
             100.0 * least
         ));
     }

@@ -38,7 +38,7 @@ const PERIOD: u64 = 1_000_000;
 const PRIORITY: u8 = 80;
 const BOARD_PRIORITY: u8 = 20;
 
-/// Time until the fingers are under control. It is not measured.
+/// Time until the fingers are under control. The measurement begins after this time.
 const START: Duration = Duration::from_millis(500);
 
 /// A clock that records how late each period begins, ns.
@@ -142,8 +142,8 @@ fn turn(kind: Kind, seconds: u64) -> Result<Turn, Failure> {
     Ok((measured, taken.load(Relaxed), lost))
 }
 
-/// Writes events in a servo thread after each of its cycles, as the servo does: three in each cycle, and in one of the
-/// three threads four. This makes 10 000 a second.
+/// Writes events in a servo thread after each cycle, as the servo itself does. Two of the three threads write three
+/// events per cycle and one thread writes four, so that all threads together write 10 000 events a second.
 struct Events {
     writer: EventWriter,
     readers: SharedPages<EventCount>,

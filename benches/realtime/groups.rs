@@ -1,4 +1,5 @@
-//! Measures whether the fingers of a group change in the same period, with one servo thread for each finger.
+//! Measures whether the commands of a group take effect in the same period of all its fingers, with one servo thread
+//! for each finger.
 
 use crate::Failure;
 use crate::percentiles::Percentiles;
@@ -10,7 +11,7 @@ use sun2xp::groups::FingerCommand;
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::{Configuration, FINGERS};
 
-/// Measures in which period each finger of a group changes.
+/// Measures in which period of each finger the commands of a group take effect.
 #[derive(Args)]
 pub struct Arguments {
     /// Number of groups.

@@ -33,7 +33,7 @@ struct Ran {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut configuration = Configuration::default();
-    // The run measures time, so a machine that delays the terminals' bytes must not end it with a fault.
+    // The run measures delays, so it must not end with a fault if the machine delays bytes of the pseudo-terminals.
     configuration.hand.watchdog_ms = 1000;
     let period = (1e9 / configuration.hand.rate) as u64;
     let seconds = (arguments.minutes * 60.0).ceil() as u64;

@@ -18,10 +18,10 @@ use sun2xp::telemetry::{Reader, View};
 /// for a monitor and a page, which do not write. The third stands for a recorder.
 const READERS: [bool; 3] = [false, false, true];
 
-/// Time after a change of the readers that is not measured.
+/// Time between a change of the readers and the beginning of the next measurement.
 const SETTLING: Duration = Duration::from_millis(500);
 
-/// A process that reads.
+/// The arguments of a process that reads the telemetry of a hand.
 #[derive(clap::Args)]
 pub struct ReaderArguments {
     /// Name of the hand.
@@ -70,8 +70,9 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
     }
     let of_sides = with.median_of(|wake| wake.p999) / without.median_of(|wake| wake.p999);
     println!(
-        "\nMedians over three fingers and {} turns of {} s for each side, which alternate. 99.9 % with readers \
-         relative to without (goal: 0.9 to 1.1): {of_sides:.3}; median of the ratios of neighbouring turns: {:.3}.\n",
+        "\nMedians over three fingers and {} turns of {} s for each side. The two sides alternate. Ratio of the 99.9 % \
+         latency with readers to that without (goal: 0.9 to 1.1): {of_sides:.3}; median of the ratios of \
+         neighbouring turns: {:.3}.\n",
         turns.repeats,
         turns.seconds,
         median(ratios),

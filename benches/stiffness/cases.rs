@@ -49,7 +49,7 @@ impl Case {
     }
 
     /// Returns a finger with this controller at `pose`. Its configuration contains the friction that identification
-    /// finds. The speed of set points is not limited, so that a step is a step.
+    /// finds. The speed of set points is practically unlimited, so that a step does not become a ramp.
     pub fn finger(&self, pose: &Vector3<f64>, friction: Friction) -> ConfiguredFinger {
         let mut finger = ConfiguredFinger::default();
         finger.controller.scheme = Some(self.scheme);
@@ -80,8 +80,8 @@ impl Case {
         (0..self.poses).map(|_| pose(&mut random, &USUAL)).collect()
     }
 
-    /// Returns values of Kx, N/cm: isotropic ones, one with different axes, four with random axes. None is stiffer than
-    /// the bound.
+    /// Returns values of Kx, N/cm: isotropic ones, one whose stiffness differs from axis to axis, and four with random
+    /// axes. None is stiffer than the bound.
     pub fn springs(&self) -> Vec<Matrix3<f64>> {
         let mut random = Pcg64::seed_from_u64(self.seed + 1);
         let isotropic = [1.0, 3.0, self.bound()].map(|stiffness| Matrix3::identity() * stiffness);
@@ -146,12 +146,12 @@ pub fn has_room(finger: &ConfiguredFinger, pose: &Vector3<f64>, direction: &Vect
     true
 }
 
-/// Returns a random pose within these limits (degrees), rad.
+/// Returns a random pose, rad. `limits` are the lower and upper limit of each joint, degrees.
 pub fn pose(random: &mut Pcg64, limits: &[[f64; 2]; 3]) -> Vector3<f64> {
     Vector3::from(limits.map(|[low, high]| uniform(random, low, high).to_radians()))
 }
 
-/// Returns a random spring with eigenvalues between these, N/cm.
+/// Returns a random spring with eigenvalues between `softest` and `stiffest`, N/cm.
 pub fn spring(random: &mut Pcg64, softest: f64, stiffest: f64) -> Matrix3<f64> {
     let axis = Unit::new_normalize(direction(random));
     let turn = Rotation3::from_axis_angle(&axis, uniform(random, 0.0, std::f64::consts::PI));

@@ -38,7 +38,7 @@ use sun2xp::model::configuration::{Law, Scheme};
 #[derive(Parser)]
 #[command(about = "Measures how accurately a finger behaves as the commanded spring")]
 struct Arguments {
-    /// Number of random poses; 24, or 4 with --quick.
+    /// Number of random poses. The default is 24, 4 with --quick, 12 with --truths, and 2 with --search.
     #[arg(long)]
     poses: Option<usize>,
     /// Few poses, and 1000 Hz only.
@@ -47,7 +47,7 @@ struct Arguments {
     /// Seed of the poses, of Kx and of the noise.
     #[arg(long, default_value_t = 20261121)]
     seed: u64,
-    /// Rates in Hz, separated by commas; 500, 1000 and 2000, or 1000 with --quick.
+    /// Rates in Hz, separated by commas. The default is 500,1000,2000, or 1000 with --quick.
     #[arg(long, value_delimiter = ',')]
     rates: Option<Vec<f64>>,
     /// Tendon controllers, as in the configuration, separated by commas. Figure 10 is always measured first, as the
@@ -58,11 +58,12 @@ struct Arguments {
     /// Only rows whose names contain this text, or one of several texts separated by semicolons.
     #[arg(long, default_value = "")]
     only: String,
-    /// Measures fingers that differ from their configuration, instead of the table of the default finger. Only those
-    /// whose names contain one of several texts separated by semicolons; all, if the text is empty.
+    /// Measures fingers that differ from their configuration, instead of the table of the default finger. TEXT selects
+    /// the fingers whose names contain it, or contain one of several texts separated by semicolons. An empty TEXT
+    /// selects all fingers.
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "")]
     truths: Option<String>,
-    /// With --truths: after identification.
+    /// With --truths: first identifies each finger, and measures it with the identified values.
     #[arg(long)]
     identified: bool,
     /// With --truths: number of seeds.
@@ -71,13 +72,14 @@ struct Arguments {
     /// With --truths: no walls and no bumps.
     #[arg(long)]
     short: bool,
-    /// Searches better numbers of state feedback for these fingers (see --truths), from those of --numbers on.
+    /// Searches for better numbers of state feedback for the fingers that TEXT selects, as with --truths. The search
+    /// starts from the numbers that --numbers gives.
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "")]
     search: Option<String>,
-    /// With --truths: keys of the finger that differ, as TOML.
+    /// With --truths and --search: keys of the finger's configuration to replace, as TOML.
     #[arg(long, default_value = "")]
     keys: String,
-    /// With --truths and --search: numbers of state feedback that differ, as TOML.
+    /// With --truths and --search: numbers of state feedback to replace, as TOML.
     #[arg(long, default_value = "")]
     numbers: String,
     /// The law of the spring: exact or report.

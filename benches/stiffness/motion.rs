@@ -1,4 +1,4 @@
-//! Rows that move the spring's anchor and measure how the tip follows.
+//! Measurements of how the tip follows the spring's anchor, for rows of the table.
 
 use crate::cases::{Case, Friction};
 use crate::closed_loop::{ClosedLoop, Held, Senses};
@@ -21,7 +21,7 @@ pub struct Steps {
 
 /// Length of a step, cm.
 pub const STEP: f64 = 0.5;
-/// Free distance of a step, so that an overshoot does not reach a limit, cm.
+/// Distance that the joint limits must leave free for a step, cm, so that an overshoot does not reach them.
 const ROOM: f64 = 1.2 * STEP;
 /// Duration of a step, s. A step that has not settled by then counts with this time.
 const WATCHED: f64 = 1.5;
@@ -43,12 +43,12 @@ pub struct Step {
     least_commanded: f64,
 }
 
-/// Steps of the anchor by 5 mm from every pose in several directions, as far as the joint limits permit.
+/// Steps the anchor by 5 mm from every pose, in each of several directions in which the joint limits leave room.
 pub fn steps(case: &Case, stiffness: f64, loss: f64) -> Steps {
     steps_of(case, stiffness, loss, |_| {})
 }
 
-/// The same for fingers that differ from the configuration of their controllers.
+/// Like [`steps`], for fingers that `differ` makes different from the configuration of their controllers.
 pub fn steps_of(case: &Case, stiffness: f64, loss: f64, differ: impl Fn(&mut ConfiguredFinger) + Sync) -> Steps {
     let kx = Matrix3::identity() * stiffness;
     let all = each(&case.poses_and_directions(ROOM), |_, (pose, direction)| {
@@ -96,8 +96,8 @@ fn settling_time(tips: &[Vector3<f64>], target: &Vector3<f64>, rate: f64) -> f64
     tips.iter().rposition(|tip| !settled(tip)).map_or(0.0, |last| (last + 1) as f64 / rate)
 }
 
-/// Returns the motion of the tip along one step, as a part of the step over time in s, for the first direction of every
-/// pose that the joint limits permit.
+/// Steps the anchor from every pose in the first direction that the joint limits permit. Returns for each step the
+/// motion of the tip: pairs of the time, s, and the distance along the step, as a part of the step.
 pub fn step_responses(case: &Case, stiffness: f64, seconds: f64) -> Vec<Vec<(f64, f64)>> {
     let mut cases = case.poses_and_directions(ROOM);
     cases.dedup_by_key(|(pose, _)| *pose);

@@ -5,7 +5,7 @@ use serde::de::DeserializeOwned;
 use std::error::Error;
 use toml_edit::{DocumentMut, Table};
 
-/// Returns `whole` with the keys of `text` replaced.
+/// Returns a copy of `whole` in which every key that is in `text` has its value from `text`.
 pub fn overlaid<Whole: Serialize + DeserializeOwned>(whole: &Whole, text: &str) -> Result<Whole, Box<dyn Error>> {
     let above: DocumentMut = text.parse()?;
     let mut document = toml_edit::ser::to_document(whole)?;

@@ -49,8 +49,8 @@ fn step_responses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
 }
 
 /// Draws the forces for a deflection of 1 mm in every direction of a coordinate plane: those of Kx = diag(1, 5, 2) in
-/// black, and those of the apparent stiffness in red, with friction. They are sections of the two ellipsoids. There is
-/// one row per controller and one column per pose.
+/// black, and those of the apparent stiffness, measured with friction, in red. They are sections of the two ellipsoids.
+/// There is one row per controller and one column per pose.
 fn ellipses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
     const PLANE: [usize; 2] = [0, 1];
     let kx = Matrix3::from_diagonal(&Vector3::new(1.0, 5.0, 2.0));

@@ -1,10 +1,10 @@
-//! Searches numbers of state feedback for a set of fingers instead of one.
+//! Searches for numbers of state feedback that suit a set of fingers instead of one finger.
 //!
 //!     cargo bench --bench stiffness -- --search [TEXT] [--numbers TOML] [--poses N] [--seeds N] [--keys TOML]
 //!
 //! The cost of a set of numbers is the sum over all fingers and measures of (worst measure / goal)^4. The power makes
 //! the cost depend mostly on the measures that miss their goals by the largest factor. The search varies one number at
-//! a time by a factor and keeps what is better. When no number is better, it continues with a smaller factor.
+//! a time by a factor and keeps what is better. When no change is better, it continues with a smaller factor.
 
 use crate::Arguments;
 use crate::cases::Case;

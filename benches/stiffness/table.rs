@@ -41,14 +41,14 @@ static ROWS: [Row; 22] = [
         measure: |case| at_both(case, statics::triangle),
     },
     Row {
-        what: "pushed from rest by Kx 2 mm, with friction: error of the stiffness, Kx 3 / bound",
+        what: "pushed from rest by a force of Kx times 2 mm, with friction: error of the stiffness, Kx 3 / bound",
         goal: "<= 5 %",
         measure: |case| {
             at_both(case, |case, stiffness| statics::pushed_from_rest(case, Friction::Default, stiffness, 0.2))
         },
     },
     Row {
-        what: "pushed from rest by Kx 1 mm, harsh joint friction: error of the stiffness, Kx 3",
+        what: "pushed from rest by a force of Kx times 1 mm, harsh joint friction: error of the stiffness, Kx 3",
         goal: "<= 50 %",
         measure: |case| percent(statics::pushed_from_rest(case, Friction::Harsh, 3.0, 0.1)),
     },
@@ -84,8 +84,8 @@ static ROWS: [Row; 22] = [
     },
     Row { what: "the same at the bound", goal: "0", measure: |case| walls(case, case.bound()) },
     Row {
-        what: "over-limit torque against a stop: largest tension minus t_max, at rest / before; angle between \
-               commanded and applied torque",
+        what: "over-limit torque against a stop: largest tension minus t_max, at rest / on the way there; angle \
+               between commanded and applied torque",
         goal: "<= 0.1 N; 0",
         measure: |case| {
             let found = contact::over_limit(case);
@@ -139,7 +139,8 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "stability, poses as above, Kx up to the bound, loads up to 1 mm: unstable samples; largest eigenvalue",
+        what: "stability, poses as above, Kx up to the bound, loads that deflect by up to 1 mm: unstable samples; \
+               largest eigenvalue",
         goal: "0; < 1",
         measure: |case| eigenvalue(&stability::usual(case)),
     },
@@ -186,7 +187,11 @@ fn percent(part: f64) -> String {
 /// Formats the error of the reported stiffness, and the reported stiffness if it is less than Kx.
 fn fidelity(found: Fidelity) -> String {
     let error = percent(found.error);
-    if found.scale < 1.0 { format!("{error} of the reported stiffness, at least {:.3} Kx", found.scale) } else { error }
+    if found.scale < 1.0 {
+        format!("{error} of the reported stiffness, which is at least {:.3} Kx", found.scale)
+    } else {
+        error
+    }
 }
 
 fn fidelity_at_both(case: &Case, measure: fn(&Case, f64) -> Fidelity) -> String {

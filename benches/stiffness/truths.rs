@@ -43,7 +43,7 @@ fn gauges(finger: &mut ConfiguredFinger, part: f64) {
     finger.simulation.gauge_gain_ratio = ALTERNATING.map(|sign| 1.0 + part * sign);
 }
 
-/// Makes the finger one of the simulated hand with this name.
+/// Gives the finger the properties of the simulated hand with this name.
 fn named(finger: &mut ConfiguredFinger, name: &str) {
     let (start_degrees, seed) = (finger.simulation.start_degrees, finger.simulation.seed);
     let named = ConfiguredSimulation::named(name).expect("a named hand");

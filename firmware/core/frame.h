@@ -16,8 +16,8 @@ enum {
     WIRE_MOST = STUFFED_MOST + 1
 };
 
-/* A frame without its checksum. The checksum of a received frame has been verified; frame_to_wire appends that of a
-   frame to send. */
+/* A frame without its checksum. The checksum of a received frame has been verified. If the frame is sent,
+   frame_to_wire appends the checksum. */
 struct frame {
     size_t length;
     uint8_t bytes[FRAME_MOST];
@@ -38,7 +38,7 @@ void frame_put8(struct frame *frame, uint8_t value);
 void frame_put16(struct frame *frame, uint16_t value);
 void frame_put32(struct frame *frame, uint32_t value);
 
-/* Appends checksum and delimiter, and stuffs the bytes. Returns the length on the wire. */
+/* Appends the checksum, stuffs the bytes, and then appends the delimiter. Returns the length on the wire. */
 size_t frame_to_wire(const struct frame *frame, uint8_t wire[WIRE_MOST]);
 
 /* Decodes the bytes between two delimiters. Returns false if the frame is damaged. */

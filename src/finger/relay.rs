@@ -61,7 +61,7 @@ pub(super) fn relay() -> (Relay, RelayServoEnd) {
 }
 
 impl RelayServoEnd {
-    /// Adds the pages that both ends share to `memory`.
+    /// Adds to `memory` the pages that both ends share.
     pub fn add_to(&self, memory: &mut LockedMemory) {
         self.requests.add_to(memory);
         self.answers.add_to(memory);
@@ -70,7 +70,8 @@ impl RelayServoEnd {
 
 impl Transport for Relay {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
-        // A request that the servo has no room for is lost, like bytes that a port does not accept. It is repeated.
+        // A request that the servo has no room for is lost, like bytes that a port does not accept. The handshake
+        // repeats it.
         let sent = RelayedRequest::new(bytes).is_some_and(|request| self.requests.push(request).is_ok());
         Ok(if sent { bytes.len() } else { 0 })
     }

@@ -1,4 +1,5 @@
-//! The box A^-1, which the report omits: joint angles for a fingertip position, in closed form.
+//! The inverse kinematics (the block A^-1), which the report omits: joint angles for a fingertip position, in closed
+//! form.
 
 use crate::model::Links;
 use nalgebra::Vector3;
@@ -55,7 +56,7 @@ pub enum OutOfReach {
          other solution is farther outside. Send another point, or change `finger.joints`"
     )]
     BeyondLimits {
-        /// The joint that is farthest outside its limits, 0 to 2, in the solution that is closest to the limits.
+        /// Number of the joint, 0 to 2, that is farthest outside its limits in the solution closest to the limits.
         joint: usize,
         /// Its angle, rad.
         value: f64,
@@ -91,8 +92,8 @@ impl InverseKinematics {
     }
 
     /// Returns every solution within -pi to pi, rad, regardless of the joint limits. Joint 0 points toward the tip or
-    /// away from it. If it points away, the finger bends over its own base. Each of these has two solutions for joints
-    /// 1 and 2. `open` is the angle of joint 0 for a tip on its axis.
+    /// away from it. If it points away, the finger bends over its own base. For each of the two angles of joint 0 there
+    /// are two solutions for joints 1 and 2. `open` is the angle of joint 0 for a tip on its axis.
     ///
     /// # Errors
     /// Returns an error if there is no solution.

@@ -10,8 +10,9 @@ use std::ops::Range;
 
 /// Memory ranges that are locked together.
 ///
-/// Each range consists of whole pages that hold nothing else, and stays locked until the value in it is dropped. Locks
-/// do not nest: in a page shared with the planner's data, unlocking would also unlock the planner's data.
+/// Each range consists of whole pages that hold one value and nothing else. It stays locked until that value is
+/// dropped. Locks do not nest: in a page shared with the planner's data, unlocking would also unlock the planner's
+/// data.
 #[derive(Clone, Debug, Default)]
 pub struct LockedMemory(Vec<Range<usize>>);
 
@@ -36,7 +37,7 @@ impl LockedMemory {
         &self.0
     }
 
-    /// Faults in the pages of every range, and locks them.
+    /// Loads the pages of every range into memory, and locks them.
     ///
     /// # Errors
     /// Returns the system's error: EPERM if the process may not lock memory, ENOMEM if the memory exceeds the memlock

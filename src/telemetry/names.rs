@@ -47,7 +47,7 @@ pub fn hands() -> io::Result<Vec<String>> {
     Ok(names.into_iter().filter(|name| is_open(name)).collect())
 }
 
-/// Returns the names behind `prefix` in the table.
+/// Returns the names of the listening sockets in the table that begin with `prefix`, without the prefix.
 fn listed(table: &str, prefix: &str) -> BTreeSet<String> {
     let name = |line: &str| {
         let columns: Vec<&str> = line.split_whitespace().collect();
@@ -58,8 +58,8 @@ fn listed(table: &str, prefix: &str) -> BTreeSet<String> {
     table.lines().filter_map(name).collect()
 }
 
-/// Returns whether a process of this user listens. A forked child may have a copy of the socket of a hand whose process
-/// has ended.
+/// Returns whether a living process of this user listens. This must be checked, because a forked child may keep the
+/// socket of a hand open after the process of the hand has ended.
 fn is_open(name: &str) -> bool {
     match Socket::connect(&socket_name(name)) {
         Ok(socket) => socket.peer().is_ok_and(|peer| peer.user == own_user() && is_alive(peer.process)),

@@ -65,7 +65,7 @@ impl ValueKind {
         }
     }
 
-    /// Returns how many places of the event's values this meaning takes.
+    /// Returns how many of the event's values have this meaning.
     #[must_use]
     pub fn places(self) -> usize {
         match self {

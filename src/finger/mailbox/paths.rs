@@ -8,13 +8,13 @@ use crate::finger::path_buffer::PathBuffer;
 use crate::finger::sent::SentPath;
 
 impl Mailbox {
-    /// Sends a path that begins in period `origin`. `change` changes the last set point to the end of the path. The
-    /// path was computed for the spring phase `spring`. Returns the number of the path, or none if another spring phase
-    /// has begun.
+    /// Sends a path that begins in period `origin`. `change` gets a copy of the set point that was sent last, and
+    /// moves it to the end of the path. The path was computed for the spring phase `spring`. Returns the number of the
+    /// path, or none if another spring phase has begun.
     ///
     /// # Errors
-    /// Returns the fault if the finger is faulted. The inner result is the refusal of `change`. Nothing is sent in
-    /// these cases.
+    /// Returns the fault if the finger is faulted. If `change` refuses the set point, the inner result is its error.
+    /// Nothing is sent in these cases.
     pub fn send_path<E>(
         &self,
         (spring, origin, valid): (u32, u64, Option<f64>),

@@ -15,7 +15,7 @@ fn try_to_store(text: &str, found: &[Found]) -> Result<String, ConfigurationErro
     let files = fs::read_dir(folder.path()).expect("a folder").count();
     assert_eq!(files, 1, "no temporary file is left");
     let after = fs::read_to_string(&path).expect("there");
-    assert!(stored.is_ok() || after == text, "refused and changed");
+    assert!(stored.is_ok() || after == text, "the results were refused, but the file has changed");
     stored.map(|()| after)
 }
 
@@ -74,7 +74,7 @@ fn moment_arms_are_stored_with_the_zeros_that_belong_to_them() {
     let friction = by_identification(FingerNumber::TWO, Identified { moment_arms, ..friction([300.0; 4], 0.05) });
     let file = "[finger.2.geometry]\n\
                 r = [[-1.09, 0.62, 0.62, -1.09], [1.09, 0.62, -0.62, -1.09], [0.0, 0.62, -0.62, 0.0]] # report\n";
-    // Zeros that were found with the new moment arms, before they were stored.
+    // These zeros were found with the new moment arms, before the moment arms were stored.
     let mut later = Configuration::default();
     later.fingers[1].geometry.r = std::array::from_fn(|row| std::array::from_fn(|column| r[(row, column)]));
     let zeros = Zeros { encoder: zero, gauge: [0.0; 4], joint_error: Vector3::zeros(), range_error: None };
@@ -197,6 +197,6 @@ fn a_file_that_no_longer_fits_is_unchanged_and_the_reason_is_reported() {
 
 #[test]
 fn a_failed_write_is_named() {
-    let error = store_findings(Path::new("/proc/version"), &[]).expect_err("no text of a configuration");
+    let error = store_findings(Path::new("/proc/version"), &[]).expect_err("not the text of a configuration");
     assert!(error.to_string().contains("/proc/version"), "{error}");
 }

@@ -159,8 +159,8 @@ fn round_trips(
     Ok(Measured { times: histograms.distribution(CycleStage::Wire), lost })
 }
 
-/// A simulated board answers as soon as the scheduler runs it, so its round trips say nothing about a port. They are no
-/// reason why the hand cannot run.
+/// A simulated board answers as soon as the scheduler runs it, so its round trips say nothing about a port. Even if
+/// they are too long, the hand can run, so they are at most a warning.
 fn judge(
     configuration: &Configuration,
     subject: String,

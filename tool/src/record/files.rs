@@ -11,8 +11,8 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use sun2xp::model::{FingerNumber, ShownPath};
 use sun2xp::telemetry::{Description, Message};
 
-/// Largest number of controllers of a finger that a new file begins with. A cycle names its controller and the one
-/// before it.
+/// Largest number of controllers of a finger that a new file begins with. A cycle names its own controller, and the
+/// controller that was replaced in that cycle.
 const MOST_CONTROLLERS: usize = 4;
 
 /// When a new file begins, and how many are kept.
@@ -154,7 +154,7 @@ impl OpenFile {
         Ok(Self { path, writer, since: Instant::now() })
     }
 
-    /// Writes, and names the file in an error.
+    /// Calls `write`. If it fails, the error that is returned names the file.
     fn explain(
         &mut self,
         write: impl FnOnce(&mut RecordingWriter<BufWriter<File>>) -> Result<(), Failure>,
@@ -203,10 +203,10 @@ fn date_and_time() -> String {
     format!("{year:04}{month:02}{day:02}-{:02}{:02}{:02}", of_day / 3600, of_day / 60 % 60, of_day % 60)
 }
 
-/// Returns the date of a day since 1970 in the Gregorian calendar.
+/// Returns the Gregorian year, month and day of the date that is `days` days after 1970-01-01.
 fn date(days: u64) -> (u64, u64, u64) {
     // Years are counted from March, so that the leap day is the last day of a year. The calendar repeats after 400
-    // years, which have 146 097 days. 719 468 days are from 0000-03-01 to 1970-01-01.
+    // years, which have 146 097 days. From 0000-03-01 to 1970-01-01 there are 719 468 days.
     let days = days + 719_468;
     let (era, day) = (days / 146_097, days % 146_097);
     let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;

@@ -45,7 +45,7 @@ struct Finger {
     rows: Vec<Row>,
     /// Number of the last interval of [`SAMPLE`] that has a row.
     interval: u64,
-    /// Latest wake-up since the last row, us.
+    /// Largest delay of a wake-up since the last row, us.
     wake_up: f64,
     state: Option<StateMessage>,
     /// Time of the last state, ns.
@@ -211,7 +211,7 @@ fn row(sample: &Sample, time: f64, wake_up: f64) -> Row {
         .chain(sample.tip)
         .chain([sample.torque_scale, sample.stiffness_scale, wake_up]);
     for (place, value) in row.iter_mut().zip(values) {
-        // Four digits after the point are more than a picture shows, and half as many bytes.
+        // Four digits after the point are more than a picture can show. They take half as many bytes as all digits.
         *place = (value * 1e4).round() * 1e-4;
     }
     row
