@@ -1,0 +1,74 @@
+//! Answer, type 6.
+
+use crate::bytes::{Bytes, Written};
+use crate::error::{FieldError, Reason, within};
+use crate::{Code, DecodeError, MessageKind};
+
+const FIXED: usize = 34;
+const KIND: MessageKind = MessageKind::Answer;
+
+/// The answer to a Request, or the refusal of a Target.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// Whether it is done, or why not.
+    pub code: Code,
+    /// `catch_ms` of the server, ms: at least 1.
+    pub catch_ms: u32,
+    /// The new epoch for acquire, otherwise that of the Request or Target.
+    pub epoch: u64,
+    /// Time, ns, server's clock: a value for [`Target::seen`](crate::Target::seen).
+    pub time: u64,
+    /// For the refusal of a Target: its sequence number. For acquire: the number of the new epoch since the server's
+    /// start, which is [`State::owner`](crate::State::owner) from now on. Otherwise 0.
+    pub number: u64,
+    /// The cause and the remedy; empty if it is done.
+    pub text: String,
+}
+
+impl Answer {
+    /// Decodes a payload.
+    ///
+    /// # Errors
+    /// Returns the field that the page does not allow, and the reason.
+    pub fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
+        let bytes = Bytes::of_message(payload, KIND, FIXED)?;
+        let length = usize::from(bytes.u16(32));
+        bytes.has_length(KIND, FIXED + length)?;
+        let code = Code::decode(bytes.u16(2)).map_err(|error| error.of(KIND))?;
+        let text = std::str::from_utf8(bytes.from(FIXED, length).0)
+            .map_err(|_| FieldError::new("text", Reason::NotText).of(KIND))?;
+        let answer = Self {
+            code,
+            catch_ms: bytes.u32(4),
+            epoch: bytes.u64(8),
+            time: bytes.u64(16),
+            number: bytes.u64(24),
+            text: text.into(),
+        };
+        answer.check().map_err(|error| error.of(KIND))?;
+        Ok(answer)
+    }
+
+    fn check(&self) -> Result<(), FieldError> {
+        within("catch_ms", u64::from(self.catch_ms), 1, u64::from(u32::MAX))?;
+        if self.text.len() > usize::from(u16::MAX) {
+            return Err(FieldError::new("text", Reason::TooLong(usize::from(u16::MAX))));
+        }
+        match self.code {
+            Code::Done if !self.text.is_empty() => Err(FieldError::new("text", Reason::Contradicts("the code"))),
+            _ => Ok(()),
+        }
+    }
+
+    /// Encodes the Answer.
+    ///
+    /// # Errors
+    /// Returns the field that the page does not allow, and the reason.
+    pub fn encode(&self) -> Result<Vec<u8>, FieldError> {
+        self.check()?;
+        let mut to = Written::message(KIND, FIXED + self.text.len());
+        to.u16(self.code as u16).u32(self.catch_ms).u64(self.epoch).u64(self.time).u64(self.number);
+        to.u16(self.text.len() as u16).bytes(self.text.as_bytes());
+        Ok(to.finish())
+    }
+}

@@ -1,0 +1,147 @@
+//! Why a payload is not a message of the protocol.
+
+use crate::MessageKind;
+use thiserror::Error;
+
+/// Why a payload cannot be decoded.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum DecodeError {
+    /// The payload has no type and no version.
+    #[error("{0} bytes are too few for a message: every message begins with its type and its version")]
+    Short(usize),
+    /// The payload is another message.
+    #[error("the type is {found}, and not {} of {expected}", *expected as u8)]
+    Kind {
+        /// The message that the receiver expects.
+        expected: MessageKind,
+        /// The type in the payload.
+        found: u8,
+    },
+    /// The payload has another version of the protocol.
+    #[error(
+        "version {found} of the protocol, and not version {}: use a client and a server of the same version",
+        crate::VERSION
+    )]
+    Version {
+        /// The version in the payload.
+        found: u8,
+    },
+    /// The length does not agree with the fields.
+    #[error("{found} bytes, but {kind} has {expected} bytes by its fields")]
+    Length {
+        /// The message.
+        kind: MessageKind,
+        /// The length that the fields give. If the fields are missing, the shortest length.
+        expected: usize,
+        /// The length of the payload.
+        found: usize,
+    },
+    /// A field has a value that the page does not allow.
+    #[error("{kind}: {error}")]
+    Field {
+        /// The message.
+        kind: MessageKind,
+        /// The field and the reason.
+        error: FieldError,
+    },
+}
+
+/// A field with a value that docs/remote-protocol.md does not allow.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("{}{field} {reason}", Numbered(*number))]
+pub struct FieldError {
+    /// The name of the field.
+    pub field: &'static str,
+    /// For a field of a part or record: its name, and its place in the message, from 0.
+    pub number: Option<(&'static str, usize)>,
+    /// What is wrong.
+    pub reason: Reason,
+}
+
+/// What is wrong with a field.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Reason {
+    /// A number is NaN or infinite.
+    #[error("contains {0}: every number must be finite")]
+    NotFinite(f64),
+    /// A number is zero or negative.
+    #[error("is {0}: it must be positive")]
+    NotPositive(f64),
+    /// A number is negative.
+    #[error("is {0}: it must not be negative")]
+    Negative(f64),
+    /// A whole number is outside its range.
+    #[error("is {value}: it must be {least} to {most}")]
+    Outside {
+        /// The value.
+        value: u64,
+        /// The smallest allowed value.
+        least: u64,
+        /// The largest allowed value.
+        most: u64,
+    },
+    /// A value is not higher than the one before.
+    #[error("must be higher than the one before")]
+    NotRising,
+    /// Something that is not given is not zero.
+    #[error("must be zero, because it is not given")]
+    NotZero,
+    /// Bits without a meaning are set.
+    #[error("has the value {0:#x}, with bits that have no meaning or that this message must not have")]
+    Bits(u8),
+    /// A text is not UTF-8.
+    #[error("is not UTF-8")]
+    NotText,
+    /// A text is longer than the message permits.
+    #[error("is longer than {0} bytes")]
+    TooLong(usize),
+    /// A name has a character that names do not have, or a wrong length.
+    #[error("is not a name of a client")]
+    NotAName,
+    /// One field contradicts another.
+    #[error("contradicts {0}")]
+    Contradicts(&'static str),
+}
+
+impl FieldError {
+    pub(crate) fn new(field: &'static str, reason: Reason) -> Self {
+        Self { field, number: None, reason }
+    }
+
+    /// The same error, in the part or record with this number.
+    pub(crate) fn within(self, what: &'static str, number: usize) -> Self {
+        Self { number: Some((what, number)), ..self }
+    }
+
+    pub(crate) fn of(self, kind: MessageKind) -> DecodeError {
+        DecodeError::Field { kind, error: self }
+    }
+}
+
+struct Numbered(Option<(&'static str, usize)>);
+
+impl std::fmt::Display for Numbered {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.0 {
+            Some((what, number)) => write!(formatter, "{what} {number}, "),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Refuses NaN and infinity.
+pub(crate) fn finite(field: &'static str, values: &[f64]) -> Result<(), FieldError> {
+    match values.iter().find(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(&value) => Err(FieldError::new(field, Reason::NotFinite(value))),
+    }
+}
+
+/// Refuses whole numbers outside a range.
+pub(crate) fn within(field: &'static str, value: u64, least: u64, most: u64) -> Result<(), FieldError> {
+    if (least..=most).contains(&value) {
+        return Ok(());
+    }
+    Err(FieldError::new(field, Reason::Outside { value, least, most }))
+}

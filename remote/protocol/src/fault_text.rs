@@ -1,0 +1,31 @@
+//! The text of a fault in a Status.
+
+use std::fmt;
+
+/// The beginning of the text of a fault: at most 71 bytes.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FaultText(String);
+
+impl FaultText {
+    /// The largest length, bytes.
+    pub const LONGEST: usize = 71;
+
+    /// Returns the beginning of this text, which ends with a whole character.
+    #[must_use]
+    pub fn beginning_of(text: &str) -> Self {
+        let end = (0..=Self::LONGEST.min(text.len())).rev().find(|&end| text.is_char_boundary(end));
+        Self(text[..end.unwrap_or(0)].into())
+    }
+
+    /// Returns the text.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+impl fmt::Display for FaultText {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(formatter)
+    }
+}

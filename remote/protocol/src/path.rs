@@ -1,0 +1,35 @@
+//! The poses of a path.
+
+use crate::error::{FieldError, Reason, finite, within};
+
+/// The largest number of poses of a path.
+pub const MOST_POSES: usize = 32;
+
+/// A pose of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPose {
+    /// Time since the server has applied the path, s.
+    pub time: f64,
+    /// Angles of joints 0, 1 and 2 at this time, rad.
+    pub joints: [f64; 3],
+}
+
+impl PathPose {
+    /// Bytes of a pose.
+    pub(crate) const LENGTH: usize = 32;
+}
+
+/// Checks the number of poses, and that their times rise from 0.
+pub(crate) fn check(poses: &[PathPose]) -> Result<(), FieldError> {
+    within("number of poses", poses.len() as u64, 1, MOST_POSES as u64)?;
+    let mut before = 0.0;
+    for pose in poses {
+        finite("time of a pose", &[pose.time])?;
+        finite("joint angles of a pose", &pose.joints)?;
+        if pose.time <= before {
+            return Err(FieldError::new("time of a pose", Reason::NotRising));
+        }
+        before = pose.time;
+    }
+    Ok(())
+}

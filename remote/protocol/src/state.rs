@@ -1,0 +1,76 @@
+//! State, type 2: the cycles of all fingers since the last State.
+
+use crate::bytes::{Bytes, Written};
+use crate::error::{FieldError, Reason, within};
+use crate::{DecodeError, FINGERS, MessageKind, Record};
+
+/// The largest number of records of a State.
+pub const MOST_RECORDS: usize = 300;
+
+const FIXED: usize = 32;
+const KIND: MessageKind = MessageKind::State;
+
+/// The cycles of all fingers since the last State.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Number of cycles that are missing before this State, because the server was late.
+    pub missing: u32,
+    /// The number of this State. The next State has the next number.
+    pub number: u64,
+    /// Time of publication, ns, server's clock.
+    pub time: u64,
+    /// The number of the owner's epoch since the server's start; 0 if there is no owner.
+    pub owner: u64,
+    /// The cycles. Those of a finger are in their order.
+    pub records: Vec<Record>,
+}
+
+impl State {
+    /// Decodes a payload.
+    ///
+    /// # Errors
+    /// Returns the field that the page does not allow, and the reason.
+    pub fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
+        let bytes = Bytes::of_message(payload, KIND, FIXED)?;
+        let count = usize::from(bytes.u16(2));
+        within("number of records", count as u64, 0, MOST_RECORDS as u64).map_err(|error| error.of(KIND))?;
+        bytes.has_length(KIND, FIXED + count * Record::LENGTH)?;
+        let records = (0..count).map(|number| {
+            let record = Record::decode(bytes.from(FIXED + number * Record::LENGTH, Record::LENGTH));
+            record.map_err(|error| error.within("record", number))
+        });
+        let records = records.collect::<Result<Vec<_>, _>>().map_err(|error| error.of(KIND))?;
+        let state =
+            Self { missing: bytes.u32(4), number: bytes.u64(8), time: bytes.u64(16), owner: bytes.u64(24), records };
+        state.check_order().map_err(|error| error.of(KIND))?;
+        Ok(state)
+    }
+
+    /// Checks the order of the cycles of each finger.
+    fn check_order(&self) -> Result<(), FieldError> {
+        within("number of records", self.records.len() as u64, 0, MOST_RECORDS as u64)?;
+        let mut newest = [None; FINGERS];
+        for (number, record) in self.records.iter().enumerate() {
+            let before = newest[record.finger.index()].replace(record.cycle);
+            if before.is_some_and(|before| before >= record.cycle) {
+                return Err(FieldError::new("number of the cycle", Reason::NotRising).within("record", number));
+            }
+        }
+        Ok(())
+    }
+
+    /// Encodes the State.
+    ///
+    /// # Errors
+    /// Returns the field that the page does not allow, and the reason.
+    pub fn encode(&self) -> Result<Vec<u8>, FieldError> {
+        self.check_order()?;
+        for (number, record) in self.records.iter().enumerate() {
+            record.check().map_err(|error| error.within("record", number))?;
+        }
+        let mut to = Written::message(KIND, FIXED + self.records.len() * Record::LENGTH);
+        to.u16(self.records.len() as u16).u32(self.missing).u64(self.number).u64(self.time).u64(self.owner);
+        self.records.iter().for_each(|record| record.encode(&mut to));
+        Ok(to.finish())
+    }
+}
