@@ -61,7 +61,7 @@
        ERANGE     angles outside the joint limits; Kx stiffer than the bound
        EDOM       Kx not symmetric, or with a negative eigenvalue
        EIO        the finger is faulted: it has stopped by itself. CloseHand and OpenHand start it again,
-                  and sun2xp_recover of sun2xp.h does
+                  and so does sun2xp_recover of sun2xp.h
        ESHUTDOWN  the process is exiting, and the hand is closed (chapter 6)
        others     the errno of the system, or the errno that describes the reason best: configuration
                   file, port, enforced real time

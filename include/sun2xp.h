@@ -785,11 +785,11 @@ int sun2xp_tip(sun2xp_hand *hand, int finger, struct sun2xp_tip *tip);
    normal       normal[3]: the contact normal in the finger's frame, of any length but zero. Not used
                 for 3 dimensions, and may be null there
 
- The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last, and
- a later sun2xp_send_stiffness replaces it. In directions outside the contact, the finger is limp but
- still damped. The matrix must be symmetric and must have no negative eigenvalue, as for
- sun2xp_send_stiffness. To compare it with the bound, a rotational stiffness of k N cm/rad is converted
- to k / (l2 l2) N/cm, where l2 is the length of the last link.
+ The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last,
+ and a later sun2xp_send_stiffness replaces it. In directions outside the contact, the finger is limp
+ but still damped. The matrix must be symmetric and must have no negative eigenvalue, as for
+ sun2xp_send_stiffness. For the comparison with the bound, a rotational stiffness of k N cm/rad is
+ converted to k / (l2 l2) N/cm, where l2 is the length of the last link.
 
  A soft finger is not a spring in four independent directions, because three joints turn the tip only by
  moving it. A tip that moves by v cm turns about normal by c . v rad, and the vector c depends on the
@@ -1044,11 +1044,12 @@ struct sun2xp_path_pose {
    seconds   how long the end of the path is valid, s; 0 for finger.motion.valid_ms
 
  The path begins at once where the anchor of the fingertip's spring is, continues its motion, passes
- every pose at its time and rests at the last one. Between poses the joint angles, or the tip, follow a
- spline. If the path begins at rest and its only pose is a position of the tip, the tip moves along a
- straight line. Speed, acceleration and jerk are continuous. Because they are fed forward, the finger
- follows without the lag of sun2xp_send_position. Between two poses that have a Kx, Kx changes linearly.
- Before the first of them, it changes linearly from the Kx in force at the beginning.
+ every pose at its time and rests at the last one. Between poses the joint angles, or the tip, follow
+ a spline. If the path begins at rest and its only pose is a position of the tip, the tip moves along
+ a straight line. Speed, acceleration and jerk are continuous. Because they are fed forward, the
+ finger follows without the lag of sun2xp_send_position. Between two poses that have a Kx, Kx changes
+ linearly. Before the first pose that has one, Kx changes linearly from the one in force at the
+ beginning.
 
  The whole path is checked before anything moves: against the joint limits, and against speed,
  acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -2092,17 +2093,17 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 #define SUN2XP_WHEN_FORCE_ABOVE 3           /* The force of the surroundings on the tip is above bound, N. */
 #define SUN2XP_WHEN_TENSION_ABOVE 4         /* The tension of any tendon is above bound, N. */
 #define SUN2XP_WHEN_TENSION_BELOW 5         /* The tension of any tendon is below bound, N. */
-#define SUN2XP_WHEN_JOINT_ABOVE 6           /* The angle of joint is above bound, rad. */
-#define SUN2XP_WHEN_JOINT_BELOW 7           /* The angle of joint is below bound, rad. */
+#define SUN2XP_WHEN_JOINT_ABOVE 6           /* The angle of the member joint is above bound, rad. */
+#define SUN2XP_WHEN_JOINT_BELOW 7           /* The angle of the member joint is below bound, rad. */
 #define SUN2XP_WHEN_LINK_LOST 8             /* The board has not replied for the time bound, s. */
 #define SUN2XP_WHEN_PLANNER_SILENT 9        /* The planner has sent no set point for the time bound, s. */
 #define SUN2XP_THEN_STOP 1                  /* The finger stops with a fault. */
 #define SUN2XP_THEN_HOLD 2                  /* The finger stays where it is. */
 #define SUN2XP_THEN_SOFTEN 3                /* The tip gets the member stiffness. */
-#define SUN2XP_THEN_RETRACT 4               /* The finger goes to position. */
-#define SUN2XP_THEN_GRIP 5                  /* The tip presses harder by value, N, but with at most largest, N. This
-                                               needs a Kx without an eigenvalue of 0. */
-#define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio value. */
+#define SUN2XP_THEN_RETRACT 4               /* The finger goes to the member position. */
+#define SUN2XP_THEN_GRIP 5                  /* The tip presses harder by the member value, N, up to the member
+                                               largest, N. This needs a Kx without an eigenvalue of 0. */
+#define SUN2XP_THEN_DAMP 6                  /* The tip gets the member value as its damping ratio. */
 
 /*
  A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.
@@ -2122,7 +2123,7 @@ struct sun2xp_reflex {
     double bound;                           /* N, rad or s, as the condition says. */
     double value;                           /* SUN2XP_THEN_GRIP: increase of the force, N. SUN2XP_THEN_DAMP: ratio. */
     double largest;                         /* SUN2XP_THEN_GRIP: largest force, N. */
-    double refractory;                      /* Time after a reaction in which it does not fire, s, 0 to 3600. */
+    double refractory;                      /* Time after a reaction in which the rule does not fire, s, 0 to 3600. */
     double inhibition;                      /* Time after a reaction in which set points are ignored, s, 0 to 3600. */
     double position[3];                     /* RETRACT: joint angles, rad. GRIP: direction of the force. */
     double stiffness[3][3];                 /* SUN2XP_THEN_SOFTEN: stiffness, N/cm, row by row. */

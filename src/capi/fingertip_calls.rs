@@ -123,11 +123,11 @@ pub unsafe extern "C" fn sun2xp_tip(hand: *mut sun2xp_hand, finger: c_int, tip: 
 ///   normal       normal[3]: the contact normal in the finger's frame, of any length but zero. Not used
 ///                for 3 dimensions, and may be null there
 ///
-/// The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last, and
-/// a later sun2xp_send_stiffness replaces it. In directions outside the contact, the finger is limp but
-/// still damped. The matrix must be symmetric and must have no negative eigenvalue, as for
-/// sun2xp_send_stiffness. To compare it with the bound, a rotational stiffness of k N cm/rad is converted
-/// to k / (l2 l2) N/cm, where l2 is the length of the last link.
+/// The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last,
+/// and a later sun2xp_send_stiffness replaces it. In directions outside the contact, the finger is limp
+/// but still damped. The matrix must be symmetric and must have no negative eigenvalue, as for
+/// sun2xp_send_stiffness. For the comparison with the bound, a rotational stiffness of k N cm/rad is
+/// converted to k / (l2 l2) N/cm, where l2 is the length of the last link.
 ///
 /// A soft finger is not a spring in four independent directions, because three joints turn the tip only by
 /// moving it. A tip that moves by v cm turns about normal by c . v rad, and the vector c depends on the

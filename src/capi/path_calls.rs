@@ -44,11 +44,12 @@ pub struct sun2xp_path_pose {
 ///   seconds   how long the end of the path is valid, s; 0 for finger.motion.valid_ms
 ///
 /// The path begins at once where the anchor of the fingertip's spring is, continues its motion, passes
-/// every pose at its time and rests at the last one. Between poses the joint angles, or the tip, follow a
-/// spline. If the path begins at rest and its only pose is a position of the tip, the tip moves along a
-/// straight line. Speed, acceleration and jerk are continuous. Because they are fed forward, the finger
-/// follows without the lag of sun2xp_send_position. Between two poses that have a Kx, Kx changes linearly.
-/// Before the first of them, it changes linearly from the Kx in force at the beginning.
+/// every pose at its time and rests at the last one. Between poses the joint angles, or the tip, follow
+/// a spline. If the path begins at rest and its only pose is a position of the tip, the tip moves along
+/// a straight line. Speed, acceleration and jerk are continuous. Because they are fed forward, the
+/// finger follows without the lag of sun2xp_send_position. Between two poses that have a Kx, Kx changes
+/// linearly. Before the first pose that has one, Kx changes linearly from the one in force at the
+/// beginning.
 ///
 /// The whole path is checked before anything moves: against the joint limits, and against speed,
 /// acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made

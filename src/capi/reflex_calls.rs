@@ -30,10 +30,10 @@ pub const SUN2XP_WHEN_TENSION_ABOVE: c_int = 4;
 /// The tension of any tendon is below bound, N.
 pub const SUN2XP_WHEN_TENSION_BELOW: c_int = 5;
 
-/// The angle of joint is above bound, rad.
+/// The angle of the member joint is above bound, rad.
 pub const SUN2XP_WHEN_JOINT_ABOVE: c_int = 6;
 
-/// The angle of joint is below bound, rad.
+/// The angle of the member joint is below bound, rad.
 pub const SUN2XP_WHEN_JOINT_BELOW: c_int = 7;
 
 /// The board has not replied for the time bound, s.
@@ -51,14 +51,14 @@ pub const SUN2XP_THEN_HOLD: c_int = 2;
 /// The tip gets the member stiffness.
 pub const SUN2XP_THEN_SOFTEN: c_int = 3;
 
-/// The finger goes to position.
+/// The finger goes to the member position.
 pub const SUN2XP_THEN_RETRACT: c_int = 4;
 
-/// The tip presses harder by value, N, but with at most largest, N. This needs a Kx without an eigenvalue
-/// of 0.
+/// The tip presses harder by the member value, N, up to the member largest, N. This needs a Kx without an
+/// eigenvalue of 0.
 pub const SUN2XP_THEN_GRIP: c_int = 5;
 
-/// The tip gets the damping ratio value.
+/// The tip gets the member value as its damping ratio.
 pub const SUN2XP_THEN_DAMP: c_int = 6;
 
 /// A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.
@@ -89,7 +89,7 @@ pub struct sun2xp_reflex {
     pub value: c_double,
     /// SUN2XP_THEN_GRIP: largest force, N.
     pub largest: c_double,
-    /// Time after a reaction in which it does not fire, s, 0 to 3600.
+    /// Time after a reaction in which the rule does not fire, s, 0 to 3600.
     pub refractory: c_double,
     /// Time after a reaction in which set points are ignored, s, 0 to 3600.
     pub inhibition: c_double,

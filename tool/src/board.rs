@@ -20,8 +20,8 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
 /// Runs a simulated board behind a serial port of its own.
 ///
-/// The first line on standard output is the path of the port. Each line on standard input is an order, of which the end
-/// of --help has a list. The board answers each order with one line: `ok`, `state ...` or `error ...`.
+/// The first line on standard output is the path of the port. Each line on standard input is an order; the end of
+/// --help lists the orders. The board answers each order with one line: `ok`, `state ...` or `error ...`.
 ///
 /// The program ends at `quit` or a signal, and not at the end of standard input, so that it can run detached.
 #[derive(clap::Args)]

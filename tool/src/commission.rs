@@ -126,7 +126,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
             return Ok(ExitStatus::FAILURE);
         }
     }
-    let text = "The finger is commissioned. sun2xp health compares it with today at any later time.";
+    let text = "The finger is commissioned. At any later time, sun2xp health compares its state with that of today.";
     writeln!(io::stdout(), "\n{text}")?;
     Ok(ExitStatus::SUCCESS)
 }

@@ -21,7 +21,7 @@ use sun2xp::{Hand, hand};
 use worker::Worker;
 
 /// Opens a hand and moves it by keys. The keys move joints or fingertips, change the stiffness, and push the fingertips
-/// of the simulated hand, which give. Shows the hand as `sun2xp monitor` does.
+/// of the simulated hand, which yield like springs. Shows the hand as `sun2xp monitor` does.
 ///
 /// Without --config the hand is simulated. Before a real hand moves, the command asks, and its steps are limited. The
 /// space bar stops all fingers. ? shows all keys.
