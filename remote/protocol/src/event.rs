@@ -12,7 +12,7 @@ const KIND: MessageKind = MessageKind::Event;
 pub struct Event {
     /// The finger.
     pub finger: Finger,
-    /// The part of the finger: 0 the finger, otherwise the number of docs/events.md.
+    /// The joint, 0 to 2, or the tendon, motor, gauge or encoder, 1 to 4, by the kind; otherwise 0.
     pub part: u8,
     /// The kind: the number of docs/events.md, from 1.
     pub kind: u16,
