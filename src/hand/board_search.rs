@@ -9,6 +9,7 @@ use crate::model::{FingerNumber, Fingers, ShownPath};
 use crate::realtime::now;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// Time that a board has to answer at one port, ns. A board answers within 50 ms, and a Hello may be lost.
@@ -16,6 +17,9 @@ const ANSWER: u64 = 160_000_000;
 
 /// Time for which the ports are searched again if a board is missing. Some boards restart when their port is opened.
 const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Time between two searches. Where no port exists, a search takes no time, and the thread would use its core fully.
+const PAUSE: Duration = Duration::from_millis(50);
 
 /// A finger that answers at a port.
 #[derive(Clone, Debug)]
@@ -75,7 +79,7 @@ pub fn find_boards(configuration: &mut Configuration, fingers: Fingers) -> Resul
                 return Ok(check(configuration)?);
             }
             Err(error) if begun.elapsed() > PATIENCE => return Err(error),
-            Err(_) => {}
+            Err(_) => sleep(PAUSE),
         }
     }
 }

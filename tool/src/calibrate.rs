@@ -116,18 +116,7 @@ impl Arguments {
             _ => Ok(()),
         }
         .map_err(Refused::ByPerson)?;
-        let shown = begin(finger, task);
-        let progress = |progress: calibration::Progress| {
-            shown.now(progress.step.to_string());
-            shown.reach((progress.part * 1000.0) as u64);
-        };
-        match task {
-            Task::Signs => hand.find_signs(finger, progress),
-            Task::SelfTest => hand.self_test(finger, progress).map(|()| Findings::RightWiring),
-            Task::Zero => hand.zero(finger, progress),
-            Task::Identify => hand.identify(finger, progress),
-        }
-        .map_err(Refused::ByHand)
+        with_progress(hand, finger, task, "finding signs").map_err(Refused::ByHand)
     }
 
     /// The requested tasks, in the order of their execution.
@@ -163,13 +152,24 @@ impl Arguments {
     }
 }
 
-/// Begins to show the progress of a task. The steps are thousandths.
-fn begin(finger: i32, task: Task) -> Progress {
+/// Runs a task with a limp finger, and shows its progress. `signs` describes the task that finds the signs.
+pub fn with_progress(hand: &Hand, finger: i32, task: Task, signs: &str) -> Result<Findings, HandError> {
     let doing = match task {
-        Task::Signs => "finding signs",
+        Task::Signs => signs,
         Task::SelfTest => "checking the wiring",
         Task::Zero => "zeroing",
         Task::Identify => "identifying",
     };
-    Progress::new(format!("finger {finger}, {doing}"), 1000).with_every_name()
+    // The steps are thousandths.
+    let shown = Progress::new(format!("finger {finger}, {doing}"), 1000).with_every_name();
+    let progress = |progress: calibration::Progress| {
+        shown.now(progress.step.to_string());
+        shown.reach((progress.part * 1000.0) as u64);
+    };
+    match task {
+        Task::Signs => hand.find_signs(finger, progress),
+        Task::SelfTest => hand.self_test(finger, progress).map(|()| Findings::RightWiring),
+        Task::Zero => hand.zero(finger, progress),
+        Task::Identify => hand.identify(finger, progress),
+    }
 }

@@ -1,14 +1,14 @@
 //! A finger at its port.
 
 use super::machine::{AtRest, BoardSeen, Machine, Reading, Refused};
+use crate::calibrate::with_progress;
 use crate::failure::Failure;
-use crate::print::Progress;
 use crate::{bound, doctor};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::{Reason, Status};
 use sun2xp::board::{Link, LinkError, Terms};
-use sun2xp::calibration::{self, Findings, Task};
+use sun2xp::calibration::{Findings, Task};
 use sun2xp::hand::{Fingers, Hand, HandError, SimulatedHand, find_boards, ports};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{BoardNumber, Configuration, ConfiguredFinger};
@@ -49,24 +49,8 @@ impl HandMachine {
 
     fn run(&mut self, task: Task) -> Result<Findings, Refused> {
         let finger = self.finger.get();
-        let what = match task {
-            Task::Signs => "turning the motors",
-            Task::SelfTest => "checking the wiring",
-            Task::Zero => "zeroing",
-            Task::Identify => "identifying",
-        };
-        let shown = Progress::new(format!("finger {finger}, {what}"), 1000).with_every_name();
-        let progress = |progress: calibration::Progress| {
-            shown.now(progress.step.to_string());
-            shown.reach((progress.part * 1000.0) as u64);
-        };
         let hand = self.limp()?;
-        let found = match task {
-            Task::Signs => hand.find_signs(finger, progress),
-            Task::SelfTest => hand.self_test(finger, progress).map(|()| Findings::RightWiring),
-            Task::Zero => hand.zero(finger, progress),
-            Task::Identify => hand.identify(finger, progress),
-        };
+        let found = with_progress(hand, finger, task, "turning the motors");
         let calibrated = hand.calibrated(finger)?;
         match found {
             Ok(found) => {
