@@ -1,20 +1,22 @@
 """The face of the package: types, stubs and documentation."""
 
 import inspect
+import operator
 import pathlib
 import re
 import subprocess
 import sys
 
 import sun2xp
+import sun2xp.remote
 from sun2xp import _sun2xp
 
 PACKAGE = pathlib.Path(sun2xp.__file__).parent
 
 
 def test_everything_public_is_described():
-    for name in sun2xp.__all__:
-        value = getattr(sun2xp, name)
+    for name in [*sun2xp.__all__, *(f"remote.{name}" for name in sun2xp.remote.__all__)]:
+        value = operator.attrgetter(name)(sun2xp)
         assert name == "__version__" or inspect.getdoc(value), name
         if inspect.isclass(value) and value.__module__.startswith("sun2xp"):
             for member, method in inspect.getmembers(value, callable):
@@ -40,11 +42,15 @@ def test_mypy_accepts_the_package_and_a_program(tmp_path):
     program.write_text(
         "import numpy\n"
         "import sun2xp\n"
+        "import sun2xp.remote\n"
         "with sun2xp.simulated() as hand:\n"
         "    hand.send_position(1, numpy.zeros(3))\n"
         "    force: float = hand.tip(1).force[0]\n"
         "    for event in hand.events():\n"
         "        kind: sun2xp.EventKind = event.kind\n"
+        "    hand.send_group([sun2xp.SetPoint(1, position=[0.0, 0.6, 0.9])])\n"
+        "with sun2xp.remote.open('hand', client='planner') as remote:\n"
+        "    angle: float = remote.position(1)[0]\n"
     )
 
     def check(*arguments):

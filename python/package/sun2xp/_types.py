@@ -1,4 +1,7 @@
-"""The results of calls. Lengths are in cm, forces in N, torques in N cm, angles in rad, stiffnesses in N/cm."""
+"""The results of calls. Lengths are in cm, forces in N, torques in N cm, angles in rad, stiffnesses in N/cm.
+
+Arrays have no single truth value, so results are not compared as a whole.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +15,7 @@ import numpy.typing
 Array = numpy.typing.NDArray[numpy.float64]
 
 
-def _frozen(cls):
-    # Arrays have no single truth value, so results are not compared as a whole.
-    return dataclasses.dataclass(frozen=True, eq=False)(cls)
-
-
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class SetPoint:
     """A set point of one finger for `Hand.send_group`. What is None keeps its value."""
 
@@ -33,7 +31,7 @@ class SetPoint:
     damping: Optional[float] = None
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class Distribution:
     """The distribution of a duration, microseconds."""
 
@@ -51,7 +49,7 @@ class Distribution:
     maximum: float
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class Losses:
     """Counts of a finger's cycles, and of the errors in them."""
 
@@ -73,7 +71,7 @@ class Losses:
     foreign_frames: int
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class Status:
     """The status of a finger and of its servo thread."""
 
@@ -101,7 +99,7 @@ class Status:
     calibration: float
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class Tip:
     """The state of a fingertip, in the finger's frame."""
 
@@ -124,7 +122,7 @@ class Tip:
     slide_speed: float
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class JointTorques:
     """The torques of joints 0, 1 and 2, N cm."""
 
@@ -134,7 +132,7 @@ class JointTorques:
     commanded: Array
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class JointState:
     """The motion of joints 0, 1 and 2 in the last cycle of a finger."""
 
@@ -148,7 +146,7 @@ class JointState:
     torque: Array
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class PalmPose:
     """Where a finger and its tip are in the palm's frame."""
 
@@ -162,7 +160,7 @@ class PalmPose:
     tip_rotation: Array
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class Limits:
     """The limits of a finger."""
 
@@ -182,7 +180,7 @@ class Limits:
     jerk: float
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class ObjectState:
     """The object that simulated fingers touch, in the palm's frame."""
 
@@ -200,7 +198,7 @@ class ObjectState:
     forces: Array
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class TouchReading:
     """The newest reading of a tactile element."""
 
@@ -214,7 +212,7 @@ class TouchReading:
     force: float
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class FaultDescription:
     """A fault or a warning."""
 
@@ -232,7 +230,7 @@ class FaultDescription:
     remedy: str
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class FingerFault:
     """The fault and the warnings of a finger."""
 
@@ -267,7 +265,7 @@ class EventKind(enum.IntEnum):
     TOUCH_INVALID = 18
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class Event:
     """Something that happened to a finger in one cycle of its servo."""
 
@@ -287,7 +285,7 @@ class Event:
     text: str
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class Signs:
     """The directions in which motors, encoders and gauges 1 to 4 count: 1 or -1."""
 
@@ -299,7 +297,7 @@ class Signs:
     gauge: Tuple[int, int, int, int]
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class Zeros:
     """The zeros of the sensors."""
 
@@ -314,7 +312,7 @@ class Zeros:
     range_error: Optional[Array]
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class Identified:
     """Friction and elasticity of a finger."""
 
@@ -342,7 +340,7 @@ class Identified:
     moment_arms: Optional[Array]
 
 
-@_frozen
+@dataclasses.dataclass(frozen=True, eq=False)
 class Mark:
     """Something that happened in a recording."""
 

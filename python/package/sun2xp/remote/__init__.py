@@ -1,0 +1,111 @@
+"""Hands on other machines, which `sun2xp serve` offers (docs/remote.md).
+
+It needs the package eclipse-zenoh: pip install 'sun2xp[remote]'. Units, shapes and the names of calls are those of
+`sun2xp`.
+
+    import sun2xp.remote
+
+    with sun2xp.remote.open("hand", "tcp/127.0.0.1:7447") as hand:
+        hand.send_position(1, [0.1, 0.5, 0.9])
+        hand.wait(1)
+        print(hand.position(1))
+"""
+
+from __future__ import annotations
+
+from typing import Dict, Optional, Sequence
+
+from .._types import SetPoint
+from ._errors import NoAnswer, NotOwner, Stale
+from ._events import RemoteEvents
+from ._hand import RemoteHand
+from ._network import LOOPBACK, Network
+from ._types import Counts, FingerState, FingerStatus, Status, Tip, Tls
+
+__all__ = [
+    "Counts",
+    "FingerState",
+    "FingerStatus",
+    "Network",
+    "NoAnswer",
+    "NotOwner",
+    "RemoteEvents",
+    "RemoteHand",
+    "Stale",
+    "Status",
+    "Tip",
+    "Tls",
+    "connect",
+    "discover",
+    "open",
+    "send_together",
+]
+
+
+def open(
+    hand: str = "hand",
+    endpoint: str = LOOPBACK,
+    *,
+    client: Optional[str] = None,
+    tls: Optional[Tls] = None,
+    read_only: bool = False,
+    take_over: bool = False,
+    recover: bool = False,
+    stale: float = 0.1,
+) -> RemoteHand:
+    """Opens a hand on another machine, over a connection of its own.
+
+    Args:
+        hand: name of the hand.
+        endpoint: where its server or a router listens, such as "tls/cell:7447".
+        client: name of this client; "planner" if not given. With TLS it is the common name of the certificate.
+        tls: the files of mutual TLS. A server that listens on more than loopback needs them.
+        read_only: do not acquire the hand. Then its state can be read, and it can be stopped.
+        take_over: acquire it also if another client commands it.
+        recover: recover fingers that have stopped.
+        stale: largest age of the state that `position` and others return, s.
+
+    Raises:
+        ConfigurationError: a name that no hand or client can have, or a certificate that cannot be read.
+        NoAnswer: no connection, no such hand, or this client may not use it.
+        NotOwner: another client commands the hand.
+    """
+    network = Network(endpoint, client=client, tls=tls)
+    try:
+        opened: RemoteHand = network.open(
+            hand, read_only=read_only, take_over=take_over, recover=recover, stale=stale
+        )
+    except BaseException:
+        network.close()
+        raise
+    opened._owns_network = True
+    return opened
+
+
+def connect(endpoint: str = LOOPBACK, *, client: Optional[str] = None, tls: Optional[Tls] = None) -> Network:
+    """Connects to a server or to a router, for several hands. Arguments and errors are those of `open`."""
+    return Network(endpoint, client=client, tls=tls)
+
+
+def discover(
+    endpoint: str = LOOPBACK, *, client: Optional[str] = None, tls: Optional[Tls] = None, timeout: float = 2.0
+) -> Dict[str, Status]:
+    """Returns the status of every hand that can be reached over this endpoint, by their names. Arguments and errors are
+    those of `open`; `timeout` is the time for the answers, s."""
+    with Network(endpoint, client=client, tls=tls) as network:
+        return network.hands(timeout)
+
+
+def send_together(set_points: Dict[RemoteHand, Sequence[SetPoint]]) -> None:
+    """Sends set points to several hands of one connection, with one time stamp. If one hand refuses its set points
+    here, or is not owned by this client, nothing is sent.
+
+    Raises:
+        ValueError: the hands do not have the same connection (`connect`).
+        NotOwner, Refused: as those of `RemoteHand.send_group`.
+    """
+    networks = {id(hand._network): hand._network for hand in set_points}
+    if len(networks) != 1:
+        raise ValueError("the hands need one connection: open them with the same sun2xp.remote.connect()")
+    commands = [(hand.owner, hand.parts(points)) for hand, points in set_points.items()]
+    next(iter(networks.values())).sender.send(commands)

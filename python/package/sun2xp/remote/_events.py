@@ -1,0 +1,40 @@
+"""Events of a remote hand as an iterator."""
+
+from __future__ import annotations
+
+from typing import Iterator, Optional
+
+from .._types import Event
+from ._receiver import Receiver
+
+
+class RemoteEvents:
+    """A queue of all events of a remote hand, from `RemoteHand.events`. Iteration waits for each event, and ends when
+    the hand is closed.
+
+    Every queue gets all events. A queue that is not read keeps the newest 4096. The times of events are those of the
+    server's clock.
+    """
+
+    def __init__(self, receiver: Receiver) -> None:
+        self._receiver = receiver
+        self._queue = receiver.queue()
+
+    def __iter__(self) -> Iterator[Event]:
+        while (event := self.wait()) is not None:
+            yield event
+
+    def take(self) -> Optional[Event]:
+        """Takes the next event, if there is one."""
+        with self._receiver.changed:
+            return self._queue.popleft() if self._queue else None
+
+    def wait(self, timeout: Optional[float] = None) -> Optional[Event]:
+        """Waits for the next event for at most `timeout` s, or without a limit, and takes it. Returns None after this
+        time, and if the hand is closed."""
+        self._receiver.wait_for(lambda: self._queue, timeout)
+        return self.take()
+
+    def close(self) -> None:
+        """Ends the queue, which gets no further events."""
+        self._receiver.forget(self._queue)

@@ -1,0 +1,261 @@
+"""A hand on another machine."""
+
+from __future__ import annotations
+
+import time
+from typing import Iterable, List, Optional, Sequence, Union
+
+import numpy.typing
+
+from .._errors import Error, ErrorNumber, Fault, Refused, TimedOut
+from .._types import EventKind, SetPoint
+from . import _messages, _parts
+from ._errors import error_of
+from ._messages import STAGES, Answer, Part
+from ._network import ANSWER_TIME, Network
+from ._owner import Owner
+from ._reading import Reading
+
+#: Longest time of a calibration, s.
+_CALIBRATION_TIME = 600.0
+
+#: Events that end the waits of `wait`.
+_CONDITIONS = {"arrived": EventKind.ARRIVED, "settled": EventKind.SETTLED}
+
+
+class RemoteHand(Reading):
+    """A hand that `sun2xp serve` offers, from `sun2xp.remote.open` or `Network.open`.
+
+    The calls have the names of `sun2xp.Hand`. Those that send return at once: a thread sends a target every 20 ms, and
+    each new set point without delay. If the server refuses a set point, the next call that sends to this finger or
+    waits for it raises Refused with the reason. The fingers keep the set points that they had.
+
+    If this process ends, is stopped or loses the line, the server holds the fingers after 0.1 s and brings them to
+    their end states after 1 s, unless it is configured otherwise.
+
+    All methods may be called from several threads. Leaving a `with` block closes the hand.
+    """
+
+    def __init__(self, network: Network, name: str, *, stale: float, owns_network: bool = False) -> None:
+        super().__init__(network, name, stale=stale)
+        self._owns_network = owns_network
+        publisher = network.publisher(f"{self._prefix}target/{network.client}")
+        self._owner = Owner(publisher, self._receiver)
+        self._declared = [
+            network.subscriber(f"{self._prefix}state", self._take_state),
+            network.subscriber(f"{self._prefix}events", self._receiver.event),
+            network.subscriber(f"{self._prefix}refused/{network.client}", self._take_refusal),
+            publisher,
+        ]
+        network.sender.add(self._owner)
+        # The server publishes a State at least every 10 ms.
+        self._receiver.wait_for(lambda: self._receiver.age() < float("inf"), ANSWER_TIME)
+
+    def __enter__(self) -> "RemoteHand":
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()
+
+    @property
+    def owned(self) -> bool:
+        """Whether this client commands the hand, as far as it knows."""
+        return self._owner.epoch != 0
+
+    def acquire(self, *, take_over: bool = False, recover: bool = False) -> None:
+        """Makes this client the one that commands the hand.
+
+        Args:
+            take_over: also if another client commands it. That client then gets NotOwner.
+            recover: recovers the fingers that have stopped.
+
+        Raises:
+            NotOwner: another client commands the hand.
+        """
+        answer = self._request("acquire", 0, take_over=take_over, recover=recover)
+        with self._network.sender.lock:
+            self._owner.begin(answer)
+            self._owner.publish(time.monotonic_ns())
+
+    def release(self) -> None:
+        """Gives the hand back. Every finger goes to its end state."""
+        with self._network.sender.lock:
+            epoch = self._owner.epoch
+            self._owner.end()
+        if epoch:
+            self._request("release", 0, epoch)
+
+    def close(self) -> None:
+        """Releases the hand if this client commands it, and ends the reception. Every finger of a released hand goes to
+        its end state."""
+        if self._closed:
+            return
+        self._closed = True
+        try:
+            self.release()
+        except Error:
+            # The server brings the fingers to their end states without the owner's Targets too.
+            pass
+        self._network.sender.remove(self._owner)
+        self._receiver.close()
+        for declared in self._declared:
+            declared.undeclare()
+        self._network.forget(self)
+        if self._owns_network:
+            self._network.close()
+
+    def send_position(self, finger: int, position: numpy.typing.ArrayLike) -> None:
+        """Sends the joint angles at which the finger shall be, rad: shape (3,).
+
+        Raises:
+            Refused: they are outside the limits, or an earlier command of this finger was refused.
+            NotOwner: this client does not command the hand.
+        """
+        self.send_group([SetPoint(finger, position=position)])
+
+    def send_tip(self, finger: int, tip: numpy.typing.ArrayLike) -> None:
+        """Sends the position of the tip in the finger's frame, cm: shape (3,). Errors are those of `send_position`."""
+        self.send_group([SetPoint(finger, tip=tip)])
+
+    def send_stiffness(self, finger: int, kx: numpy.typing.ArrayLike) -> None:
+        """Sends Kx in the finger's frame, N/cm: shape (3, 3), symmetric. Errors are those of `send_position`."""
+        self.send_group([SetPoint(finger, stiffness=kx)])
+
+    def send_damping(self, finger: int, ratio: float) -> None:
+        """Sends the damping relative to the one that the controller chooses. Errors are those of `send_position`."""
+        self.send_group([SetPoint(finger, damping=ratio)])
+
+    def send_group(self, set_points: Sequence[SetPoint]) -> None:
+        """Sends set points of several fingers, which change in the same cycle. Errors are those of
+        `send_position`."""
+        self._send(self.parts(set_points))
+
+    def send_path(self, finger: int, times: numpy.typing.ArrayLike, joints: numpy.typing.ArrayLike) -> None:
+        """Sends a path of 1 to 32 poses. Errors are those of `send_position`.
+
+        Args:
+            times: from the moment at which the server takes the path, s: shape (n,).
+            joints: joint angles, rad: shape (n, 3).
+        """
+        self._check(finger)
+        self._send([_parts.path(finger, times, joints, self._status.fingers[finger])])
+
+    def parts(self, set_points: Sequence[SetPoint]) -> List[Part]:
+        """Returns checked set points in the form of the protocol, for `send_together`."""
+        self._check(*(set_point.finger for set_point in set_points))
+        return _parts.group(set_points, self._status.fingers)
+
+    @property
+    def owner(self) -> Owner:
+        """What `send_together` sends to."""
+        return self._owner
+
+    def wait(
+        self,
+        fingers: Union[int, Iterable[int], None] = None,
+        condition: str = "arrived",
+        timeout: Optional[float] = None,
+    ) -> None:
+        """Waits until the condition holds for these fingers, for the set points that were sent last.
+
+        Args:
+            fingers: a finger, or several. The default is all to which this client has sent something.
+            condition: "applied": the server has taken the set point. "arrived": every joint is at the set point.
+                "settled": every joint is at rest.
+            timeout: time limit, s.
+
+        Raises:
+            TimedOut: the time limit is over.
+            Refused: the server has refused the set point.
+            Fault: a finger is faulted.
+        """
+        if condition not in ("applied", *_CONDITIONS):
+            raise Refused(f'condition is {condition!r}, not "applied", "arrived" or "settled"', number=7)
+        if fingers is None:
+            fingers = [finger for finger in self.fingers if self._owner.pending(finger) is not None]
+        wanted = [fingers] if isinstance(fingers, int) else list(fingers)
+        self._check(*wanted)
+        deadline = None if timeout is None else time.monotonic() + timeout
+        while True:
+            with self._network.sender.lock:
+                self._owner.take_refusal(wanted)
+            for finger in wanted:
+                self._check_fault(finger)
+            left = 0.1 if deadline is None else min(0.1, deadline - time.monotonic())
+            if self._receiver.wait_for(lambda: all(self._holds(finger, condition) for finger in wanted), max(left, 0)):
+                return
+            self._check()
+            if left <= 0:
+                raise TimedOut(f"fingers {wanted} are not {condition} after {timeout} s", number=ErrorNumber.TIMED_OUT)
+
+    def recover(self, finger: int = 0) -> None:
+        """Makes a finger that has stopped a spring again; every finger without an argument.
+
+        Raises:
+            Fault: the cause of the fault is still there.
+        """
+        self._request("recover", finger, self._owner.epoch)
+
+    def stop(self, finger: Optional[int] = None) -> None:
+        """Brings a finger, or every finger, to its end state at once, whoever commands the hand."""
+        self._request("stop", finger or 0)
+
+    def zero(self, finger: int) -> None:
+        """Zeros gauges and encoders of a finger. Its joints may move between their stops. It takes up to ten minutes.
+
+        Raises:
+            Error: the calibration failed. The previous one is in force.
+        """
+        self._request("calibrate", finger, self._owner.epoch, timeout=_CALIBRATION_TIME)
+
+    def identify(self, finger: int) -> None:
+        """Measures gauge gains, friction and tendon stiffness of a finger. Errors are those of `zero`."""
+        self._request("identify", finger, self._owner.epoch, timeout=_CALIBRATION_TIME)
+
+    def _holds(self, finger: int, condition: str) -> bool:
+        pending = self._owner.pending(finger)
+        command, cycle = self._receiver.applied(finger)
+        if pending is None or command != pending:
+            return False
+        return condition == "applied" or self._receiver.latest(finger, _CONDITIONS[condition]) >= cycle
+
+    def _check_fault(self, finger: int) -> None:
+        record = self._record(finger)
+        if STAGES[record["stage"]] == "faulted":
+            number = int(record["fault"])
+            text = self._ask_status().fingers[finger].fault_text or f"finger {finger} has fault {number}"
+            raise Fault(text, number=ErrorNumber.FAULTED, finger=finger, fault=number, remedy="hand.recover(finger)")
+
+    def _send(self, parts: List[Part]) -> None:
+        self._network.sender.send([(self._owner, parts)])
+
+    def _take_state(self, data: bytes) -> None:
+        state = self._receiver.state(data)
+        if state is not None:
+            with self._network.sender.lock:
+                self._owner.heard(state.published, state.owner)
+
+    def _take_refusal(self, data: bytes) -> None:
+        answer = _messages.read_answer(data)
+        if answer is not None:
+            self._receiver.answered(answer.time)
+            with self._network.sender.lock:
+                self._owner.refused(answer)
+            with self._receiver.changed:
+                self._receiver.changed.notify_all()
+
+    def _request(
+        self, action: str, finger: int, epoch: int = 0, timeout: float = ANSWER_TIME, **flags: bool
+    ) -> Answer:
+        if action != "release":
+            self._check(*([finger] if finger else []))
+        payload = _messages.write_request(action, finger, epoch, **flags)
+        for _, reply in self._network.get(f"{self._prefix}{action}/{self._network.client}", payload, timeout):
+            answer = _messages.read_answer(reply)
+            if answer is not None:
+                self._receiver.answered(answer.time)
+                error = error_of(answer, finger)
+                if error is not None:
+                    raise error
+                return answer
+        raise self._no_answer(action)

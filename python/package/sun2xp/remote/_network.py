@@ -1,0 +1,209 @@
+"""The connection to a server or to a router, over which several hands can be used."""
+
+from __future__ import annotations
+
+import atexit
+import json
+import re
+import threading
+import weakref
+from typing import Any, Callable, Dict, List, Optional
+
+from .._errors import ConfigurationError, Error, ErrorNumber
+from . import _messages
+from ._certificate import common_name
+from ._errors import NoAnswer
+from ._owner import Sender
+from ._types import Status, Tls, status
+
+#: Where `sun2xp serve` listens, if it is not configured.
+LOOPBACK = "tcp/127.0.0.1:7447"
+
+#: Longest time in which a server answers, s.
+ANSWER_TIME = 2.0
+
+_HAND = re.compile(r"[a-z0-9-]{1,32}\Z")
+
+_open_networks: "weakref.WeakSet[Network]" = weakref.WeakSet()
+
+
+def _zenoh() -> Any:
+    try:
+        import zenoh
+    except ImportError as error:
+        raise ImportError("sun2xp.remote needs the package eclipse-zenoh: pip install 'sun2xp[remote]'") from error
+    return zenoh
+
+
+def checked_hand(name: str) -> str:
+    """Returns the name of a hand.
+
+    Raises:
+        ConfigurationError: no hand can have this name.
+    """
+    if not _HAND.match(name):
+        text = f"no hand can have the name {name!r}: use 1 to 32 characters a to z, 0 to 9 and -"
+        raise ConfigurationError(text, number=ErrorNumber.CONFIGURATION)
+    return name
+
+
+def checked_client(name: Optional[str], tls: Optional[Tls]) -> str:
+    """Returns the name of this client, which is that of its certificate if it is not given.
+
+    Raises:
+        ConfigurationError: no client can have this name.
+    """
+    if name is None:
+        name = "planner" if tls is None else common_name(tls.certificate)
+    if not _messages.CLIENT.match(name):
+        text = f"no client can have the name {name!r}: use 1 to 64 characters A to Z, a to z, 0 to 9, ., _ and -"
+        raise ConfigurationError(text, number=ErrorNumber.CONFIGURATION)
+    return name
+
+
+def configuration(endpoint: str, tls: Optional[Tls]) -> Dict[str, Any]:
+    """Returns the configuration of Zenoh for a client that knows one endpoint, and searches for no other."""
+    settings: Dict[str, Any] = {
+        "mode": "client",
+        "connect": {"endpoints": [endpoint]},
+        "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
+    }
+    if tls is not None:
+        settings["transport"] = {
+            "link": {
+                "tls": {
+                    "root_ca_certificate": str(tls.authority),
+                    "connect_certificate": str(tls.certificate),
+                    "connect_private_key": str(tls.key),
+                    "enable_mtls": True,
+                    "verify_name_on_connect": True,
+                }
+            }
+        }
+    return settings
+
+
+class Network:
+    """A connection to a server or to a router, from `sun2xp.remote.connect`.
+
+    Several hands can be used over one connection. The targets of all of them are sent by one thread, with one time
+    stamp. Leaving a `with` block closes the hands and the connection.
+
+    Args:
+        endpoint: where the server or the router listens, such as "tls/cell:7447".
+        client: name of this client. With TLS it is the common name of the certificate, and need not be given.
+        tls: the files of mutual TLS. A server that listens on more than loopback needs them.
+
+    Raises:
+        ConfigurationError: a name that no client can have, or a certificate that cannot be read.
+        NoAnswer: nobody listens at the endpoint, or the certificates do not fit.
+    """
+
+    def __init__(self, endpoint: str = LOOPBACK, *, client: Optional[str] = None, tls: Optional[Tls] = None) -> None:
+        self.endpoint = endpoint
+        self.client = checked_client(client, tls)
+        self._zenoh = _zenoh()
+        try:
+            text = json.dumps(configuration(endpoint, tls))
+            self.session = self._zenoh.open(self._zenoh.Config.from_json5(text))
+        except self._zenoh.ZError as error:
+            # The text ends with a place in the source of Zenoh.
+            reason = str(error).split(" at /")[0].rstrip("! ")
+            text = f"no connection to {endpoint}: {reason}. Check the endpoint, the certificates, and sun2xp serve."
+            raise NoAnswer(text, number=ErrorNumber.TIMED_OUT) from error
+        self.sender = Sender()
+        self._hands: List[Any] = []
+        self._lock = threading.Lock()
+        _open_networks.add(self)
+
+    def __enter__(self) -> "Network":
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()
+
+    def hands(self, timeout: float = ANSWER_TIME) -> Dict[str, Status]:
+        """Returns the status of every hand that can be reached, by their names.
+
+        Args:
+            timeout: time for the answers, s.
+        """
+        found = {}
+        for key, payload in self.get("sun2xp/*/status", None, timeout):
+            message = _messages.read_status(payload)
+            if message is not None:
+                found[key.split("/")[1]] = status(message)
+        return found
+
+    def get(self, key: str, payload: Optional[bytes], timeout: float) -> List[tuple]:
+        """Returns the keys and payloads of all answers to a get. It ends when all have answered, or after `timeout`
+        s. Ctrl-C ends it."""
+        answers: List[tuple] = []
+        ended = threading.Event()
+
+        def take(reply: Any) -> None:
+            if reply.ok is not None:
+                answers.append((str(reply.ok.key_expr), bytes(reply.ok.payload)))
+
+        handler = self._zenoh.handlers.Callback(take, drop=ended.set)
+        self.session.get(key, handler, payload=payload, timeout=timeout)
+        # The time limit of Zenoh ends the get. This one is for a session that was closed meanwhile.
+        ended.wait(timeout + 1)
+        return list(answers)
+
+    def subscriber(self, key: str, take: Callable[[bytes], None]) -> Any:
+        """Calls a function with every payload under a key, in a thread of Zenoh."""
+        return self.session.declare_subscriber(key, lambda sample: take(bytes(sample.payload)))
+
+    def publisher(self, key: str) -> Any:
+        """Returns a publisher for targets: the newest replaces what has not been sent."""
+        return self.session.declare_publisher(
+            key,
+            congestion_control=self._zenoh.CongestionControl.DROP,
+            priority=self._zenoh.Priority.REAL_TIME,
+            express=True,
+        )
+
+    def open(
+        self,
+        hand: str = "hand",
+        *,
+        read_only: bool = False,
+        take_over: bool = False,
+        recover: bool = False,
+        stale: float = 0.1,
+    ) -> Any:
+        """Opens a hand over this connection. Arguments and errors are those of `sun2xp.remote.open`."""
+        from ._hand import RemoteHand
+
+        opened = RemoteHand(self, checked_hand(hand), stale=stale)
+        with self._lock:
+            self._hands.append(opened)
+        try:
+            if not read_only:
+                opened.acquire(take_over=take_over, recover=recover)
+        except Error:
+            opened.close()
+            raise
+        return opened
+
+    def forget(self, hand: Any) -> None:
+        """Takes a hand from the list of those that `close` closes."""
+        with self._lock:
+            self._hands = [other for other in self._hands if other is not hand]
+
+    def close(self) -> None:
+        """Closes the hands, which brings the fingers of those that this client owns to their end states, and then the
+        connection."""
+        for hand in list(self._hands):
+            hand.close()
+        self.sender.close()
+        if not self.session.is_closed():
+            self.session.close()
+        _open_networks.discard(self)
+
+
+@atexit.register
+def _close_all() -> None:
+    for network in list(_open_networks):
+        network.close()

@@ -1,0 +1,97 @@
+"""Set points of a planner, checked as far as the client can, in the form of the protocol."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, Sequence
+
+import numpy
+import numpy.typing
+
+from .._errors import ErrorNumber, Refused
+from .._types import Array, SetPoint
+from ._messages import JOINTS, MOST_POSES, NO_PLACE, PATH, TIP, Part
+from ._types import FingerStatus
+
+
+def group(set_points: Sequence[SetPoint], fingers: Dict[int, FingerStatus]) -> List[Part]:
+    """Returns the parts of a group. Their command numbers are not set.
+
+    Raises:
+        Refused: a wrong shape, a number that is not finite, a joint angle outside its limits, a Kx that is not
+            symmetric, two places of one finger, or two set points of one finger.
+    """
+    numbers = [set_point.finger for set_point in set_points]
+    if not numbers or len(set(numbers)) < len(numbers):
+        raise _refused(f"a group needs set points of different fingers, and not of {numbers}")
+    return [_part(set_point, fingers[set_point.finger]) for set_point in set_points]
+
+
+def _part(set_point: SetPoint, status: FingerStatus) -> Part:
+    part = Part(set_point.finger, 0)
+    if set_point.position is not None and set_point.tip is not None:
+        raise _refused(f"finger {set_point.finger} has a position and a tip. Give one of them.")
+    if set_point.position is not None:
+        part.place, part.values = JOINTS, tuple(_joints(set_point.finger, set_point.position, (3,), status))
+    elif set_point.tip is not None:
+        part.place, part.values = TIP, tuple(_array("tip", set_point.tip, (3,)))
+    if set_point.stiffness is not None:
+        part.stiffness = tuple(_symmetric(set_point.finger, set_point.stiffness, status))
+    if set_point.damping is not None:
+        part.damping = float(_array("damping", set_point.damping, ()))
+    if part.place == NO_PLACE and part.stiffness is None and part.damping is None:
+        raise _refused(f"the set point of finger {set_point.finger} has nothing to change")
+    return part
+
+
+def path(
+    finger: int, times: numpy.typing.ArrayLike, joints: numpy.typing.ArrayLike, status: FingerStatus
+) -> Part:
+    """Returns the part of a path. Its command number is not set.
+
+    Raises:
+        Refused: a wrong shape, times that do not rise from a number above 0, or joint angles outside their limits.
+    """
+    instants = _array("times", times, (None,))
+    count = len(instants)
+    if not 1 <= count <= MOST_POSES:
+        raise _refused(f"a path has 1 to {MOST_POSES} poses, and not {count}")
+    if instants[0] <= 0 or (numpy.diff(instants) <= 0).any():
+        raise _refused(f"the times of a path rise from a number above 0, and not {instants.tolist()}")
+    poses = _joints(finger, joints, (count, 3), status)
+    return Part(finger, 0, PATH, poses=[(instant, *pose) for instant, pose in zip(instants, poses)])
+
+
+def _joints(finger: int, angles: Any, shape: tuple, status: FingerStatus) -> Array:
+    array = _array("joint angles", angles, shape)
+    low, high = status.joints
+    if (array < low).any() or (array > high).any():
+        limits = f"{low.round(4).tolist()} to {high.round(4).tolist()} rad"
+        raise _refused(f"{array.tolist()} rad is outside the limits of finger {finger}: {limits}", ErrorNumber.LIMIT)
+    return array
+
+
+def _symmetric(finger: int, kx: Any, status: FingerStatus) -> List[float]:
+    array = _array("Kx", kx, (3, 3))
+    if not numpy.allclose(array, array.T, rtol=0, atol=1e-6 * max(1.0, abs(array).max())):
+        raise _refused(f"Kx of finger {finger} is not symmetric: {array.tolist()}")
+    largest = numpy.linalg.eigvalsh(array)[-1]
+    if largest > status.stiffness:
+        text = f"Kx of finger {finger} has {largest:.3g} N/cm, and {status.stiffness:.3g} N/cm are admitted"
+        raise _refused(text, ErrorNumber.LIMIT)
+    return array.ravel().tolist()
+
+
+def _array(name: str, value: Any, shape: tuple) -> Array:
+    try:
+        array = numpy.asarray(value, dtype=numpy.float64)
+    except (TypeError, ValueError) as error:
+        raise _refused(f"{name}: {error}") from error
+    if len(array.shape) != len(shape) or any(want not in (None, have) for want, have in zip(shape, array.shape)):
+        raise _refused(f"{name} has the shape {array.shape}, and not {shape}")
+    if not numpy.isfinite(array).all():
+        raise _refused(f"{name} is not finite: {array.tolist()}")
+    return array
+
+
+def _refused(text: str, number: int = ErrorNumber.ARGUMENT) -> Refused:
+    return Refused(text, number=number)

@@ -1,0 +1,126 @@
+"""The reading part of a remote hand: everything that needs no ownership."""
+
+from __future__ import annotations
+
+from typing import Any, List, Optional, Union
+
+import numpy
+
+from .._errors import Closed, ErrorNumber, Refused
+from .._types import Array
+from . import _messages
+from ._errors import NoAnswer
+from ._events import RemoteEvents
+from ._messages import STAGES
+from ._network import ANSWER_TIME, Network
+from ._receiver import Receiver, Records
+from ._types import FingerState, FingerStatus, Status, Tip, status
+
+
+class Reading:
+    """What RemoteHand reads."""
+
+    def __init__(self, network: Network, name: str, *, stale: float) -> None:
+        self._network = network
+        self._stale = stale
+        self._prefix = f"sun2xp/{name}/"
+        self._receiver = Receiver()
+        self._closed = False
+        #: Name of the hand.
+        self.name = name
+        self._status = self._ask_status()
+
+    @property
+    def fingers(self) -> List[int]:
+        """The numbers of the fingers that the hand has."""
+        return sorted(self._status.fingers)
+
+    @property
+    def closed(self) -> bool:
+        """Whether `close` was called."""
+        return self._closed
+
+    @property
+    def missing(self) -> tuple:
+        """The number of cycles that the server has not sent, because it was late, and the number of States that have
+        not arrived."""
+        return tuple(self._receiver.missing)
+
+    def state(self, finger: int) -> FingerState:
+        """Returns the newest cycle of a finger.
+
+        Raises:
+            Stale: it is too old.
+        """
+        record = self._record(finger)
+        set_point = record["joint_set_point"].copy()
+        return FingerState(
+            finger=finger,
+            cycle=int(record["cycle"]),
+            time=int(record["time"]),
+            stage=STAGES[record["stage"]],
+            fault=int(record["fault"]),
+            command=int(record["command"]),
+            caught=bool(record["bits"] & _messages.INVALID),
+            touching=bool(record["bits"] & _messages.TOUCHING),
+            position=record["joints"].copy(),
+            set_point=None if numpy.isnan(set_point).any() else set_point,
+            tip=record["tip"].copy(),
+            force=record["tip_force"].copy(),
+            tensions=record["tensions"].copy(),
+        )
+
+    def position(self, finger: int) -> Array:
+        """Returns the joint angles, rad: shape (3,). Errors are those of `state`."""
+        return self._record(finger)["joints"].copy()
+
+    def tip(self, finger: int) -> Tip:
+        """Returns position, force and tensions of a fingertip. Errors are those of `state`."""
+        state = self.state(finger)
+        return Tip(state.tip, state.force, state.tensions, state.touching)
+
+    def cycles(self) -> Records:
+        """Returns the cycles that have arrived since the last call, in the order of their arrival, at most those of the
+        last 1000 States: an array with the fields of the record of State."""
+        taken = self._receiver.take()
+        return numpy.concatenate(taken) if taken else numpy.zeros(0, _messages.RECORD)
+
+    def status(self, finger: Optional[int] = None) -> Union[Status, FingerStatus]:
+        """Asks the server for the status of the hand, or of one finger.
+
+        Raises:
+            NoAnswer: the server does not answer.
+        """
+        self._check(*([] if finger is None else [finger]))
+        self._status = self._ask_status()
+        return self._status if finger is None else self._status.fingers[finger]
+
+    def events(self) -> RemoteEvents:
+        """Returns a queue of the hand's events from now on. `for event in hand.events()` waits for each event."""
+        self._check()
+        return RemoteEvents(self._receiver)
+
+    def _check(self, *fingers: int) -> None:
+        if self._closed:
+            raise Closed("the hand is closed", number=ErrorNumber.NO_HAND)
+        for finger in fingers:
+            if finger not in self._status.fingers:
+                text = f"there is no finger {finger!r}. The hand {self.name} has the fingers {self.fingers}."
+                raise Refused(text, number=ErrorNumber.ARGUMENT)
+
+    def _record(self, finger: int) -> Any:
+        self._check(finger)
+        return self._receiver.newest(finger, self._stale)
+
+    def _ask_status(self) -> Status:
+        for _, payload in self._network.get(f"{self._prefix}status", None, ANSWER_TIME):
+            message = _messages.read_status(payload)
+            if message is not None:
+                return status(message)
+        raise self._no_answer("the status")
+
+    def _no_answer(self, asked: str) -> NoAnswer:
+        where = f"{self._network.endpoint} as {self._network.client}"
+        remedy = "Check the names of the hand and of the client, [serve.clients] of the server, and the line"
+        text = f"the hand {self.name} has not answered to {asked} at {where}. {remedy}."
+        return NoAnswer(text, number=ErrorNumber.TIMED_OUT, remedy=remedy)

@@ -1,0 +1,193 @@
+"""What a hand publishes: the newest state of every finger, its events, and its status."""
+
+from __future__ import annotations
+
+import collections
+import threading
+import time
+from typing import Callable, Deque, Dict, List, Optional
+
+import numpy
+import numpy.typing
+
+from .._types import Event, EventKind
+from . import _messages
+from ._errors import Stale
+from ._messages import State
+
+#: Number of States that are kept for `cycles`: 10 s.
+_KEPT_STATES = 1000
+
+#: Number of events that a queue keeps.
+_KEPT_EVENTS = 4096
+
+#: Largest difference between the rates of two clocks.
+_DRIFT = 1e-3
+
+#: A step of the server's clock to an earlier time that no reordering of messages explains, ns.
+_RESTARTED = 10_000_000_000
+
+Records = numpy.typing.NDArray[numpy.void]
+
+
+def _part(kind: EventKind, number: int) -> str:
+    if kind == EventKind.TENSION_BOUND:
+        return f"tendon {number}"
+    if kind == EventKind.JOINT_AT_LIMIT:
+        return f"joint {number}"
+    # What the part of a fault is depends on the fault (docs/faults.md).
+    return f"part {number}" if number else "finger"
+
+
+class Receiver:
+    """The newest data of one hand. Its methods may be called from several threads."""
+
+    def __init__(self) -> None:
+        self.changed = threading.Condition()
+        #: The newest time of the server's clock that has arrived, ns: *seen* of the protocol.
+        self.seen = 0
+        #: The number of the owner's epoch in the newest State.
+        self.owner = 0
+        #: Cycles that the server has not sent, and States that have not arrived.
+        self.missing = [0, 0]
+        self.closed = False
+        self._newest: Dict[int, numpy.void] = {}
+        self._applied: Dict[int, tuple] = {}
+        self._latest_event: Dict[tuple, int] = {}
+        self._states: Deque[Records] = collections.deque(maxlen=_KEPT_STATES)
+        self._queues: List[Deque[Event]] = []
+        self._number = 0
+        self._published = 0
+        #: Smallest difference between the local time of an arrival and the time of its publication, ns.
+        self._offset: Optional[float] = None
+        self._arrived = 0
+
+    def state(self, data: bytes) -> Optional[State]:
+        """Takes a State. Returns None if it is malformed or older than one before."""
+        state = _messages.read_state(data)
+        with self.changed:
+            if state is None:
+                return None
+            self._note_restart(state.published)
+            if state.published <= self._published:
+                return None
+            self._note_time(state.published)
+            # A server that was started again counts from 1.
+            if 0 < self._number < state.number:
+                self.missing[1] += state.number - self._number - 1
+            self.missing[0] += state.missing
+            self._number, self._published, self.owner = state.number, state.published, state.owner
+            for finger in (1, 2, 3):
+                self._note_finger(finger, state.records[state.records["finger"] == finger])
+            self._states.append(state.records)
+            self.changed.notify_all()
+        return state
+
+    def _note_finger(self, finger: int, records: Records) -> None:
+        if len(records) == 0:
+            return
+        last = records[-1]
+        command = int(last["command"])
+        if self._applied.get(finger, (None, 0))[0] != command:
+            first = records[records["command"] == command][0]
+            self._applied[finger] = (command, int(first["cycle"]))
+        self._newest[finger] = last
+
+    def _note_restart(self, published: int) -> None:
+        """Begins anew if the server's clock does: its machine was started again."""
+        if published < self._published - _RESTARTED:
+            self._number = self._published = self.seen = 0
+            self._offset = None
+
+    def _note_time(self, published: int) -> None:
+        now = time.monotonic_ns()
+        offset: float = now - published
+        if self._offset is not None:
+            offset = min(offset, self._offset + _DRIFT * (now - self._arrived))
+        self._offset, self._arrived = offset, now
+        self.seen = max(self.seen, published)
+
+    def answered(self, published: int) -> None:
+        """Takes the time of an Answer."""
+        with self.changed:
+            self._note_restart(published)
+            self.seen = max(self.seen, published)
+
+    def event(self, data: bytes) -> None:
+        """Takes an Event. One of an unknown kind is of a newer server, and is ignored."""
+        message = _messages.read_event(data)
+        if message is None:
+            return
+        try:
+            kind = EventKind(message.kind)
+        except ValueError:
+            return
+        part = _part(kind, message.part)
+        text = f"finger {message.finger}, {part}: {kind.name.lower().replace('_', ' ')}"
+        event = Event(message.finger, message.cycle, message.time, kind, part, message.values, text)
+        with self.changed:
+            self._latest_event[message.finger, kind] = message.cycle
+            for queue in self._queues:
+                queue.append(event)
+            self.changed.notify_all()
+
+    def queue(self) -> Deque[Event]:
+        """Returns a queue that gets every event from now on."""
+        queue: Deque[Event] = collections.deque(maxlen=_KEPT_EVENTS)
+        with self.changed:
+            self._queues.append(queue)
+        return queue
+
+    def forget(self, queue: Deque[Event]) -> None:
+        """Ends a queue."""
+        with self.changed:
+            self._queues = [other for other in self._queues if other is not queue]
+
+    def close(self) -> None:
+        """Ends the waits of other threads."""
+        with self.changed:
+            self.closed = True
+            self.changed.notify_all()
+
+    def age(self) -> float:
+        """Returns the smallest age that the newest State can have, s: the time since its publication, less the shortest
+        time that any State has needed."""
+        with self.changed:
+            if self._offset is None:
+                return float("inf")
+            return (time.monotonic_ns() - self._offset - self._published) * 1e-9
+
+    def newest(self, finger: int, stale: float) -> numpy.void:
+        """Returns the newest record of a finger.
+
+        Raises:
+            Stale: it is older than `stale` s.
+        """
+        age = self.age()
+        record = self._newest.get(finger)
+        if record is None or age > stale:
+            known = "no state has arrived" if record is None else f"the newest state is {age * 1e3:.0f} ms old"
+            remedy = "Check the line and sun2xp serve, or allow older data with stale"
+            raise Stale(f"{known}, and {stale * 1e3:.0f} ms are allowed. {remedy}.", number=14, remedy=remedy)
+        return record
+
+    def applied(self, finger: int) -> tuple:
+        """Returns the number of the command that the server has applied last to a finger, and the first cycle in which
+        a State has shown it."""
+        return self._applied.get(finger, (0, 0))
+
+    def latest(self, finger: int, kind: EventKind) -> int:
+        """Returns the cycle of the latest event of this kind; 0 if there was none."""
+        return self._latest_event.get((finger, kind), 0)
+
+    def take(self) -> List[Records]:
+        """Returns the records of the States that have arrived since the last call."""
+        with self.changed:
+            taken = list(self._states)
+            self._states.clear()
+        return taken
+
+    def wait_for(self, holds: Callable[[], object], timeout: Optional[float]) -> bool:
+        """Waits until `holds` returns a true value, or the hand is closed. Returns whether it holds."""
+        with self.changed:
+            return bool(self.changed.wait_for(lambda: holds() or self.closed, timeout)) and bool(holds())

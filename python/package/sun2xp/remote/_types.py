@@ -1,0 +1,160 @@
+"""The results of the calls of a remote hand. Lengths are in cm, forces in N, angles in rad, stiffnesses in N/cm. Times
+are in ns of the server's clock, unless a field says otherwise."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from typing import Dict, Optional, Tuple, Union
+
+from .._types import Array
+from ._messages import FingerRecord, StatusMessage
+
+_Path = Union[str, "os.PathLike[str]"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Tls:
+    """The files of mutual TLS, in PEM. The common name of the certificate is the name of the client."""
+
+    #: Certificate of the authority that has signed the server's certificate.
+    authority: _Path
+    #: Certificate of this client.
+    certificate: _Path
+    #: Its private key.
+    key: _Path
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class FingerState:
+    """One cycle of a finger."""
+
+    #: Number of the finger, 1 to 3.
+    finger: int
+    #: Number of the cycle since open.
+    cycle: int
+    #: Beginning of the cycle.
+    time: int
+    #: "opening", "limp", "calibrating", "running", "closing", "closed" or "faulted".
+    stage: str
+    #: Number of the fault, as in docs/faults.md; 0 if there is none.
+    fault: int
+    #: Number of the command that the server has applied last; 0 if none.
+    command: int
+    #: Whether the server holds the finger because the owner's targets have become too old.
+    caught: bool
+    #: Whether the finger touches something.
+    touching: bool
+    #: Joint angles, rad: shape (3,).
+    position: Array
+    #: Joint angles of the set point, rad: shape (3,). None if the finger is not a spring.
+    set_point: Optional[Array]
+    #: Position of the tip in the finger's frame, cm: shape (3,).
+    tip: Array
+    #: Force of the tip on what it touches, in the finger's frame, N: shape (3,).
+    force: Array
+    #: Tensions of tendons 1 to 4, N: shape (4,).
+    tensions: Array
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Tip:
+    """The state of a fingertip, in the finger's frame."""
+
+    #: Position, cm: shape (3,).
+    position: Array
+    #: Force on the touched object, N: shape (3,).
+    force: Array
+    #: Tensions of tendons 1 to 4, N: shape (4,).
+    tensions: Array
+    #: Whether the finger touches something.
+    touching: bool
+
+
+@dataclasses.dataclass(frozen=True)
+class Counts:
+    """What the server has done with Targets since its start."""
+
+    taken: int
+    malformed: int
+    old_epoch: int
+    replayed: int
+    late: int
+    refused: int
+    #: Times that the fingers were held because the owner's targets had become too old.
+    caught: int
+    #: Times that the fingers went to their end state because the owner fell silent.
+    ended: int
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class FingerStatus:
+    """The status of one finger."""
+
+    #: Stage, as in FingerState.
+    stage: str
+    #: Number of the fault, and the beginning of its text; 0 and "" if there is none.
+    fault: int
+    fault_text: str
+    #: Number of warnings in force.
+    warnings: int
+    #: Cycles since open, skipped periods, lost replies and corrupt replies.
+    cycles: int
+    skipped_periods: int
+    lost_replies: int
+    corrupt_replies: int
+    #: Smallest (row 0) and largest (row 1) joint angles, rad: shape (2, 3).
+    joints: Array
+    #: Largest eigenvalue of Kx that the finger admits, N/cm.
+    stiffness: float
+    #: Completed part of the calibration in progress, 0 to 1; 0 if there is none.
+    calibration: float
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Status:
+    """The status of a hand and of its server."""
+
+    #: Name of the client that commands the hand; None if there is none.
+    owner: Optional[str]
+    #: By the numbers of the fingers that the hand has.
+    fingers: Dict[int, FingerStatus]
+    #: Time when it was made.
+    time: int
+    #: Age of the newest target at which the server holds the fingers, and at which they go to their end state, s.
+    catch: float
+    end: float
+    #: Rate of the servos, Hz.
+    rate: float
+    #: Largest force with which a set point pulls a fingertip, N.
+    lead_force: float
+    #: Stiffness with which the server holds a finger, N/cm.
+    soft_stiffness: float
+    #: Clients that have asked for anything since the start.
+    clients: int
+    counts: Counts
+
+
+def status(message: StatusMessage) -> Status:
+    """Returns the public form of a Status."""
+    fingers = {finger: _finger_status(record) for finger, record in message.fingers.items()}
+    return Status(
+        owner=message.owner or None,
+        fingers=fingers,
+        time=message.time,
+        catch=message.catch_ms / 1000,
+        end=message.end_ms / 1000,
+        rate=message.rate,
+        lead_force=message.lead_force,
+        soft_stiffness=message.soft_stiffness,
+        clients=message.clients,
+        counts=Counts(*message.counts),
+    )
+
+
+def _finger_status(record: FingerRecord) -> FingerStatus:
+    counts: Tuple[int, int, int, int] = (record.cycles, record.skipped, record.lost, record.corrupt)
+    return FingerStatus(
+        record.stage, record.fault, record.text, record.warnings, *counts, record.limits, record.stiffness,
+        record.calibration,
+    )
