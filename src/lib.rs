@@ -147,8 +147,9 @@ pub mod object {
     pub use crate::simulated::ObjectState;
 }
 
-/// Timed motion: paths, and the configuration of motion.
+/// Timed motion: paths, the validity of set points, and the configuration of motion.
 pub mod motion {
+    pub use crate::finger::Validity;
     pub use crate::hand::{PathError, PathPose, Pose};
     pub use crate::model::configuration::{ConfiguredMotion, ExpiryReaction};
 }

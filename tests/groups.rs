@@ -11,7 +11,7 @@ use std::cell::{Cell, RefCell};
 use std::convert::Infallible;
 use std::rc::Rc;
 use sun2xp::board::{PortError, Transport};
-use sun2xp::finger::{FingerReport, GroupGate, Mailbox, Replaced, Servo, Stage};
+use sun2xp::finger::{FingerReport, GroupGate, Mailbox, Replaced, Servo, Stage, Validity};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Schedule;
 use sun2xp::simulated::SimulatedCable;
@@ -66,7 +66,7 @@ impl Planner {
         let group = self.sent.get() + 1;
         let mut prepared = [const { None }; 3];
         for (mailbox, place) in mailboxes.iter().zip(&mut prepared) {
-            let change = mailbox.prepare(Replaced::Place, |set_point| {
+            let change = mailbox.prepare((Replaced::Place, Validity::default()), |set_point| {
                 set_point.joints = pose(group);
                 Ok::<_, Infallible>(())
             });

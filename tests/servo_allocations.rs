@@ -3,10 +3,12 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::time::Duration;
 use sun2xp::events::Event;
 use sun2xp::groups::FingerCommand;
 use sun2xp::hand::{Hand, PathPose, Pose};
 use sun2xp::model::configuration::Configuration;
+use sun2xp::motion::Validity;
 
 static BY_SERVOS: AtomicU64 = AtomicU64::new(0);
 static BY_REPORTS: AtomicU64 = AtomicU64::new(0);
@@ -69,6 +71,7 @@ fn send_paths(hand: &Hand, end: u64) {
         let pose = |time| PathPose { time, pose: Pose::Joints(joints), stiffness: None };
         // A path that begins in motion may be too fast.
         let _ = hand.send_path(1, &[pose(0.5), pose(0.9)], None);
+        let _ = hand.keep_valid(1, Validity::hold_after(Some(Duration::from_secs(1))));
         if hand.report(1).expect("a report").losses.cycles >= end {
             break;
         }

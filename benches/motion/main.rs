@@ -14,7 +14,7 @@ use finger_on_a_cable::{Hooks, ServedFinger, World};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
 use sun2xp::control::spatial;
-use sun2xp::finger::{Reference, Stage};
+use sun2xp::finger::{Reference, Stage, Validity};
 use sun2xp::hand::{PathPose, Pose, plan_path};
 use sun2xp::model::configuration::{Configuration, OutOfRange};
 use sun2xp::model::{FingerNumber, InverseKinematics};
@@ -66,7 +66,7 @@ impl Bench {
         let report = self.served.mailbox.report();
         let plan = plan_path(&self.configuration, FingerNumber::ONE, &report.reference, poses);
         let plan = plan.unwrap_or_else(|error| panic!("{error}"));
-        let origin = (report.springs, report.reference.period, None);
+        let origin = (report.springs, report.reference.period, Validity::default());
         let sent = self.served.mailbox.send_path(origin, &plan.table(), |set_point| {
             set_point.joints = plan.end();
             Ok::<(), ()>(())

@@ -3,7 +3,7 @@
 use super::group_gate::GroupGate;
 use super::mailbox::mailbox;
 use super::mailbox_checks::running;
-use super::{Adjustable, Replaced};
+use super::{Adjustable, Replaced, Validity};
 use crate::control::SetPoint;
 use crate::realtime::atomics::{AtomicU64, Ordering};
 use loom::sync::Arc;
@@ -36,7 +36,10 @@ pub fn a_posted_group_has_its_set_points() {
             set_point.damping = 7.0;
             Ok::<_, ()>(())
         };
-        let prepared = planner.prepare(Replaced::Other, change).expect("the finger is healthy").expect("not refused");
+        let prepared = planner
+            .prepare((Replaced::Other, Validity::default()), change)
+            .expect("the finger is healthy")
+            .expect("not refused");
         gate.send([Some(prepared), None, None]);
         (planner, gate)
     });

@@ -84,10 +84,12 @@ mod finger {
     mod stop_signal;
     #[path = "../../models/src/stop_signal_checks.rs"]
     pub mod stop_signal_checks;
+    mod validity;
 
     pub use group_gate::GroupGate;
     pub use sent::Replaced;
     pub use sun2xp::finger::{Fault, FaultKind, FingerReport, Stage};
+    pub use validity::Validity;
 
     /// Takes the place of the controller, which is larger than the stack that loom gives a thread.
     #[derive(Clone)]

@@ -113,6 +113,13 @@ impl BlackBox {
 
     /// Takes the servo's records and keyframes, and removes those that are too old.
     pub fn collect(&mut self) {
+        self.take();
+        self.forget();
+    }
+
+    /// Takes the servo's records and keyframes. [`BlackBox::collect`] must be called at least every half second, so
+    /// that the records that are kept do not need more memory.
+    fn take(&mut self) {
         while let Some(record) = self.arriving.pop() {
             self.faulted |= matches!(record.stage, Stage::Faulted(_));
             self.outlet.iter_mut().for_each(|outlet| outlet.add_record(&record));
@@ -131,7 +138,14 @@ impl BlackBox {
             self.outlet.iter_mut().for_each(|outlet| outlet.add_keyframe(&keyframe));
             self.keyframes.push_back(keyframe);
         }
-        self.forget();
+    }
+
+    /// Takes the servo's records, and appends those of the cycles after `cycle` to `records`. It looks at no other
+    /// records, so it may be called in every period.
+    pub fn take_after(&mut self, cycle: u64, records: &mut Vec<CycleRecord>) {
+        self.take();
+        let after = self.records.partition_point(|record| record.cycle <= cycle);
+        records.extend(self.records.range(after..));
     }
 
     fn forget(&mut self) {

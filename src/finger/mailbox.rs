@@ -10,12 +10,14 @@ mod adjustments;
 pub(super) mod groups;
 mod paths;
 mod requests;
+mod validity;
 
 use crate::control::SetPoint;
 use crate::finger::group_gate::GroupGate;
 use crate::finger::path_buffer::PathBuffer;
 use crate::finger::sent::SentSetPoint;
-use crate::finger::{Adjustable, Fault, FingerReport, Order, Replaced, Stage};
+use crate::finger::validity::Renewal;
+use crate::finger::{Adjustable, Fault, FingerReport, Order, Replaced, Stage, Validity};
 use crate::realtime::atomics::{AtomicBool, AtomicU32};
 use crate::realtime::{
     Consumer, Input, LockedMemory, Output, Pages, Producer, SharedPages, ring, triple_buffer, triple_buffer_of,
@@ -40,6 +42,7 @@ struct PlannersEnd {
     sent: SentSetPoint,
     set_points: Input<SentSetPoint>,
     grouped: Producer<SentSetPoint>,
+    renewals: Input<Renewal>,
     paths: Input<PathBuffer>,
     /// Number of the last path.
     path: u32,
@@ -64,6 +67,7 @@ pub(super) struct ServoEnd {
     /// Number of the newest group that has taken effect.
     in_effect: u64,
     gate: GroupGate,
+    renewals: Output<Renewal>,
     paths: Output<PathBuffer>,
     adjustments: Output<Adjustable>,
     gravity: Output<[f64; 3]>,
@@ -86,6 +90,7 @@ pub(super) fn mailbox(
     let (set_points_in, set_points_out) = shared(&sent, &mut memory);
     let (grouped_in, grouped_out) = ring(WAITING_GROUPS);
     grouped_in.add_to(&mut memory);
+    let (renewals_in, renewals_out) = shared(&Renewal::default(), &mut memory);
     let (paths_in, paths_out) = triple_buffer_of(|| PathBuffer::new(&mut memory));
     paths_in.add_to(&mut memory);
     let (adjustments_in, adjustments_out) = shared(adjustable, &mut memory);
@@ -99,6 +104,7 @@ pub(super) fn mailbox(
         sent,
         set_points: set_points_in,
         grouped: grouped_in,
+        renewals: renewals_in,
         paths: paths_in,
         path: 0,
         adjustments: adjustments_in,
@@ -114,6 +120,7 @@ pub(super) fn mailbox(
         next_group: None,
         in_effect: 0,
         gate: GroupGate::new(),
+        renewals: renewals_out,
         paths: paths_out,
         adjustments: adjustments_out,
         gravity: gravity_out,
@@ -161,21 +168,21 @@ impl Mailbox {
         let planners = &mut *self.planners.lock();
         planners.begin()?;
         change(&mut planners.sent.set_point);
-        planners.sent.replace(Replaced::Place, None);
+        planners.sent.replace(Replaced::Place, Validity::default());
         planners.set_points.write(planners.sent);
         Ok(())
     }
 
     /// Like [`Mailbox::send`], for a change that may refuse the set point that it starts from. The change is made in a
     /// copy, which takes longer. `replaced` is the part that changes, and `valid` is the time for which the set point
-    /// is valid, s; none for the configured time.
+    /// is valid.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. The inner result is the refusal of `change`. Nothing is sent in
     /// these cases.
     pub fn try_send<E>(
         &self,
-        (replaced, valid): (Replaced, Option<f64>),
+        (replaced, valid): (Replaced, Validity),
         change: impl FnOnce(&mut SetPoint) -> Result<(), E>,
     ) -> Result<Result<(), E>, Fault> {
         let planners = &mut *self.planners.lock();

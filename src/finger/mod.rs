@@ -31,6 +31,7 @@ mod stage;
 mod stop_signal;
 mod supervision;
 mod touch;
+mod validity;
 
 pub use adjustable::Adjustable;
 pub use black_box::{BlackBox, KEYFRAMES, Recorder};
@@ -65,3 +66,4 @@ pub use servo_thread::{REPLY_WINDOW, Servo};
 pub use stage::Stage;
 pub use stop_signal::{StopCounts, StopSignal, stop_all, stop_calls};
 pub use touch::{Elements, TouchReading};
+pub use validity::Validity;

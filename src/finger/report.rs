@@ -23,6 +23,8 @@ pub struct FingerReport {
     /// set point has expired. The spring first holds the pose that the finger then has. Set points that were sent
     /// earlier are discarded.
     pub springs: u32,
+    /// Whether the finger holds its pose because its set point has expired, and has not followed another one since.
+    pub expired: bool,
     /// The controller's report of the last cycle.
     pub cycle: Report,
     /// The reference of the last cycle.
@@ -60,6 +62,7 @@ impl FingerReport {
             set_point_period: 0,
             period: 0,
             springs: 0,
+            expired: false,
             cycle: Report::default(),
             reference: Reference::default(),
             controller: 0,

@@ -1,7 +1,7 @@
 //! A set point on its way from a planner to a servo.
 
 use crate::control::SetPoint;
-use crate::finger::FingerReport;
+use crate::finger::{FingerReport, Validity};
 
 /// The part of the set point that a call replaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,8 +31,8 @@ pub(super) struct SentSetPoint {
     pub set_point: SetPoint,
     /// The path that leads to the set point.
     pub path: Option<SentPath>,
-    /// How long the set point is valid, s; none for the configured time.
-    pub valid: Option<f64>,
+    /// How long the set point is valid.
+    pub valid: Validity,
 }
 
 /// A path that a servo follows.
@@ -53,7 +53,7 @@ impl SentSetPoint {
             number: report.set_point_number,
             set_point: report.set_point,
             path: None,
-            valid: None,
+            valid: Validity::default(),
         }
     }
 
@@ -65,8 +65,8 @@ impl SentSetPoint {
         }
     }
 
-    /// Notes what a change replaces, and how long the set point is valid, s.
-    pub fn replace(&mut self, replaced: Replaced, valid: Option<f64>) {
+    /// Notes what a change replaces, and how long the set point is valid.
+    pub fn replace(&mut self, replaced: Replaced, valid: Validity) {
         match (replaced, &mut self.path) {
             (Replaced::Place, path) => *path = None,
             (Replaced::Stiffness, Some(path)) => path.stiffness = false,

@@ -2,7 +2,7 @@
 //! the servo as a whole.
 
 use crate::control::{JointSpring, SetPoint};
-use crate::finger::{Adjustable, Replaced};
+use crate::finger::{Adjustable, Replaced, Validity};
 use crate::hand::admission::Admission;
 use crate::hand::configuration_file::{Wrong, deserialize, overlay, to_document};
 use crate::hand::dispatcher::Member;
@@ -97,7 +97,7 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
             }
             Ok::<(), SetPointError>(())
         };
-        member.mailbox.try_send((replaced, None), clamp).map_err(faulted)??;
+        member.mailbox.try_send((replaced, Validity::default()), clamp).map_err(faulted)??;
     }
     *admission = changed;
     Ok(())

@@ -1,6 +1,6 @@
 //! The black boxes of an open hand.
 
-use crate::finger::{KeptRecord, Recording};
+use crate::finger::{CycleRecord, KeptRecord, Recording};
 use crate::hand::black_box_file::save_recording;
 use crate::hand::{Hand, HandError};
 use crate::model::FingerNumber;
@@ -23,6 +23,17 @@ impl Hand {
     pub fn record(&self, finger: i32, cycle: Option<u64>) -> Result<KeptRecord, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.record(finger, cycle)?.ok_or(HandError::NoRecord { finger, cycle: cycle.unwrap_or_default() })
+    }
+
+    /// Appends the records of the cycles of finger 1, 2 or 3 after `cycle` to `records`, in their order. Cycles that
+    /// are older than two seconds are missing, and a faulted finger has no new ones. A call costs little if `cycle` is
+    /// one of the last cycles.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger.
+    pub fn records_after(&self, finger: i32, cycle: u64, records: &mut Vec<CycleRecord>) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
+        self.dispatcher.records_after(finger, cycle, records)
     }
 
     /// Writes the last two seconds into a file for `sun2xp replay` (docs/black-box.md). An existing file is replaced

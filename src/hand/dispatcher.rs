@@ -8,7 +8,7 @@ mod publishing;
 
 pub(super) use member::Member;
 
-use crate::finger::{self, Adjustable, BlackBox, FingerReport, GroupGate, KeptRecord, Losses, Recording};
+use crate::finger::{self, Adjustable, BlackBox, CycleRecord, FingerReport, GroupGate, KeptRecord, Losses, Recording};
 use crate::hand::HandError;
 use crate::hand::dispatcher::collected::Collected;
 use crate::hand::dispatcher::collecting::collect;
@@ -152,6 +152,17 @@ impl Dispatcher {
         let mut collected = self.collected(finger)?;
         collected.collect();
         Ok(collected.black_box.record(cycle))
+    }
+
+    /// Appends the records of the cycles after `cycle` to `records`.
+    pub fn records_after(
+        &self,
+        finger: FingerNumber,
+        cycle: u64,
+        records: &mut Vec<CycleRecord>,
+    ) -> Result<(), HandError> {
+        self.collected(finger)?.black_box.take_after(cycle, records);
+        Ok(())
     }
 
     /// Gives `adjustable` its number, and calls `give`, which passes it to the finger. If `give` succeeds, the black

@@ -1,7 +1,7 @@
 //! Groups: one call sends set points to several fingers, and all of them take effect in the same period.
 
 use crate::control::{Law, SetPoint};
-use crate::finger::{PreparedSetPoint, Replaced};
+use crate::finger::{PreparedSetPoint, Replaced, Validity};
 use crate::hand::admission::Admission;
 use crate::hand::{Hand, HandError, SetPointError};
 use crate::model::FingerNumber;
@@ -30,6 +30,8 @@ pub struct FingerCommand {
     pub stiffness: Option<[[f64; 3]; 3]>,
     /// Relative damping, as in [`Hand::send_damping`].
     pub damping: Option<f64>,
+    /// How long the set point that results is valid.
+    pub validity: Validity,
 }
 
 impl FingerCommand {
@@ -61,6 +63,12 @@ impl FingerCommand {
     #[must_use]
     pub fn damping(self, ratio: f64) -> Self {
         Self { damping: Some(ratio), ..self }
+    }
+
+    /// Sets how long the set point that results is valid.
+    #[must_use]
+    pub fn validity(self, validity: Validity) -> Self {
+        Self { validity, ..self }
     }
 
     fn replaced(&self) -> Replaced {
@@ -127,7 +135,8 @@ impl Hand {
             let admission = admissions[number.index()].insert(member.admission.read());
             let change = command.admit(admission, &member.mailbox.report().cycle.joints)?;
             let faulted = |fault| HandError::Faulted { finger: number, fault };
-            let set_point = member.mailbox.prepare(command.replaced(), change).map_err(faulted)??;
+            let set_point =
+                member.mailbox.prepare((command.replaced(), command.validity), change).map_err(faulted)??;
             if !set_point.has_room() {
                 return Err(SetPointError::GroupsWaiting(number).into());
             }

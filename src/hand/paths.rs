@@ -6,7 +6,7 @@ mod tips;
 
 pub use plan::{Plan, plan_path};
 
-use crate::finger::Stage;
+use crate::finger::{Stage, Validity};
 use crate::hand::{Hand, HandError, PathError, Pose};
 use crate::model::FingerNumber;
 use std::time::Duration;
@@ -54,7 +54,7 @@ impl Hand {
         let (damping, law) = (admission.damping, plan.law);
         let (stiffest, end) = (plan.stiffest(), plan.end());
         let sent = member.mailbox.send_path(
-            (report.springs, report.reference.period, valid.map(|valid| valid.as_secs_f64())),
+            (report.springs, report.reference.period, Validity::hold_after(valid)),
             &plan.table(),
             |set_point| {
                 (set_point.joints, set_point.law) = (end, law);

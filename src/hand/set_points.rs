@@ -1,7 +1,7 @@
 //! The calls that send set points. Each call checks the planner's arguments and writes to the mailbox of the finger.
 
 use crate::control::{Law, SetPoint};
-use crate::finger::Replaced;
+use crate::finger::{Replaced, Validity};
 use crate::hand::admission::Admission;
 use crate::hand::{Hand, HandError, SetPointError};
 use crate::model::Contact;
@@ -30,13 +30,25 @@ impl Hand {
     /// Returns the same errors.
     pub fn send_position_for(&self, finger: i32, joints: [f64; 3], valid: Option<Duration>) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
-        self.send(finger, (Replaced::Place, valid.map(|valid| valid.as_secs_f64())), |admission| {
+        self.send(finger, (Replaced::Place, Validity::hold_after(valid)), |admission| {
             let (joints, law) = (admission.joints(joints)?, admission.law);
             Ok(move |set_point: &mut SetPoint| {
                 (set_point.joints, set_point.law) = (joints, law);
                 Ok(())
             })
         })
+    }
+
+    /// Renews the validity of what was sent last to finger 1, 2 or 3, without a new set point. The times count from the
+    /// next cycle, also while a path is not at its end. A finger whose set point has expired already continues to hold
+    /// its pose, and only the time until its end state begins anew.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger, or if the finger is faulted.
+    pub fn keep_valid(&self, finger: i32, validity: Validity) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
+        let kept = self.dispatcher.member(finger)?.mailbox.keep_valid(validity);
+        kept.map_err(|fault| HandError::Faulted { finger, fault })
     }
 
     /// Sends Kx of finger 1, 2 or 3 in the finger's frame, N/cm: `rows[row][column]`. The whole matrix takes effect
@@ -48,7 +60,7 @@ impl Hand {
     /// high for the damping that was sent last.
     pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
-        self.send(finger, (Replaced::Stiffness, None), |admission| {
+        self.send(finger, (Replaced::Stiffness, Validity::default()), |admission| {
             let (stiffness, damping) = (admission.stiffness(rows)?, admission.damping);
             Ok(move |set_point: &mut SetPoint| {
                 set_point.stiffen_tip(stiffness);
@@ -69,7 +81,7 @@ impl Hand {
     pub fn send_tip(&self, finger: i32, tip: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let present = self.dispatcher.last_report(finger)?.cycle.joints;
-        self.send(finger, (Replaced::Place, None), |admission| {
+        self.send(finger, (Replaced::Place, Validity::default()), |admission| {
             let joints = admission.tip(tip, &present)?;
             Ok(move |set_point: &mut SetPoint| {
                 (set_point.joints, set_point.law) = (joints, Law::Exact);
@@ -89,7 +101,7 @@ impl Hand {
     /// as k / l2^2 N/cm, because the last joint moves the tip by l2 per rad.
     pub fn send_contact(&self, finger: i32, contact: Contact) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
-        self.send(finger, (Replaced::Stiffness, None), |admission| {
+        self.send(finger, (Replaced::Stiffness, Validity::default()), |admission| {
             let (stiffness, damping) = (admission.contact(&contact)?, admission.damping);
             Ok(move |set_point: &mut SetPoint| {
                 set_point.stiffen_tip(stiffness);
@@ -109,7 +121,7 @@ impl Hand {
     /// high for the damping that was sent last.
     pub fn send_joint_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
-        self.send(finger, (Replaced::Stiffness, None), |admission| {
+        self.send(finger, (Replaced::Stiffness, Validity::default()), |admission| {
             let (k_theta, damping) = (admission.k_theta(rows)?, admission.damping);
             Ok(move |set_point: &mut SetPoint| {
                 set_point.stiffen_joints(k_theta);
@@ -127,7 +139,7 @@ impl Hand {
     /// infinite, or more than the tendons can make.
     pub fn send_joint_torque(&self, finger: i32, torque: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
-        self.send(finger, (Replaced::Other, None), |admission| {
+        self.send(finger, (Replaced::Other, Validity::default()), |admission| {
             let torque = admission.torque(torque)?;
             Ok(move |set_point: &mut SetPoint| {
                 set_point.torque_joints(torque);
@@ -145,7 +157,7 @@ impl Hand {
     /// infinite or outside the range for the stiffness that was sent last.
     pub fn send_damping(&self, finger: i32, ratio: f64) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
-        self.send(finger, (Replaced::Other, None), |admission| {
+        self.send(finger, (Replaced::Other, Validity::default()), |admission| {
             admission.finite("Ratio", &[ratio])?;
             let damping = admission.damping;
             Ok(move |set_point: &mut SetPoint| {
@@ -161,7 +173,7 @@ impl Hand {
     fn send<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
         &self,
         finger: FingerNumber,
-        what: (Replaced, Option<f64>),
+        what: (Replaced, Validity),
         admit: impl FnOnce(&Admission) -> Result<C, SetPointError>,
     ) -> Result<(), HandError> {
         let member = self.dispatcher.member(finger)?;

@@ -9,7 +9,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::control::{AdmissibleDamping, spatial};
 use sun2xp::finger::events::EventKind;
-use sun2xp::finger::{Condition, Reaction, Reflex, Replaced, Stage};
+use sun2xp::finger::{Condition, Reaction, Reflex, Replaced, Stage, Validity};
 use sun2xp::model::Contact;
 use sun2xp::model::configuration::ConfiguredFinger;
 
@@ -75,7 +75,7 @@ fn disturb(bench: &mut Bench, random: &mut Random, rules: &mut Vec<u32>) -> bool
         }
         1 => {
             let kx = spatial(&(Matrix3::identity() * random.between(0.0, 5.0)));
-            let _ = bench.mailbox.try_send::<()>((Replaced::Stiffness, None), |set_point| {
+            let _ = bench.mailbox.try_send::<()>((Replaced::Stiffness, Validity::default()), |set_point| {
                 // The planner's admission would refuse another ratio.
                 (set_point.stiffness, set_point.damping) = (kx, 1.0);
                 Ok(())

@@ -6,7 +6,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::f64::consts::TAU;
 use sun2xp::control::{Activity, SetPoint, spatial};
-use sun2xp::finger::{CycleRecord, FingerReport, Recording, Reference, Replaced, Stage};
+use sun2xp::finger::{CycleRecord, FingerReport, Recording, Reference, Replaced, Stage, Validity};
 use sun2xp::hand::{PathError, PathPose, Plan, Pose, plan_path};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
@@ -37,10 +37,14 @@ pub fn send_if_possible(bench: &Bench, poses: &[PathPose]) -> bool {
 /// Sends a path that was computed for the reference of `report`.
 fn deliver(bench: &Bench, report: &FingerReport, plan: &Plan) {
     let end = plan.end();
-    let sent = bench.mailbox.send_path((report.springs, report.reference.period, None), &plan.table(), |set_point| {
-        set_point.joints = end;
-        Ok::<(), ()>(())
-    });
+    let sent = bench.mailbox.send_path(
+        (report.springs, report.reference.period, Validity::default()),
+        &plan.table(),
+        |set_point| {
+            set_point.joints = end;
+            Ok::<(), ()>(())
+        },
+    );
     assert!(matches!(sent, Ok(Ok(Some(_)))), "{sent:?}");
 }
 
@@ -284,7 +288,7 @@ fn kx_changes_along_a_path_and_a_later_kx_wins() {
         set_point.stiffness = spatial(&(Matrix3::identity() * 2.0));
         Ok::<(), ()>(())
     };
-    bench.mailbox.try_send((Replaced::Stiffness, None), soften).expect("not faulted").expect("admitted");
+    bench.mailbox.try_send((Replaced::Stiffness, Validity::default()), soften).expect("not faulted").expect("admitted");
     assert!((at(&mut bench, 1250, begin) - 2.0).abs() < 1e-12);
     assert!(bench.report().set_point.motion.is_some(), "the path continues");
     assert!((at(&mut bench, 1700, begin) - 2.0).abs() < 1e-12);

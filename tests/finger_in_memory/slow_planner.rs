@@ -4,8 +4,9 @@ use crate::motion::{Track, configuration, joints, send};
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
+use std::time::Duration;
 use sun2xp::control::SetPoint;
-use sun2xp::finger::{FaultKind, Reference, Replaced, Stage};
+use sun2xp::finger::{FaultKind, Reference, Replaced, Stage, Validity};
 use sun2xp::model::InverseKinematics;
 use sun2xp::model::configuration::ExpiryReaction;
 
@@ -59,7 +60,7 @@ fn an_expired_set_point_leaves_the_finger_where_it_is() {
     assert_eq!(bench.report().springs, springs + 1);
     bench
         .mailbox
-        .try_send((Replaced::Stiffness, None), |set_point| {
+        .try_send((Replaced::Stiffness, Validity::default()), |set_point| {
             set_point.stiffness *= 2.0;
             Ok::<(), ()>(())
         })
@@ -80,7 +81,11 @@ fn a_set_point_that_expires_can_stop_the_finger() {
         set_point.joints = TARGET;
         Ok::<(), ()>(())
     };
-    bench.mailbox.try_send((Replaced::Place, Some(2.0)), change).expect("not faulted").expect("admitted");
+    bench
+        .mailbox
+        .try_send((Replaced::Place, Validity::hold_after(Some(Duration::from_secs(2)))), change)
+        .expect("not faulted")
+        .expect("admitted");
     bench.cycles(1900);
     send(&bench, &[joints(0.5, [0.3, 0.7, 1.2])]);
     bench.cycles(540);
@@ -89,4 +94,86 @@ fn a_set_point_that_expires_can_stop_the_finger() {
     assert!((fault.value - 550.0).abs() < 3.0, "{fault}");
     bench.repair();
     bench.opens();
+}
+
+/// Returns a change that moves the set point to [`TARGET`].
+fn to_target(set_point: &mut SetPoint) -> Result<(), ()> {
+    set_point.joints = TARGET;
+    Ok(())
+}
+
+/// A validity in milliseconds: which are periods, because the finger runs at 1000 Hz.
+fn validity(hold: u64, end: u64) -> Validity {
+    Validity { hold_after: Some(Duration::from_millis(hold)), end_after: Some(Duration::from_millis(end)) }
+}
+
+#[test]
+fn a_finger_that_holds_its_pose_for_too_long_stops() {
+    let mut bench = Bench::with(|configuration| {
+        configuration.fingers[0].motion.valid_ms = Some(50.0);
+        configuration.fingers[0].motion.end_state_ms = Some(200.0);
+    });
+    let springs = bench.report().springs;
+    bench.mailbox.send(|set_point| set_point.joints = TARGET).expect("not faulted");
+    bench.cycles(52);
+    assert!(bench.report().expired && bench.report().springs == springs + 1);
+    bench.cycles(190);
+    // A command in this time makes the finger follow again.
+    bench.mailbox.send(|set_point| set_point.joints = TARGET).expect("not faulted");
+    bench.cycles(1);
+    assert!(!bench.report().expired);
+    bench.cycles(247);
+    assert_eq!(bench.stage(), Stage::Running);
+    let fault = bench.faults(FaultKind::SetPointExpired);
+    assert!((fault.value - 250.0).abs() < 3.0, "{fault}");
+}
+
+#[test]
+fn a_renewed_set_point_does_not_expire() {
+    let mut bench = Bench::new();
+    let springs = bench.report().springs;
+    bench.mailbox.try_send((Replaced::Place, validity(100, 1000)), to_target).expect("not faulted").expect("admitted");
+    for _ in 0..100 {
+        bench.cycles(25);
+        bench.mailbox.keep_valid(validity(100, 1000)).expect("not faulted");
+    }
+    assert_eq!((bench.report().springs, bench.report().expired), (springs, false));
+    // The renewals end. The finger holds its pose, and then stops.
+    bench.cycles(100);
+    assert!(!bench.report().expired);
+    bench.cycles(2);
+    assert!(bench.report().expired);
+    // A renewal does not bring the set point back, but it delays the end state.
+    bench.mailbox.keep_valid(validity(100, 1000)).expect("not faulted");
+    bench.cycles(998);
+    assert_eq!((bench.stage(), bench.report().springs), (Stage::Running, springs + 1));
+    let fault = bench.faults(FaultKind::SetPointExpired);
+    assert!((fault.value - 1000.0).abs() < 3.0, "{fault}");
+}
+
+#[test]
+fn a_renewal_limits_a_path_and_a_later_set_point_ends_it() {
+    let mut bench = Bench::new();
+    bench.goes(TARGET);
+    send(&bench, &[joints(5.0, [0.3, 0.7, 1.2])]);
+    // The planner sends both before the servo takes one of them.
+    bench.mailbox.keep_valid(validity(100, 1000)).expect("not faulted");
+    bench.cycles(102);
+    assert!(bench.report().expired, "the validity counts from the renewal, and not from the end of the path");
+    // A set point after a renewal has its own validity, which is without end here.
+    bench.mailbox.keep_valid(validity(100, 200)).expect("not faulted");
+    bench.mailbox.send(|set_point| set_point.joints = TARGET).expect("not faulted");
+    bench.cycles(300);
+    assert_eq!((bench.stage(), bench.report().expired), (Stage::Running, false));
+}
+
+#[test]
+fn a_finger_without_a_command_can_stop_after_a_time_too() {
+    let mut bench = Bench::new();
+    let springs = bench.report().springs;
+    let end_after = Some(Duration::from_millis(300));
+    bench.mailbox.keep_valid(Validity { hold_after: None, end_after }).expect("not faulted");
+    bench.cycles(299);
+    assert_eq!((bench.stage(), bench.report().springs), (Stage::Running, springs));
+    bench.faults(FaultKind::SetPointExpired);
 }

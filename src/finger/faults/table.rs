@@ -225,7 +225,7 @@ faults! {
         "Make sure that the finger can move safely, then recover it", [Recover];
     51 SetPointExpired "SET_POINT_EXPIRED" Fault Finger Time "set point expired",
         "the planner has sent nothing for longer than its last set point was valid, and finger.motion.on_expiry is \
-         \"end state\"",
+         \"end state\", or finger.motion.end_state_ms is over too",
         "the planner hangs, is stopped in a debugger, or plans for longer than its set points are valid",
         "Recover the finger and send set points in time, or raise finger.motion.valid_ms", [Recover];
     52 ReflexStop "REFLEX_STOP" Fault Finger Nothing "stopped by a reflex",

@@ -2,7 +2,7 @@
 
 use super::{Mailbox, PlannersEnd, SentSetPoint, ServoEnd};
 use crate::control::SetPoint;
-use crate::finger::{Fault, GroupGate, Replaced};
+use crate::finger::{Fault, GroupGate, Replaced, Validity};
 use crate::model::configuration::FINGERS;
 use crate::realtime::LockedMemory;
 use parking_lot::MutexGuard;
@@ -12,25 +12,26 @@ use parking_lot::MutexGuard;
 pub struct PreparedSetPoint<'a> {
     planners: MutexGuard<'a, PlannersEnd>,
     replaced: Replaced,
+    valid: Validity,
     set_point: SetPoint,
 }
 
 impl Mailbox {
     /// Prepares a change of the last set point, as [`Mailbox::try_send`] makes it, for a group. `replaced` is the part
-    /// that changes. A caller that prepares several fingers must do this in the order of their numbers, so that two
-    /// callers cannot wait for each other.
+    /// that changes, and `valid` is the time for which the set point is valid. A caller that prepares several fingers
+    /// must do this in the order of their numbers, so that two callers cannot wait for each other.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. The inner result is the refusal of `change`.
     pub fn prepare<E>(
         &self,
-        replaced: Replaced,
+        (replaced, valid): (Replaced, Validity),
         change: impl FnOnce(&mut SetPoint) -> Result<(), E>,
     ) -> Result<Result<PreparedSetPoint<'_>, E>, Fault> {
         let mut planners = self.planners.lock();
         planners.begin()?;
         let mut set_point = planners.sent.set_point;
-        Ok(change(&mut set_point).map(|()| PreparedSetPoint { planners, replaced, set_point }))
+        Ok(change(&mut set_point).map(|()| PreparedSetPoint { planners, replaced, valid, set_point }))
     }
 }
 
@@ -46,9 +47,9 @@ impl GroupGate {
     /// servos of the fingers must have this gate.
     pub fn send(&self, mut group: [Option<PreparedSetPoint<'_>>; FINGERS]) {
         let number = self.number();
-        for PreparedSetPoint { planners, replaced, set_point } in group.iter_mut().flatten() {
+        for PreparedSetPoint { planners, replaced, valid, set_point } in group.iter_mut().flatten() {
             let mut sent = SentSetPoint { group: number, set_point: *set_point, ..planners.sent };
-            sent.replace(*replaced, None);
+            sent.replace(*replaced, *valid);
             // The push succeeds, because the finger has room, and only its servo has made more room since.
             if planners.grouped.push(sent).is_ok() {
                 planners.sent = sent;

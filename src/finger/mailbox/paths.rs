@@ -3,9 +3,9 @@
 use super::{Mailbox, ServoEnd};
 use crate::control::SetPoint;
 use crate::control::motion::PathTable;
-use crate::finger::Fault;
 use crate::finger::path_buffer::PathBuffer;
 use crate::finger::sent::SentPath;
+use crate::finger::{Fault, Validity};
 
 impl Mailbox {
     /// Sends a path that begins in period `origin`. `change` gets a copy of the set point that was sent last, and
@@ -17,7 +17,7 @@ impl Mailbox {
     /// Nothing is sent in these cases.
     pub fn send_path<E>(
         &self,
-        (spring, origin, valid): (u32, u64, Option<f64>),
+        (spring, origin, valid): (u32, u64, Validity),
         path: &PathTable,
         change: impl FnOnce(&mut SetPoint) -> Result<(), E>,
     ) -> Result<Result<Option<u32>, E>, Fault> {

@@ -69,6 +69,7 @@ impl FingerServo {
         {
             self.take_set_point(&sent);
         }
+        self.renew_validity();
         if self.mailbox.closing() && self.report.stage != Stage::Closing {
             self.enter(Stage::Closing);
             self.calibration = None;
@@ -95,6 +96,7 @@ impl FingerServo {
         let mut set_point = sent.set_point;
         let motion = &mut self.motion;
         motion.expired_phase = None;
+        self.report.expired = false;
         motion.target = set_point.joints;
         match &sent.path {
             Some(path) if path.number != motion.path.number => {

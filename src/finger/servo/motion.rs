@@ -1,28 +1,52 @@
 //! The motion of the set point in the servo: paths, the interpolation of set points, and their expiry.
 
 use super::FingerServo;
-use super::set_point_motion::Expiry;
+use super::set_point_motion::{Expiry, NEVER};
 use crate::control::motion::{InterpolationState, PathTable};
 use crate::control::{Activity, SetPoint};
 use crate::finger::events::{EventKind, Occurrence};
 use crate::finger::motion_settings::{AfterExpiry, MotionSettings};
 use crate::finger::sent::SentSetPoint;
-use crate::finger::{Fault, FaultKind, Reference, Stage};
+use crate::finger::{Fault, FaultKind, Reference, Stage, Validity};
 use crate::model::Part;
 
 impl FingerServo {
     /// Computes when a set point expires. A path is valid until its end, and from there for the time of a set point.
     pub(super) fn begin_validity(&mut self, sent: &SentSetPoint) {
-        let valid = sent.valid.or(self.adjustable.motion.valid);
-        let now = self.motion.next_period;
-        let mut begin = now;
+        let mut begin = self.motion.next_period;
         if self.motion.path.follower.is_some() {
             let path = self.mailbox.path();
             let length = path.table().pieces.last().map_or(0.0, |piece| piece.end());
             begin = begin.max(path.origin + (length / self.limits.period()).ceil() as u64);
         }
-        self.motion.expiry =
-            valid.map(|seconds| Expiry { sent: now, expires: begin + (seconds / self.limits.period()).ceil() as u64 });
+        self.set_validity(begin, &sent.valid);
+        // The renewal may have come before its set point.
+        if let Some(renewal) = self.motion.renewal
+            && renewal.number == sent.number
+        {
+            self.set_validity(self.motion.next_period, &renewal.validity);
+        }
+    }
+
+    /// Takes a renewed validity, if there is one. A path does not extend it.
+    pub(super) fn renew_validity(&mut self) {
+        let Some(renewal) = self.mailbox.new_renewal() else { return };
+        let ahead = renewal.number.wrapping_sub(self.report.set_point_number).cast_signed();
+        if matches!(self.report.stage, Stage::Running | Stage::Calibrating) && ahead >= 0 {
+            self.motion.renewal = Some(renewal);
+            self.set_validity(self.motion.next_period, &renewal.validity);
+        }
+    }
+
+    /// Sets the validity, which begins in the period `begin`. A finger that holds its pose after its set point has
+    /// expired continues to hold it.
+    fn set_validity(&mut self, begin: u64, validity: &Validity) {
+        let (hold, end) = self.adjustable.motion.times(validity);
+        // The conversion saturates, so an infinite time becomes a period that does not come.
+        let after = |seconds: f64| begin.saturating_add((seconds / self.limits.period()).ceil() as u64);
+        let expires = if self.report.expired { NEVER } else { after(hold) };
+        let expiry = Expiry { sent: self.motion.next_period, expires, ends: after(end) };
+        self.motion.expiry = (expiry.expires.min(expiry.ends) != NEVER).then_some(expiry);
     }
 
     /// Moves the set point of a finger that is a spring to its place in this period.
@@ -60,21 +84,28 @@ impl FingerServo {
             self.activity = Activity::Follow(*set_point);
         }
         if let Some(expiry) = &self.motion.expiry
-            && period >= expiry.expires
+            && period >= expiry.expires.min(expiry.ends)
         {
             let age_ms = (period - expiry.sent) as f64 * self.limits.period_ms;
-            self.expire(age_ms);
+            let ends = period >= expiry.ends;
+            self.expire(age_ms, ends);
         }
     }
 
-    /// Carries out the configured reaction to a set point that has expired after `age_ms`.
-    fn expire(&mut self, age_ms: f64) {
-        self.motion.expiry = None;
-        self.events.write(Occurrence { kind: EventKind::Expired, part: Part::Finger, values: [age_ms, 0.0, 0.0, 0.0] });
+    /// Carries out the configured reaction to a set point that has expired after `age_ms`, or faults the finger if
+    /// `ends`.
+    fn expire(&mut self, age_ms: f64, ends: bool) {
+        if !self.report.expired {
+            let values = [age_ms, 0.0, 0.0, 0.0];
+            self.events.write(Occurrence { kind: EventKind::Expired, part: Part::Finger, values });
+        }
         let MotionSettings { after_expiry, .. } = self.adjustable.motion;
         match after_expiry {
+            _ if ends => self.fault(Fault::of(FaultKind::SetPointExpired, age_ms)),
             AfterExpiry::Fault => self.fault(Fault::of(FaultKind::SetPointExpired, age_ms)),
             AfterExpiry::Hold(kx) => {
+                self.report.expired = true;
+                self.motion.expiry.iter_mut().for_each(|expiry| expiry.expires = NEVER);
                 let joints = self.report.cycle.joints;
                 let held = SetPoint::hard_finger(joints, kx);
                 self.follow(held, self.report.set_point_number);

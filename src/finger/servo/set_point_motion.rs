@@ -1,6 +1,7 @@
 //! State of the motion of a set point: its path, its interpolation and its expiry.
 
 use crate::control::motion::{Follower, InterpolationState};
+use crate::finger::validity::Renewal;
 use nalgebra::Vector3;
 
 /// State of the motion of one finger's set point.
@@ -12,6 +13,8 @@ pub(super) struct SetPointMotion {
     pub target: Vector3<f64>,
     pub interpolation: InterpolationState,
     pub expiry: Option<Expiry>,
+    /// The newest renewal of a validity. Its set point may not have taken effect yet.
+    pub renewal: Option<Renewal>,
     /// The spring phase that ended when the last set point expired. A set point for this phase is still accepted,
     /// because its planner may not have known of the expiry.
     pub expired_phase: Option<u32>,
@@ -26,11 +29,18 @@ pub(super) struct Following {
     pub stiffness: bool,
 }
 
-/// When the set point expires, in periods.
+/// When the set point expires, in periods. [`NEVER`] is later than every period.
 pub(super) struct Expiry {
+    /// The period in which the servo took the set point, or the last renewal of its validity.
     pub sent: u64,
+    /// The period in which the set point expires.
     pub expires: u64,
+    /// The period in which the finger faults.
+    pub ends: u64,
 }
+
+/// A period that does not come.
+pub(super) const NEVER: u64 = u64::MAX;
 
 impl SetPointMotion {
     pub fn new() -> Self {
@@ -40,6 +50,7 @@ impl SetPointMotion {
             target: Vector3::zeros(),
             interpolation: InterpolationState::default(),
             expiry: None,
+            renewal: None,
             expired_phase: None,
         }
     }
@@ -48,6 +59,7 @@ impl SetPointMotion {
     pub fn begin(&mut self, joints: Vector3<f64>) {
         self.rest(joints);
         self.expiry = None;
+        self.renewal = None;
         self.expired_phase = None;
     }
 

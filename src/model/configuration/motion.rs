@@ -18,6 +18,9 @@ pub struct ConfiguredMotion {
     pub valid_ms: Option<f64>,
     /// The reaction to a set point that has expired.
     pub on_expiry: ExpiryReaction,
+    /// Time for which a finger holds its pose after its set point has expired, ms. Then it faults, and its board goes
+    /// to the end state. Without it the finger holds its pose without end.
+    pub end_state_ms: Option<f64>,
     /// Stiffness in every direction with which a finger holds its pose after its set point has expired, N/cm.
     pub expired_stiffness: f64,
 }
@@ -44,6 +47,7 @@ impl Default for ConfiguredMotion {
             interpolate_ms: None,
             valid_ms: None,
             on_expiry: ExpiryReaction::default(),
+            end_state_ms: None,
             expired_stiffness: 1.0,
         }
     }

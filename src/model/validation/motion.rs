@@ -10,6 +10,7 @@ impl ConfiguredMotion {
         within("motion.jerk", self.jerk, 1e-3, 1e9, "rad/s^3")?;
         within("motion.interpolate_ms", self.interpolate_ms.unwrap_or(1.0), 1.0, 10_000.0, "ms")?;
         within("motion.valid_ms", self.valid_ms.unwrap_or(1.0), 1.0, 3.6e6, "ms")?;
+        within("motion.end_state_ms", self.end_state_ms.unwrap_or(1.0), 1.0, 3.6e6, "ms")?;
         within("motion.expired_stiffness", self.expired_stiffness, 0.0, 1000.0, "N/cm")
     }
 }

@@ -1,0 +1,33 @@
+//! How long what was sent to a finger is valid.
+
+use std::time::Duration;
+
+/// How long what was sent last to a finger is valid. Both times count from the cycle in which the servo takes it. A
+/// time that is none is the configured one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Validity {
+    /// After this time the finger reacts as `finger.motion.on_expiry` says. The configured time is
+    /// `finger.motion.valid_ms`, which may be absent: then a set point does not expire.
+    pub hold_after: Option<Duration>,
+    /// After this time the finger faults, and its board goes to the end state. The configured time is that of
+    /// `hold_after`, and `finger.motion.end_state_ms` in addition, which may be absent.
+    pub end_after: Option<Duration>,
+}
+
+impl Validity {
+    /// Returns a validity after which the finger reacts as `finger.motion.on_expiry` says; none for the configured
+    /// time.
+    #[must_use]
+    pub fn hold_after(time: Option<Duration>) -> Self {
+        Self { hold_after: time, end_after: None }
+    }
+}
+
+/// A validity that was renewed without a new set point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Renewal {
+    /// Number of the set point that was sent last before the renewal. A set point that was sent later has its own
+    /// validity.
+    pub number: u32,
+    pub validity: Validity,
+}
