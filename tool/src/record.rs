@@ -85,22 +85,25 @@ fn record(arguments: &Arguments, limits: Limits) -> Result<ExitStatus, Failure> 
             break None;
         }
         messages.clear();
-        match reader.read(WAIT, &mut messages) {
-            Ok(received) => note_losses(received.lost, &mut files, &mut counts, &display)?,
+        let received = match reader.read(WAIT, &mut messages) {
+            Ok(received) => received,
             Err(Ended::Closed) => break Some("the hand was closed"),
             Err(error) => {
                 // What has arrived before is kept.
                 files.finish()?;
                 return Err(error.into());
             }
+        };
+        // A file begins only when there is something to write, so that the last one is not empty.
+        if !messages.is_empty() && files.turn()? {
+            display.begin_file(files.path());
         }
+        note_losses(received.lost, &mut files, &mut counts, &display)?;
         for message in &messages {
             counts.add(message);
             files.write(message)?;
         }
-        if files.turn()? {
-            display.begin_file(files.path());
-        }
+        files.flush()?;
         display.show(began.elapsed(), &counts, files.bytes());
     };
     drop(display);

@@ -108,13 +108,19 @@ impl Files {
         self.file.explain(|writer| writer.write_lost(finger, cycles))
     }
 
-    /// Ends a batch of messages: writes what has been waiting for long enough, and begins a new file if the present one
-    /// has reached a limit. Returns whether a new file has begun.
+    /// Ends a batch of messages: writes what has been waiting for long enough.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be written.
+    pub fn flush(&mut self) -> Result<(), Failure> {
+        self.file.explain(RecordingWriter::flush_if_due)
+    }
+
+    /// Begins a new file if the present one has reached a limit. Returns whether a new file has begun.
     ///
     /// # Errors
     /// Returns an error if a file cannot be written.
     pub fn turn(&mut self) -> Result<bool, Failure> {
-        self.file.explain(RecordingWriter::flush_if_due)?;
         let full = self.limits.bytes.is_some_and(|most| self.file.bytes() >= most);
         let old = self.limits.age.is_some_and(|most| self.file.since.elapsed() >= most);
         if !full && !old {
