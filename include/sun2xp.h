@@ -64,7 +64,7 @@
        EIO        SUN2XP_ERROR_FAULTED         the finger has stopped by itself
        EBUSY      SUN2XP_ERROR_BUSY            hand or finger is being opened, closed, calibrated or recovered
        ETIMEDOUT  SUN2XP_ERROR_TIMED_OUT       a time limit is over
-       ENOTSUP    SUN2XP_ERROR_NOT_SUPPORTED   the call works only with simulated fingers or objects
+       ENOTSUP    SUN2XP_ERROR_NOT_SUPPORTED   the call needs a simulated finger or object, or a hand of this machine
        ESHUTDOWN  SUN2XP_ERROR_EXITING         the process is exiting (chapter 5)
        others     the errno of the system, or the errno that describes the reason best
 

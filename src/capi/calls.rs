@@ -9,9 +9,11 @@ use crate::capi::boundary::{MEMORY_OF_HAND, delegated, delegated_or_done_here, g
 use crate::capi::hand_events::in_callback;
 use crate::capi::hand_table::{self, default_handle};
 use crate::capi::handle::Handle;
+use crate::capi::loaded_hand;
 use crate::capi::memory::{load, load_rows, non_null};
-use crate::capi::refusal::Wanted;
+use crate::capi::refusal::{Refusal, Wanted};
 use crate::capi::thread_errors::find;
+use crate::hand::FingerCommand;
 use std::ffi::{c_char, c_int};
 
 /// OpenHand - start the hand
@@ -44,7 +46,7 @@ use std::ffi::{c_char, c_int};
 ///     }
 #[unsafe(no_mangle)]
 pub extern "C" fn OpenHand() -> c_int {
-    delegated("OpenHand", default_handle(), MEMORY_OF_HAND, || Ok(hand_table::open_default))
+    delegated("OpenHand", default_handle(), MEMORY_OF_HAND, || Ok(|| hand_table::open_default(loaded_hand::open)))
 }
 
 /// CloseHand - stop the hand
@@ -104,7 +106,7 @@ pub unsafe extern "C" fn SendPos(i: c_int, Pos: *const f32) -> c_int {
     guarded("SendPos", default_handle(), || {
         // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let joints = unsafe { load::<f32, 3>(Pos, "Pos") }?;
-        hand_table::command(default_handle(), |hand| hand.send_position(i, joints.map(f64::from)))
+        send_joints(i, joints.map(f64::from))
     })
 }
 
@@ -117,7 +119,7 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
     guarded("SendPos", default_handle(), || {
         // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let joints = unsafe { load::<f64, 3>(Pos, "Pos") }?;
-        hand_table::command(default_handle(), |hand| hand.send_position(i, joints))
+        send_joints(i, joints)
     })
 }
 
@@ -157,7 +159,7 @@ pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
     guarded("SendKx", default_handle(), || {
         // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let rows = unsafe { load_rows(Kx, "Kx") }?;
-        hand_table::command(default_handle(), |hand| hand.send_stiffness(i, rows.map(|row| row.map(f64::from))))
+        send_rows(i, rows.map(|row| row.map(f64::from)))
     })
 }
 
@@ -170,7 +172,7 @@ pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
     guarded("SendKx", default_handle(), || {
         // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let rows = unsafe { load_rows(Kx, "Kx") }?;
-        hand_table::command(default_handle(), |hand| hand.send_stiffness(i, rows))
+        send_rows(i, rows)
     })
 }
 
@@ -200,8 +202,7 @@ pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetPos(i: c_int, Pos: *mut f32) -> c_int {
     guarded("GetPos", default_handle(), || {
-        let joints = non_null(Pos, "Pos", Wanted::Array(3))
-            .and_then(|_| hand_table::with(default_handle(), |hand| hand.position(i)))?;
+        let joints = non_null(Pos, "Pos", Wanted::Array(3)).and_then(|_| position(i))?;
         // SAFETY: `Pos` is not null, as checked above, and by the contract in the manual it has room for three angles.
         unsafe { Pos.cast::<[f32; 3]>().write_unaligned(joints.map(|joint| joint as f32)) };
         Ok(())
@@ -215,8 +216,7 @@ pub unsafe extern "C" fn GetPos(i: c_int, Pos: *mut f32) -> c_int {
 pub unsafe extern "C" fn GetPosD(i: c_int, Pos: *mut f64) -> c_int {
     // Refusals use the name in the planner's source. The header or a compiler flag has added the D.
     guarded("GetPos", default_handle(), || {
-        let joints = non_null(Pos, "Pos", Wanted::Array(3))
-            .and_then(|_| hand_table::with(default_handle(), |hand| hand.position(i)))?;
+        let joints = non_null(Pos, "Pos", Wanted::Array(3)).and_then(|_| position(i))?;
         // SAFETY: `Pos` is not null, as checked above, and by the contract in the manual it has room for three angles.
         unsafe { Pos.cast::<[f64; 3]>().write_unaligned(joints) };
         Ok(())
@@ -236,4 +236,21 @@ pub unsafe extern "C" fn GetPosD(i: c_int, Pos: *mut f64) -> c_int {
 #[unsafe(no_mangle)]
 pub extern "C" fn HandError() -> *const c_char {
     uncancelled(|| find(Handle::NULL).text)
+}
+
+#[inline]
+fn send_joints(finger: c_int, joints: [f64; 3]) -> Result<(), Refusal> {
+    let command = || FingerCommand::new(finger).joints(joints);
+    hand_table::send(default_handle(), |hand| hand.send_position(finger, joints), command)
+}
+
+#[inline]
+fn send_rows(finger: c_int, rows: [[f64; 3]; 3]) -> Result<(), Refusal> {
+    let command = || FingerCommand::new(finger).stiffness(rows);
+    hand_table::send(default_handle(), |hand| hand.send_stiffness(finger, rows), command)
+}
+
+#[inline]
+fn position(finger: c_int) -> Result<[f64; 3], Refusal> {
+    hand_table::with_either(default_handle(), |hand| hand.position(finger), |remote| remote.position(finger))
 }

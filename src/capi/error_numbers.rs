@@ -73,6 +73,9 @@ pub(super) fn number(refusal: &Refusal) -> c_int {
         | Refusal::IoCount
         | Refusal::IoTwice(_) => SUN2XP_ERROR_ARGUMENT,
         Refusal::NoMemory => SUN2XP_ERROR_NO_MEMORY,
+        Refusal::NotRemote => SUN2XP_ERROR_NOT_SUPPORTED,
+        Refusal::OnlyRemote => SUN2XP_ERROR_CONFIGURATION,
+        Refusal::Remote { number, .. } => *number,
         Refusal::Hand(error) => of_hand(error),
     }
 }

@@ -4,43 +4,20 @@
 #![allow(non_camel_case_types)]
 
 use crate::capi::boundary::{MEMORY_OF_THREAD, delegated, guarded};
+use crate::capi::event_struct::sun2xp_event;
 use crate::capi::hand_events;
 use crate::capi::hand_table;
 use crate::capi::handle::{Handle, sun2xp_hand};
 use crate::capi::planners_pointer::PlannersPointer;
 use crate::capi::refusal::Refusal;
+use crate::capi::remote_hand::RemoteHand;
 use crate::capi::sized_struct::fill_next;
 use crate::capi::status_calls::count;
 use crate::events::{self, EventQueue};
-use std::ffi::{c_int, c_ulong, c_void};
+use std::ffi::{c_int, c_void};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI32, Ordering};
 use std::time::{Duration, Instant};
-
-/// An event: something that happened to a finger in one cycle of its servo.
-///
-/// part is 0 if the event concerns the whole finger. All events of a cycle have the same time. The oldest
-/// events are lost first.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct sun2xp_event {
-    /// sizeof (struct sun2xp_event), set before the call.
-    pub size: usize,
-    /// Finger, 1 to 3.
-    pub finger: c_int,
-    /// Kind of the event: SUN2XP_EVENT_...
-    pub kind: c_int,
-    /// Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0.
-    pub part: c_int,
-    /// Cycle of the event, as in sun2xp_status and sun2xp_record.
-    pub cycle: c_ulong,
-    /// Events that were lost since sun2xp_open: not taken in time.
-    pub lost: c_ulong,
-    /// Beginning of that cycle, s of CLOCK_MONOTONIC.
-    pub time: f64,
-    /// Values of the kind (docs/events.md); unused ones are 0.
-    pub values: [f64; 4],
-}
 
 /// sun2xp_next_event - take the next event
 ///
@@ -116,7 +93,10 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
         }
         // The thread of this call only waits. The planner's thread takes the event, so that no event is lost if a
         // signal handler jumps out of the wait.
-        let wait = move || hand_table::events(hand)?.wait(hand, left).map(|_| ());
+        let wait = move || match hand_table::remote(hand)? {
+            Some(remote) => Ok(remote.wait_for_event(left)?),
+            None => hand_table::events(hand)?.wait(hand, left).map(|_| ()),
+        };
         match delegated("sun2xp_wait_event", hand, MEMORY_OF_THREAD, || Ok(wait)) {
             0 => {}
             refused => return refused,
@@ -214,6 +194,8 @@ pub extern "C" fn sun2xp_event_descriptor(hand: *mut sun2xp_hand) -> c_int {
     let made = descriptor.clone();
     let result = delegated("sun2xp_event_descriptor", hand, MEMORY_OF_THREAD, || {
         Ok(move || {
+            // Refuses a hand of another machine.
+            hand_table::with(hand, |_| Ok::<_, Refusal>(()))?;
             made.store(hand_table::events(hand)?.descriptor(hand)?, Ordering::Relaxed);
             Ok(())
         })
@@ -229,13 +211,33 @@ unsafe fn take(name: &'static str, hand: Handle, event: *mut sun2xp_event) -> c_
     let mut taken = false;
     let result = guarded(name, hand, || {
         // SAFETY: the contract of this function.
-        taken = unsafe {
-            let next = |queue: Arc<EventQueue>| queue.next().map(|event| to_c(&event, queue.lost()));
-            fill_next(event, "event", || hand_table::events(hand)?.queue(hand), next)
-        }?;
+        taken = unsafe { fill_next(event, "event", || Taken::from(hand), Taken::next) }?;
         Ok(())
     });
     if result == 0 { c_int::from(taken) } else { result }
+}
+
+/// Where events are taken from.
+enum Taken {
+    Local(Arc<EventQueue>),
+    Remote(Arc<dyn RemoteHand>),
+}
+
+impl Taken {
+    fn from(hand: Handle) -> Result<Self, Refusal> {
+        match hand_table::remote(hand) {
+            Ok(Some(remote)) => Ok(Self::Remote(remote)),
+            // A queue outlives the lock of its hand, so a hand that is being closed still has its queue.
+            _ => hand_table::events(hand)?.queue(hand).map(Self::Local),
+        }
+    }
+
+    fn next(self) -> Result<Option<sun2xp_event>, Refusal> {
+        match self {
+            Self::Local(queue) => Ok(queue.next().map(|event| to_c(&event, queue.lost()))),
+            Self::Remote(remote) => Ok(remote.next_event()?),
+        }
+    }
 }
 
 /// Converts an event. In a result, `size` belongs to the caller and is not copied.

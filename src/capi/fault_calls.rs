@@ -4,37 +4,13 @@
 #![allow(non_camel_case_types)]
 
 use crate::capi::boundary::{guarded, uncancelled};
+use crate::capi::fault_struct::sun2xp_fault;
 use crate::capi::fault_texts::TEXTS;
 use crate::capi::handle::{Handle, sun2xp_hand};
-use crate::capi::sized_struct::fill_from;
+use crate::capi::sized_struct::fill_from_either;
 use crate::finger;
-use crate::hand::FingerFault;
+use crate::hand::{FingerFault, Hand};
 use std::ffi::{c_char, c_int, c_ulong};
-
-/// Result of sun2xp_fault.
-///
-/// sun2xp_fault_text says which kind of part a fault has. A part is 0 if the fault concerns the whole
-/// finger.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct sun2xp_fault {
-    /// sizeof (struct sun2xp_fault), set before the call.
-    pub size: usize,
-    /// Fault that has stopped the finger: SUN2XP_FAULT_..., or 0 if none has.
-    pub number: c_int,
-    /// Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0.
-    pub part: c_int,
-    /// Warning of the last second: SUN2XP_FAULT_..., or 0 if there was none.
-    pub warning: c_int,
-    /// Part that the warning concerns, numbered as in part.
-    pub warning_part: c_int,
-    /// Value of the fault, in its unit (docs/faults.md).
-    pub value: f64,
-    /// Value of the warning.
-    pub warning_value: f64,
-    /// Warnings since sun2xp_open. A warning that persists counts once.
-    pub warnings: c_ulong,
-}
 
 /// sun2xp_fault - fault and warning of a finger
 ///
@@ -60,7 +36,10 @@ pub unsafe extern "C" fn sun2xp_fault(hand: *mut sun2xp_hand, finger: c_int, fau
     let hand = Handle::of(hand);
     guarded("sun2xp_fault", hand, || {
         // SAFETY: by the contract in the manual, `fault` is null or points to as many bytes as its first member gives.
-        unsafe { fill_from(hand, fault, "fault", |hand| hand.fault(finger).map(|fault| to_c(&fault))) }
+        unsafe {
+            let local = |hand: &Hand| hand.fault(finger).map(|fault| to_c(&fault));
+            fill_from_either(hand, fault, "fault", local, |remote| remote.fault(finger))
+        }
     })
 }
 

@@ -4,47 +4,16 @@
 #![allow(non_camel_case_types)]
 
 use crate::capi::boundary::guarded;
+use crate::capi::fingertip_struct::sun2xp_tip;
 use crate::capi::hand_table;
 use crate::capi::handle::{Handle, sun2xp_hand};
 use crate::capi::memory::{load, non_null};
 use crate::capi::refusal::Wanted;
-use crate::capi::sized_struct::fill_from;
-use crate::hand::{HandError, SetPointError};
+use crate::capi::sized_struct::fill_from_either;
+use crate::hand::{FingerCommand, Hand, HandError, SetPointError};
 use crate::model::{Contact, ContactError};
 use nalgebra::{Matrix3, Matrix4, Vector3};
 use std::ffi::c_int;
-
-/// Result of sun2xp_tip. Vectors are in the finger's frame.
-///
-/// force is computed from the measured tensions, so it includes friction, weight and inertia of the finger.
-/// It is never NaN. Near singular poses there are directions that the joints cannot measure. Along these,
-/// force and stiffness are zero. contact_force does not contain constant errors of the gauges. It is zero
-/// while the finger is not running. stiffness contains the part of Kx that is in force. The joint limits, a
-/// tip near the axis of joint 0 and the rotational stiffness of a contact add to it. It is zero while the
-/// finger is not running. slide_speed is 0 while touching is 0. While touching is 1, the tip slides on the
-/// object at this speed, or tip and object move together at this speed.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct sun2xp_tip {
-    /// sizeof (struct sun2xp_tip), set before the call.
-    pub size: usize,
-    /// Directions of force that the joints can measure, 0 to 3.
-    pub force_directions: c_int,
-    /// Position of the tip: x, y, z, cm.
-    pub position: [f64; 3],
-    /// Force of the tip on an object, with friction and weight: x, y, z, N.
-    pub force: [f64; 3],
-    /// Measured tendon tensions, N.
-    pub tensions: [f64; 4],
-    /// Stiffness of the tip in its present pose, N/cm, row by row.
-    pub stiffness: [[f64; 3]; 3],
-    /// Force of the tip without friction, weight, inertia: x, y, z, N.
-    pub contact_force: [f64; 3],
-    /// Speed of the tip perpendicular to contact_force, cm/s.
-    pub slide_speed: f64,
-    /// 1: tensions and motion show that the finger touches something.
-    pub touching: c_int,
-}
 
 /// sun2xp_send_tip - send a desired fingertip position to a finger
 ///
@@ -77,7 +46,8 @@ pub unsafe extern "C" fn sun2xp_send_tip(hand: *mut sun2xp_hand, finger: c_int, 
     guarded("sun2xp_send_tip", hand, || {
         // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
         let tip = unsafe { load::<f64, 3>(tip, "tip") }?;
-        hand_table::command(hand, |hand| hand.send_tip(finger, tip))
+        let command = || FingerCommand::new(finger).tip(tip);
+        hand_table::send(hand, |hand| hand.send_tip(finger, tip), command)
     })
 }
 
@@ -106,7 +76,10 @@ pub unsafe extern "C" fn sun2xp_tip(hand: *mut sun2xp_hand, finger: c_int, tip: 
     let hand = Handle::of(hand);
     guarded("sun2xp_tip", hand, || {
         // SAFETY: by the contract in the manual, `tip` is null or points to as many bytes as its first member gives.
-        unsafe { fill_from(hand, tip, "tip", |hand| hand.fingertip(finger).map(|tip| tip.into())) }
+        unsafe {
+            let local = |hand: &Hand| hand.fingertip(finger).map(|tip| tip.into());
+            fill_from_either(hand, tip, "tip", local, |remote| remote.tip(finger))
+        }
     })
 }
 
@@ -225,5 +198,8 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_send_damping(hand: *mut sun2xp_hand, finger: c_int, ratio: f64) -> c_int {
     let hand = Handle::of(hand);
-    guarded("sun2xp_send_damping", hand, || hand_table::command(hand, |hand| hand.send_damping(finger, ratio)))
+    guarded("sun2xp_send_damping", hand, || {
+        let command = || FingerCommand::new(finger).damping(ratio);
+        hand_table::send(hand, |hand| hand.send_damping(finger, ratio), command)
+    })
 }

@@ -1,6 +1,6 @@
 //! Conversion of a fingertip's state to the result of sun2xp_tip.
 
-use crate::capi::fingertip_calls::sun2xp_tip;
+use crate::capi::fingertip_struct::sun2xp_tip;
 use crate::hand;
 use std::ffi::c_int;
 

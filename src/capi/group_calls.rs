@@ -94,6 +94,10 @@ pub unsafe extern "C" fn sun2xp_send_group(
         let commands = unsafe { SizedStruct::new(set_points, "set_points") }?;
         // SAFETY: by the contract in the manual, there are `count` set points.
         let commands = unsafe { load_commands(count, &commands) };
+        if let Some(remote) = hand_table::remote_to_command(hand)? {
+            let (commands, count) = commands?;
+            return Ok(remote.send(&commands[..count])?);
+        }
         hand_table::command(hand, |hand| -> Result<(), Refusal> {
             let (commands, count) = commands?;
             Ok(hand.send_group(&commands[..count])?)
@@ -131,23 +135,32 @@ pub extern "C" fn sun2xp_wait(hand: *mut sun2xp_hand, finger: c_int, until: c_in
     let hand = Handle::of(hand);
     delegated("sun2xp_wait", hand, MEMORY_OF_THREAD, || {
         Ok(move || {
+            if let Some(remote) = hand_table::remote(hand)? {
+                return Ok(remote.wait(finger, condition(until)?, time_limit(seconds)?)?);
+            }
             let all: Vec<c_int> =
                 hand_table::with(hand, |hand| Ok::<_, hand::HandError>(fingers(hand, finger).collect()))?;
             let exists = |&finger: &c_int| hand_table::with(hand, |hand| hand.report(finger).map(drop));
             all.iter().try_for_each(exists)?;
-            let until = match until {
-                SUN2XP_WAIT_ARRIVED => hand::Until::Arrived,
-                SUN2XP_WAIT_SETTLED => hand::Until::Settled,
-                _ => return Err(hand::HandError::from(SetPointError::NoSuchCondition(until)).into()),
-            };
-            // A limit that is too long for a Duration is no limit.
-            let limit = match seconds {
-                limit if limit >= 0.0 => Duration::try_from_secs_f64(limit).unwrap_or(Duration::MAX),
-                _ => return Err(hand::HandError::from(SetPointError::NoSuchLimit(seconds)).into()),
-            };
-            long_operations::wait(hand, &all, until, limit)
+            long_operations::wait(hand, &all, condition(until)?, time_limit(seconds)?)
         })
     })
+}
+
+fn condition(until: c_int) -> Result<hand::Until, Refusal> {
+    match until {
+        SUN2XP_WAIT_ARRIVED => Ok(hand::Until::Arrived),
+        SUN2XP_WAIT_SETTLED => Ok(hand::Until::Settled),
+        _ => Err(hand::HandError::from(SetPointError::NoSuchCondition(until)).into()),
+    }
+}
+
+/// The longest time to wait. A limit that is too long for a Duration is no limit.
+fn time_limit(seconds: f64) -> Result<Duration, Refusal> {
+    match seconds {
+        limit if limit >= 0.0 => Ok(Duration::try_from_secs_f64(limit).unwrap_or(Duration::MAX)),
+        _ => Err(hand::HandError::from(SetPointError::NoSuchLimit(seconds)).into()),
+    }
 }
 
 /// Copies the commands of a group, and returns them with their number.

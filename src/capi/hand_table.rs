@@ -1,14 +1,14 @@
 //! The hands of the C calls: a table with a place for the hand of OpenHand, and places for the hands of sun2xp_open.
 
-use crate::board::HandIo;
 use crate::capi::hand_events::{self, HandEvents};
 use crate::capi::handle::{Handle, MOST_HANDS};
+use crate::capi::opened_hand::{self, OpenedHand, Source, SourceWithIo};
 use crate::capi::process;
 use crate::capi::refusal::Refusal;
-use crate::capi::reporting;
-use crate::hand::{self, Configured, Hand, HandError};
+use crate::capi::remote_hand::{RemoteHand, RemoteOpener};
+use crate::hand::{FingerCommand, Hand};
 use parking_lot::{MappedRwLockReadGuard, Mutex, MutexGuard, RwLock, RwLockReadGuard};
-use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
@@ -30,7 +30,7 @@ struct Place {
 
 struct Opened {
     handle: Handle,
-    hand: Hand,
+    hand: OpenedHand,
 }
 
 static TABLE: [Place; MOST_HANDS + 1] = [const {
@@ -51,61 +51,26 @@ const LONGEST_WAIT_AT_EXIT: Duration = Duration::from_millis(100);
 /// Interval at which a close checks whether another thread has closed the hand.
 const CLOSING_PERIOD: Duration = Duration::from_millis(5);
 
-/// Where the configuration of a hand comes from.
-pub(super) enum Source {
-    /// The file that OpenHand finds, or none.
-    Found,
-    File(PathBuf),
-    Text(String),
-}
-
-/// A configuration, and the hardware that the program provides.
-pub(super) struct SourceWithIo {
-    source: Source,
-    io: HandIo,
-}
-
-impl From<Source> for SourceWithIo {
-    fn from(source: Source) -> Self {
-        source.with_io(HandIo::default())
-    }
-}
-
-impl Source {
-    pub(super) fn with_io(self, io: HandIo) -> SourceWithIo {
-        SourceWithIo { source: self, io }
-    }
-
-    fn read(self) -> Result<Configured, HandError> {
-        let configured = match self {
-            Self::Found => hand::find_configuration(),
-            Self::File(path) => Configured::read(&path),
-            Self::Text(text) => Configured::from_text(&text),
-        };
-        configured.map_err(HandError::from)
-    }
-}
-
 /// The handle of the hand of OpenHand; null if it is not open.
 pub(super) fn default_handle() -> Handle {
     Handle::from_value(TABLE[DEFAULT].handle.load(Ordering::Acquire))
 }
 
-/// Opens the hand of OpenHand.
-pub(super) fn open_default() -> Result<(), Refusal> {
+/// Opens the hand of OpenHand. `open_remote` opens one on another machine.
+pub(super) fn open_default(open_remote: RemoteOpener) -> Result<(), Refusal> {
     refuse_while_exiting()?;
     let Some(_opening) = TABLE[DEFAULT].lifecycle.try_lock() else { return Err(Refusal::Busy) };
     if TABLE[DEFAULT].hand.read().is_some() {
         return Err(Refusal::AlreadyOpen);
     }
-    open_at(DEFAULT, Source::Found.into()).map(drop)
+    open_at(DEFAULT, Source::Found.into(), open_remote).map(drop)
 }
 
-/// Opens another hand.
-pub(super) fn open(source: SourceWithIo) -> Result<Handle, Refusal> {
+/// Opens another hand, as [`open_default`] does.
+pub(super) fn open(source: SourceWithIo, open_remote: RemoteOpener) -> Result<Handle, Refusal> {
     refuse_while_exiting()?;
     let (place, _opening) = free_place().ok_or(Refusal::TooManyHands)?;
-    open_at(place, source)
+    open_at(place, source, open_remote)
 }
 
 fn free_place() -> Option<(usize, MutexGuard<'static, ()>)> {
@@ -116,17 +81,17 @@ fn free_place() -> Option<(usize, MutexGuard<'static, ()>)> {
 }
 
 /// Opens a hand at a free place. The caller has locked its lifecycle.
-fn open_at(place: usize, from: SourceWithIo) -> Result<Handle, Refusal> {
+fn open_at(place: usize, from: SourceWithIo, open_remote: RemoteOpener) -> Result<Handle, Refusal> {
     process::watch(close_at_exit);
-    let configured = from.source.read()?;
-    reporting::set_printing(configured.configuration.hand.print_refusals);
-    let hand = Hand::open_as_with_io(configured, from.io)?;
+    let hand = opened_hand::open(from, open_remote)?;
     // If the process exits, this line returns an error, and the return drops the hand, which closes it. The exit
     // handler waits only briefly for this call, so it cannot be relied on to close this hand.
     refuse_while_exiting()?;
     let handle = Handle::new(OPENED.fetch_add(1, Ordering::Relaxed), place);
     let Place { events, hand: slot, handle: value, .. } = &TABLE[place];
-    events.open(handle, &hand);
+    if let OpenedHand::Local(hand) = &hand {
+        events.open(handle, hand);
+    }
     *slot.write() = Some(Box::new(Opened { handle, hand }));
     value.store(handle.value(), Ordering::Release);
     Ok(handle)
@@ -190,14 +155,14 @@ impl Place {
 fn close_at_exit() {
     EXITING.store(true, Ordering::Release);
     // All hands move to their end states at the same time.
-    each_at_exit(Hand::request_end);
-    each_at_exit(Hand::end);
+    each_at_exit(OpenedHand::request_end);
+    each_at_exit(OpenedHand::end);
     hand_events::end(LONGEST_WAIT_AT_EXIT, TABLE.iter().map(|place| &place.events));
 }
 
 /// The hands end without being dropped: a signal handler may have called exit in the middle of malloc, and then free
 /// would never return.
-fn each_at_exit(call: impl Fn(&Hand)) {
+fn each_at_exit(call: impl Fn(&OpenedHand)) {
     for place in &TABLE {
         if let Some(_closing) = place.lifecycle.try_lock_for(LONGEST_WAIT_AT_EXIT)
             && let Some(opened) = place.hand.try_read_for(LONGEST_WAIT_AT_EXIT)
@@ -209,7 +174,7 @@ fn each_at_exit(call: impl Fn(&Hand)) {
 }
 
 /// Locks an open hand for reading.
-fn opened(handle: Handle) -> Result<MappedRwLockReadGuard<'static, Hand>, Refusal> {
+fn opened(handle: Handle) -> Result<MappedRwLockReadGuard<'static, OpenedHand>, Refusal> {
     let opened = Place::named_by(handle)?.hand.read();
     RwLockReadGuard::try_map(opened, |opened| match opened {
         Some(opened) if opened.handle == handle => Some(&opened.hand),
@@ -218,23 +183,66 @@ fn opened(handle: Handle) -> Result<MappedRwLockReadGuard<'static, Hand>, Refusa
     .map_err(|_| Refusal::NoHand)
 }
 
-/// Runs `call` on an open hand.
+/// Runs `call` on an open hand of this machine.
 #[inline]
 pub(super) fn with<T, E: Into<Refusal>>(
     handle: Handle,
     call: impl FnOnce(&Hand) -> Result<T, E>,
 ) -> Result<T, Refusal> {
-    call(&*opened(handle)?).map_err(E::into)
+    match &*opened(handle)? {
+        OpenedHand::Local(hand) => call(hand).map_err(E::into),
+        OpenedHand::Remote(_) => Err(Refusal::NotRemote),
+    }
 }
 
-/// Runs `call`, which moves an open hand or changes how it moves. It is refused while the process exits, because the
-/// hand is then closed, and the call would have no effect.
+/// Runs `local` on an open hand of this machine, or `remote` on one of another machine.
+#[inline]
+pub(super) fn with_either<T, E: Into<Refusal>, F: Into<Refusal>>(
+    handle: Handle,
+    local: impl FnOnce(&Hand) -> Result<T, E>,
+    remote: impl FnOnce(&dyn RemoteHand) -> Result<T, F>,
+) -> Result<T, Refusal> {
+    match &*opened(handle)? {
+        OpenedHand::Local(hand) => local(hand).map_err(E::into),
+        OpenedHand::Remote(hand) => remote(&**hand).map_err(F::into),
+    }
+}
+
+/// Runs `call`, which moves an open hand of this machine or changes how it moves. It is refused while the process
+/// exits, because the hand is then closed, and the call would have no effect.
 pub(super) fn command<T, E: Into<Refusal>>(
     handle: Handle,
     call: impl FnOnce(&Hand) -> Result<T, E>,
 ) -> Result<T, Refusal> {
     refuse_while_exiting()?;
     with(handle, call)
+}
+
+/// Sends a command to a finger of an open hand: `local` to one of this machine, or `command` to one of another machine.
+/// It is refused while the process exits, as [`command`] is.
+#[inline]
+pub(super) fn send<E: Into<Refusal>>(
+    handle: Handle,
+    local: impl FnOnce(&Hand) -> Result<(), E>,
+    command: impl FnOnce() -> FingerCommand,
+) -> Result<(), Refusal> {
+    refuse_while_exiting()?;
+    with_either(handle, local, |remote| remote.send(&[command()]))
+}
+
+/// The hand of this handle if it is on another machine. It is used without locking the table, because its calls may
+/// take long.
+pub(super) fn remote(handle: Handle) -> Result<Option<Arc<dyn RemoteHand>>, Refusal> {
+    Ok(match &*opened(handle)? {
+        OpenedHand::Local(_) => None,
+        OpenedHand::Remote(hand) => Some(hand.clone()),
+    })
+}
+
+/// As [`remote`], for a call that moves the hand: it is refused while the process exits.
+pub(super) fn remote_to_command(handle: Handle) -> Result<Option<Arc<dyn RemoteHand>>, Refusal> {
+    refuse_while_exiting()?;
+    remote(handle)
 }
 
 /// The events of an open hand. They can be used without locking the hand.

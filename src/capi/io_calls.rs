@@ -1,11 +1,11 @@
 //! The exported functions for hardware that the program provides. Their doc comments are the C manual, as in
 //! `calls.rs`.
 
-use crate::capi::hand_table::Source;
 use crate::capi::handle::sun2xp_hand;
 use crate::capi::io_structs::sun2xp_io;
 use crate::capi::io_table;
 use crate::capi::memory::non_null;
+use crate::capi::opened_hand::Source;
 use crate::capi::opening_calls::{not_utf_8, open};
 use crate::capi::refusal::Wanted;
 use crate::hand::HandError;

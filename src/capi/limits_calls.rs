@@ -5,29 +5,10 @@
 
 use crate::capi::boundary::guarded;
 use crate::capi::handle::{Handle, sun2xp_hand};
-use crate::capi::sized_struct::fill_from;
-use crate::hand::FingerLimits;
+use crate::capi::limits_struct::sun2xp_limits;
+use crate::capi::sized_struct::fill_from_either;
+use crate::hand::{FingerLimits, Hand};
 use std::ffi::c_int;
-
-/// Result of sun2xp_limits.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct sun2xp_limits {
-    /// sizeof (struct sun2xp_limits), set before the call.
-    pub size: usize,
-    /// Smallest angles of joints 0, 1, 2, rad.
-    pub joint_minimum: [f64; 3],
-    /// Largest angles of joints 0, 1, 2, rad.
-    pub joint_maximum: [f64; 3],
-    /// Smallest tension of a tendon, N.
-    pub tension_minimum: f64,
-    /// Largest tension of a tendon, N.
-    pub tension_maximum: f64,
-    /// Largest torques of the motors, N cm.
-    pub motor_torque: [f64; 4],
-    /// Largest eigenvalue of a stiffness, N/cm.
-    pub stiffness: f64,
-}
 
 /// sun2xp_limits - read the limits of a finger
 ///
@@ -55,7 +36,10 @@ pub unsafe extern "C" fn sun2xp_limits(hand: *mut sun2xp_hand, finger: c_int, li
     let hand = Handle::of(hand);
     guarded("sun2xp_limits", hand, || {
         // SAFETY: by the contract in the manual, `limits` is null or points to as many bytes as its first member gives.
-        unsafe { fill_from(hand, limits, "limits", |hand| hand.limits(finger).map(|limits| to_c(&limits))) }
+        unsafe {
+            let local = |hand: &Hand| hand.limits(finger).map(|limits| to_c(&limits));
+            fill_from_either(hand, limits, "limits", local, |remote| remote.limits(finger))
+        }
     })
 }
 

@@ -2,7 +2,7 @@
 //! calls work meanwhile.
 
 use crate::calibration::Task;
-use crate::capi::hand_table::{command, with};
+use crate::capi::hand_table::{command, remote_to_command, with};
 use crate::capi::handle::Handle;
 use crate::capi::refusal::Refusal;
 use crate::hand::{self, Calibrating, CalibrationState, Recovering, Until, Waiting};
@@ -39,6 +39,9 @@ pub(super) fn wait(handle: Handle, fingers: &[i32], until: Until, limit: Duratio
 
 /// Calibrates a finger and stores the results.
 pub(super) fn calibrate(handle: Handle, finger: i32, task: Task) -> Result<(), Refusal> {
+    if let Some(remote) = remote_to_command(handle)? {
+        return Ok(remote.calibrate(finger, task)?);
+    }
     let mut calibrating = command(handle, |hand| Calibrating::begin(hand, finger, task))?;
     while let CalibrationState::InProgress(_) = command(handle, |hand| calibrating.poll(hand))? {
         sleep(POLLING_PERIOD);

@@ -18,11 +18,14 @@ mod calls;
 mod error_calls;
 mod error_numbers;
 mod event_calls;
+mod event_struct;
 mod fault_calls;
+mod fault_struct;
 mod fault_texts;
 mod fingers;
 mod fingertip_calls;
 mod fingertip_result;
+mod fingertip_struct;
 mod forked;
 mod group_calls;
 mod hand_events;
@@ -33,10 +36,13 @@ mod io_structs;
 mod io_table;
 mod kinematics_calls;
 mod limits_calls;
+mod limits_struct;
+mod loaded_hand;
 mod log_calls;
 mod long_operations;
 mod memory;
 mod object_calls;
+mod opened_hand;
 mod opening_calls;
 mod path_calls;
 mod planners_pointer;
@@ -46,10 +52,13 @@ mod recovery_calls;
 mod reflex_calls;
 mod refusal;
 mod remedy_calls;
+mod remote_hand;
+mod remote_library;
 mod reporting;
 mod sized_struct;
 mod spring_calls;
 mod status_calls;
+mod status_struct;
 mod text;
 mod thread_errors;
 mod timing_calls;
@@ -58,3 +67,15 @@ mod version_calls;
 
 #[cfg(feature = "internals")]
 pub use error_numbers::of_hand as error_number;
+#[cfg(feature = "internals")]
+pub use event_struct::sun2xp_event;
+#[cfg(feature = "internals")]
+pub use fault_struct::sun2xp_fault;
+#[cfg(feature = "internals")]
+pub use fingertip_struct::sun2xp_tip;
+#[cfg(feature = "internals")]
+pub use limits_struct::sun2xp_limits;
+#[cfg(feature = "internals")]
+pub use remote_hand::{RemoteHand, RemoteOpener, RemoteRefusal, RemoteSource, open_only_remote_hands};
+#[cfg(feature = "internals")]
+pub use status_struct::sun2xp_status;

@@ -2,9 +2,11 @@
 
 use crate::capi::boundary::{MEMORY_OF_HAND, delegated, delegated_or_done_here, uncancelled};
 use crate::capi::hand_events::in_callback;
-use crate::capi::hand_table::{self, Source, SourceWithIo, default_handle};
+use crate::capi::hand_table::{self, default_handle};
 use crate::capi::handle::{Handle, sun2xp_hand};
+use crate::capi::loaded_hand;
 use crate::capi::memory::non_null;
+use crate::capi::opened_hand::{Source, SourceWithIo};
 use crate::capi::refusal::{Refusal, Wanted};
 use crate::hand::{ConfigurationError, HandError};
 use crate::model::configuration::NamedHand;
@@ -171,7 +173,7 @@ pub(super) unsafe fn open<S: Into<SourceWithIo>>(
             non_null(out, "hand", Wanted::Handle)?;
             let source = source()?.into();
             Ok(move || {
-                opened.store(hand_table::open(source)?.value(), Ordering::Relaxed);
+                opened.store(hand_table::open(source, loaded_hand::open)?.value(), Ordering::Relaxed);
                 Ok(())
             })
         })

@@ -4,6 +4,7 @@ use crate::capi::boundary::guarded;
 use crate::capi::hand_table;
 use crate::capi::handle::{Handle, sun2xp_hand};
 use crate::capi::memory::{load, load_rows, store};
+use crate::hand::FingerCommand;
 use std::ffi::c_int;
 
 /// sun2xp_send_position - send desired joint angles to a finger
@@ -38,7 +39,8 @@ pub unsafe extern "C" fn sun2xp_send_position(hand: *mut sun2xp_hand, finger: c_
     guarded("sun2xp_send_position", hand, || {
         // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
         let joints = unsafe { load::<f64, 3>(position, "position") }?;
-        hand_table::command(hand, |hand| hand.send_position(finger, joints))
+        let command = || FingerCommand::new(finger).joints(joints);
+        hand_table::send(hand, |hand| hand.send_position(finger, joints), command)
     })
 }
 
@@ -78,7 +80,8 @@ pub unsafe extern "C" fn sun2xp_send_stiffness(hand: *mut sun2xp_hand, finger: c
     guarded("sun2xp_send_stiffness", hand, || {
         // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
         let rows = unsafe { load_rows(stiffness, "stiffness") }?;
-        hand_table::command(hand, |hand| hand.send_stiffness(finger, rows))
+        let command = || FingerCommand::new(finger).stiffness(rows);
+        hand_table::send(hand, |hand| hand.send_stiffness(finger, rows), command)
     })
 }
 
@@ -109,6 +112,8 @@ pub unsafe extern "C" fn sun2xp_position(hand: *mut sun2xp_hand, finger: c_int, 
     let hand = Handle::of(hand);
     // SAFETY: by the contract in the manual, the pointer is null or points to an array of three angles.
     guarded("sun2xp_position", hand, || unsafe {
-        store(position, "position", || hand_table::with(hand, |hand| hand.position(finger)))
+        store(position, "position", || {
+            hand_table::with_either(hand, |hand| hand.position(finger), |remote| remote.position(finger))
+        })
     })
 }

@@ -7,6 +7,7 @@ use crate::capi::boundary::{MEMORY_OF_CALL, delegated, guarded};
 use crate::capi::fingers::fingers;
 use crate::capi::hand_table;
 use crate::capi::handle::{Handle, sun2xp_hand};
+use crate::capi::loaded_hand;
 use crate::capi::long_operations;
 use crate::hand;
 use std::ffi::c_int;
@@ -42,6 +43,7 @@ use std::ffi::c_int;
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_stop_all() -> c_int {
     hand::stop_all();
+    loaded_hand::stop_all();
     0
 }
 
@@ -65,7 +67,8 @@ pub extern "C" fn sun2xp_stop_all() -> c_int {
 pub extern "C" fn sun2xp_stop(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_stop", hand, || {
-        hand_table::with(hand, |hand| fingers(hand, finger).try_for_each(|finger| hand.stop(finger)))
+        let local = |hand: &hand::Hand| fingers(hand, finger).try_for_each(|finger| hand.stop(finger));
+        hand_table::with_either(hand, local, |remote| remote.stop(finger))
     })
 }
 
@@ -107,6 +110,9 @@ pub extern "C" fn sun2xp_recover(hand: *mut sun2xp_hand, finger: c_int) -> c_int
     let hand = Handle::of(hand);
     delegated("sun2xp_recover", hand, MEMORY_OF_CALL, || {
         Ok(move || {
+            if let Some(remote) = hand_table::remote_to_command(hand)? {
+                return Ok(remote.recover(finger)?);
+            }
             let mut all = hand_table::command(hand, |hand| Ok::<_, hand::HandError>(fingers(hand, finger)))?;
             all.try_for_each(|finger| long_operations::recover(hand, finger))
         })

@@ -1,6 +1,7 @@
 //! Why a call is refused.
 
 use crate::capi::handle::MOST_HANDS;
+use crate::capi::remote_hand::RemoteRefusal;
 use crate::finger::Action;
 use crate::hand;
 use crate::model::FingerNumber;
@@ -52,8 +53,29 @@ pub(super) enum Refusal {
     NoMemory,
     #[error("the library failed ({0}): please report this defect of the library")]
     Panicked(String),
+    #[error(
+        "the hand is on another machine, and this call does not reach it: make the call in a program on the machine \
+         that has the hand, or use the calls that docs/installation.md lists"
+    )]
+    NotRemote,
+    #[error(
+        "this is libsun2xp_remote, which opens only hands on other machines, and the configuration has no table \
+         [remote]: add the table with the key `endpoint`, or use libsun2xp"
+    )]
+    OnlyRemote,
+    #[error("{text}")]
+    Remote { number: c_int, errno: c_int, text: String, actions: Vec<Action> },
     #[error(transparent)]
     Hand(#[from] hand::HandError),
+}
+
+impl From<RemoteRefusal> for Refusal {
+    fn from(refusal: RemoteRefusal) -> Self {
+        match refusal {
+            RemoteRefusal::Hand(error) => Self::Hand(error),
+            RemoteRefusal::Other { number, errno, text, actions } => Self::Remote { number, errno, text, actions },
+        }
+    }
 }
 
 /// What a pointer argument must point to.
@@ -84,7 +106,8 @@ impl Display for Wanted {
     }
 }
 
-pub(super) type Kind = (Discriminant<Refusal>, Option<hand::ErrorKind>);
+/// Refusals of one kind are printed once. The number and errno of a remote refusal are those of another machine.
+pub(super) type Kind = (Discriminant<Refusal>, Option<hand::ErrorKind>, Option<(c_int, c_int)>);
 
 impl Refusal {
     pub fn errno(&self) -> c_int {
@@ -99,16 +122,20 @@ impl Refusal {
             Self::Exiting => libc::ESHUTDOWN,
             Self::NoMemory => libc::ENOMEM,
             Self::Panicked(_) => libc::EIO,
+            Self::NotRemote => libc::ENOTSUP,
+            Self::OnlyRemote => libc::EINVAL,
+            Self::Remote { errno, .. } => *errno,
             Self::Hand(error) => error.errno(),
         }
     }
 
     /// The operations of the library that remedy the refusal, in their order.
-    pub fn actions(&self) -> &'static [Action] {
+    pub fn actions(&self) -> &[Action] {
         match self {
             Self::NoHand => &[Action::Open],
             Self::TooManyHands => &[Action::Close],
             Self::Hand(error) => error.actions(),
+            Self::Remote { actions, .. } => actions,
             _ => &[],
         }
     }
@@ -118,7 +145,11 @@ impl Refusal {
             Self::Hand(error) => Some(error.kind()),
             _ => None,
         };
-        (discriminant(self), hand)
+        let remote = match self {
+            Self::Remote { number, errno, .. } => Some((*number, *errno)),
+            _ => None,
+        };
+        (discriminant(self), hand, remote)
     }
 }
 

@@ -40,6 +40,9 @@ impl Display for Appendix<'_> {
     }
 }
 
+const ACTIONS: [Action; 6] =
+    [Action::Open, Action::Close, Action::Recover, Action::Zero, Action::Stop, Action::QueryStatus];
+
 fn call(action: Action, interface: Interface) -> &'static str {
     match (action, interface) {
         (Action::Open, Interface::Of1990) => "OpenHand",
@@ -53,6 +56,12 @@ fn call(action: Action, interface: Interface) -> &'static str {
     }
 }
 
+/// The actions whose calls a text lists, separated by commas, as [`RemedyCalls`] displays them.
+pub(super) fn named(calls: &str, interface: Interface) -> Vec<Action> {
+    let action = |name: &str| ACTIONS.into_iter().find(|&action| call(action, interface) == name);
+    calls.split(", ").filter_map(action).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -63,6 +72,8 @@ mod tests {
         assert_eq!(appendix(&[], Interface::Handles), "");
         let actions = &[Action::Recover, Action::Close];
         assert_eq!(appendix(actions, Interface::of("GetPos")), " (sun2xp_recover, CloseHand)");
+        assert_eq!(named("sun2xp_recover, sun2xp_close", Interface::Handles), actions);
+        assert_eq!(named("", Interface::Handles), []);
         assert_eq!(appendix(actions, Interface::of("sun2xp_tip")), " (sun2xp_recover, sun2xp_close)");
     }
 }

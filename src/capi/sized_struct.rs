@@ -7,6 +7,7 @@ use crate::capi::hand_table;
 use crate::capi::handle::Handle;
 use crate::capi::memory::non_null;
 use crate::capi::refusal::{Refusal, Wanted};
+use crate::capi::remote_hand::{RemoteHand, RemoteRefusal};
 use crate::hand::{Hand, HandError};
 use std::any::type_name;
 
@@ -86,7 +87,27 @@ pub(super) unsafe fn fill<T: Copy>(
     Ok(())
 }
 
-/// Fills a struct of the caller with values of a hand.
+/// Fills a struct of the caller with values of a hand, of this machine or of another.
+///
+/// # Safety
+/// As for [`fill`].
+pub(super) unsafe fn fill_from_either<T: Copy>(
+    handle: Handle,
+    out: *mut T,
+    name: &'static str,
+    local: impl FnOnce(&Hand) -> Result<T, HandError>,
+    remote: impl FnOnce(&dyn RemoteHand) -> Result<T, RemoteRefusal>,
+) -> Result<(), Refusal> {
+    // SAFETY: the contract of this function, here and below.
+    let out = unsafe { SizedStruct::new(out, name) }?;
+    let local = |hand: &Hand| out.check().and_then(|()| Ok::<T, Refusal>(local(hand)?));
+    let remote = |hand: &dyn RemoteHand| out.check().and_then(|()| Ok::<T, Refusal>(remote(hand)?));
+    let value = hand_table::with_either(handle, local, remote)?;
+    unsafe { out.write(value) };
+    Ok(())
+}
+
+/// Fills a struct of the caller with values of a hand of this machine.
 ///
 /// # Safety
 /// As for [`fill`].
@@ -115,13 +136,13 @@ pub(super) unsafe fn fill_next<T: Copy, S>(
     out: *mut T,
     name: &'static str,
     source: impl FnOnce() -> Result<S, Refusal>,
-    next: impl FnOnce(S) -> Option<T>,
+    next: impl FnOnce(S) -> Result<Option<T>, Refusal>,
 ) -> Result<bool, Refusal> {
     // SAFETY: the contract of this function, here and below.
     let out = unsafe { SizedStruct::new(out, name) }?;
     let source = source()?;
     out.check()?;
-    let Some(value) = next(source) else { return Ok(false) };
+    let Some(value) = next(source)? else { return Ok(false) };
     unsafe { out.write(value) };
     Ok(true)
 }

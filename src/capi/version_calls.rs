@@ -26,10 +26,7 @@ pub extern "C" fn sun2xp_version() -> *const c_char {
 /// Threads: any. Works in a forked child too.
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_version_number() -> c_uint {
-    uncancelled(|| {
-        let parts = env!("CARGO_PKG_VERSION").split(['.', '-', '+']).take(3);
-        parts.fold(0, |number, part| number * 100 + part.parse::<c_uint>().unwrap_or(0))
-    })
+    uncancelled(version_number)
 }
 
 /// sun2xp_abi_version - the number of the binary interface
@@ -41,4 +38,9 @@ pub extern "C" fn sun2xp_version_number() -> c_uint {
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_abi_version() -> c_uint {
     uncancelled(|| SUN2XP_ABI_VERSION)
+}
+
+pub(super) fn version_number() -> c_uint {
+    let parts = env!("CARGO_PKG_VERSION").split(['.', '-', '+']).take(3);
+    parts.fold(0, |number, part| number * 100 + part.parse::<c_uint>().unwrap_or(0))
 }

@@ -1,14 +1,16 @@
 //! The checks of a planner's commands. A command that fails a check does not reach the servo.
 
 mod joint_springs;
+mod ranges;
 
 use crate::control::{AdmissibleDamping, JointSprings, SetPoint, TensionDistribution, spatial};
 use crate::hand::{MotionLimits, SetPointError};
 use crate::model::FingerNumber;
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Law, OutOfRange};
-use crate::model::{Contact, ContactError, Links, spring};
+use crate::model::{Contact, Links};
 use nalgebra::{Matrix3, Matrix3x4, Matrix6, Vector3};
+pub use ranges::Ranges;
 
 /// The limits of one finger, and the geometry of its tip.
 #[derive(Clone, Debug)]
@@ -40,21 +42,14 @@ pub(super) struct Admission {
 }
 
 impl Admission {
+    fn ranges(&self) -> Ranges {
+        let Self { finger, joint_limits, stiffness_bound, out_of_range, .. } = *self;
+        Ranges { finger, joint_limits, stiffness_bound, out_of_range }
+    }
+
     /// Checks desired joint angles, rad, and returns the angles for the servo.
     pub fn joints(&self, joints: [f64; 3]) -> Result<Vector3<f64>, SetPointError> {
-        self.finite("Pos", &joints)?;
-        let mut admitted = Vector3::from(joints);
-        for joint in 0..3 {
-            let (low, high) = (self.joint_limits.0[joint], self.joint_limits.1[joint]);
-            // A limit that is sent as `float` may be rounded beyond the limit. It must be accepted.
-            let rounding = f64::from(f32::EPSILON) * low.abs().max(high.abs());
-            let value = joints[joint];
-            if (value < low - rounding || value > high + rounding) && self.out_of_range == OutOfRange::Refuse {
-                return Err(SetPointError::BeyondJointLimit { finger: self.finger, joint, value, low, high });
-            }
-            admitted[joint] = value.clamp(low, high);
-        }
-        Ok(admitted)
+        self.ranges().joints(joints)
     }
 
     /// Checks the planner's Kx and converts it to the stiffness of a set point, which the servo uses.
@@ -65,36 +60,7 @@ impl Admission {
     /// Checks that Kx, N/cm, is symmetric, positive semi-definite and within the bound, and returns it. The argument
     /// is `rows[row][column]`.
     pub fn kx(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
-        // nalgebra is column-major. Only this line converts from the row-major order of C.
-        let asked = Matrix3::from_fn(|row, column| rows[row][column]);
-        let (symmetric, (smallest, largest)) = spring(&asked).map_err(|error| self.no_spring(error))?;
-        let bound = self.stiffness_bound;
-        // A stiffness at the bound that is sent as `float` may be rounded beyond the bound. It must be accepted.
-        let too_stiff = largest > bound * (1.0 + 8.0 * f64::from(f32::EPSILON));
-        if too_stiff && self.out_of_range == OutOfRange::Refuse {
-            return Err(SetPointError::TooStiff { finger: self.finger, largest, bound });
-        }
-        if !too_stiff && smallest >= 0.0 {
-            return Ok(symmetric);
-        }
-        // The nearest admissible spring has the same principal directions.
-        let mut eigen = symmetric.symmetric_eigen();
-        eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
-        let recomposed = eigen.recompose();
-        Ok((recomposed + recomposed.transpose()) * 0.5)
-    }
-
-    /// The error for a Kx that is not a spring.
-    fn no_spring(&self, error: ContactError) -> SetPointError {
-        let finger = self.finger;
-        match error {
-            ContactError::NotFinite(value) => SetPointError::NotFinite { what: "Kx", finger, value },
-            ContactError::NotSymmetric { row, column, difference } => {
-                SetPointError::NotSymmetric { finger, row, column, difference }
-            }
-            ContactError::Negative { smallest } => SetPointError::Negative { finger, smallest },
-            ContactError::NoNormal => SetPointError::Contact { finger, source: error },
-        }
+        self.ranges().kx(rows)
     }
 
     /// Returns the joint angles, rad, for a tip position, cm. Of several solutions it returns the one nearest to
@@ -123,10 +89,7 @@ impl Admission {
 
     /// Refuses NaN and infinity, which must never reach the servo.
     pub fn finite(&self, what: &'static str, values: &[f64]) -> Result<(), SetPointError> {
-        match values.iter().find(|value| !value.is_finite()) {
-            None => Ok(()),
-            Some(&value) => Err(SetPointError::NotFinite { what, finger: self.finger, value }),
-        }
+        self.ranges().finite(what, values)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::hand::notice::print_notice;
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::model::{FingerNumber, Fingers, ShownPath};
 use std::path::{Path, PathBuf};
+use text::Said;
 pub(super) use text::overlay;
 pub use values::deserialize;
 pub(super) use values::to_document;
@@ -27,8 +28,8 @@ pub struct Configured {
     pub configuration: Configuration,
     /// The file; `None` if no file was found.
     pub file: Option<PathBuf>,
-    /// For each finger, whether the file names its port.
-    ports_named: [bool; FINGERS],
+    /// What the file says, apart from the values.
+    said: Said,
 }
 
 /// Finds and reads the configuration file: the file that `SUN2XP_CONFIG` names, or else `sun2xp.toml` in the working
@@ -45,7 +46,7 @@ pub struct Configured {
 pub fn find_configuration() -> Result<Configured, ConfigurationError> {
     match place::locate()? {
         Some(path) => Configured::read(&path),
-        None => Ok(Configured { configuration: Configuration::default(), file: None, ports_named: [false; FINGERS] }),
+        None => Ok(Configured { configuration: Configuration::default(), file: None, said: Said::default() }),
     }
 }
 
@@ -85,7 +86,7 @@ impl Configured {
         let text = read_regular_file(path, LARGEST)
             .map_err(|source| ConfigurationError::Unreadable { path: file.clone(), source })?;
         match text::parse(&text) {
-            Ok((configuration, ports_named)) => Ok(Self { configuration, file: Some(file), ports_named }),
+            Ok((configuration, said)) => Ok(Self { configuration, file: Some(file), said }),
             Err(wrong) => Err(ConfigurationError::Invalid { file, line: wrong.line(&text), reason: wrong.to_string() }),
         }
     }
@@ -96,7 +97,9 @@ impl Configured {
     /// Returns [`ConfigurationError::Invalid`], with line and reason, if the text is wrong.
     pub fn from_text(text: &str) -> Result<Self, ConfigurationError> {
         match text::parse(text) {
-            Ok((configuration, _)) => Ok(Self { configuration, file: None, ports_named: [true; FINGERS] }),
+            Ok((configuration, said)) => {
+                Ok(Self { configuration, file: None, said: Said { ports: [true; FINGERS], ..said } })
+            }
             Err(wrong) => {
                 let file = PathBuf::from("configuration text");
                 Err(ConfigurationError::Invalid { file, line: wrong.line(text), reason: wrong.to_string() })
@@ -104,9 +107,14 @@ impl Configured {
         }
     }
 
+    /// Whether the table `[remote]` names a hand on another machine.
+    pub(crate) fn is_remote(&self) -> bool {
+        self.said.remote
+    }
+
     /// Notes that the program provides the hardware of this finger, so that its port does not matter.
     pub(super) fn provides(&mut self, finger: FingerNumber) {
-        self.ports_named[finger.index()] = true;
+        self.said.ports[finger.index()] = true;
     }
 
     /// Prints one line on standard error if some of these fingers are simulated although the configuration does not
@@ -119,7 +127,7 @@ impl Configured {
 
     fn announcement(&self, fingers: Fingers) -> Option<String> {
         let Some(file) = &self.file else {
-            if self.ports_named == [true; FINGERS] {
+            if self.said.ports == [true; FINGERS] {
                 return None;
             }
             return Some(match raised_privileges() {
@@ -136,7 +144,7 @@ impl Configured {
         };
         let unnamed: Vec<String> = fingers
             .members()
-            .filter(|&number| self.configuration.hand.fingers.contains(number) && !self.ports_named[number.index()])
+            .filter(|&number| self.configuration.hand.fingers.contains(number) && !self.said.ports[number.index()])
             .map(|number| number.to_string())
             .collect();
         let fingers = match unnamed.len() {
@@ -170,8 +178,8 @@ mod tests {
             ("[finger]\nport = 'simulated'\n[finger.1]\nport = '/dev/a'\n", None),
             ("finger = { 1 = { port = 'simulated' }, 2.port = '/dev/b', 3.port = '/dev/c' }\n", None),
         ] {
-            let (configuration, ports_named) = text::parse(text).expect("usable");
-            let configured = Configured { configuration, file: Some("the/file".into()), ports_named };
+            let (configuration, said) = text::parse(text).expect("usable");
+            let configured = Configured { configuration, file: Some("the/file".into()), said };
             let announcement = configured.announcement(Fingers::ALL);
             match expected {
                 None => assert_eq!(announcement, None),
@@ -191,10 +199,18 @@ mod tests {
     }
 
     #[test]
+    fn tables_of_other_programs_are_ignored() {
+        let (configuration, said) = text::parse("[serve]\nname = 'left'\n[serve.tls]\nkey = 'k'\n").expect("usable");
+        assert_eq!((configuration, said.remote), (Configuration::default(), false));
+        let (configuration, said) = text::parse("[remote]\nendpoint = 'tcp/cell:7447'\n").expect("usable");
+        assert_eq!((configuration, said.remote), (Configuration::default(), true));
+    }
+
+    #[test]
     fn fingers_that_are_not_opened_are_not_announced() {
         let text = "[finger.1]\nport = 'simulated'\n";
-        let (configuration, ports_named) = text::parse(text).expect("usable");
-        let configured = Configured { configuration, file: Some("the/file".into()), ports_named };
+        let (configuration, said) = text::parse(text).expect("usable");
+        let configured = Configured { configuration, file: Some("the/file".into()), said };
         assert_eq!(configured.announcement(Fingers::only(1).expect("finger 1")), None);
         let said = configured.announcement(Fingers::only(3).expect("finger 3")).expect("an announcement");
         assert!(said.contains("for finger 3: it is simulated"), "{said}");

@@ -44,6 +44,7 @@ mod waiting;
 
 pub use crate::finger::stop_all;
 pub use crate::model::Fingers;
+pub use admission::Ranges;
 pub use black_box_file::save_recording;
 pub use board_search::{FoundFinger, SearchedPort, find_boards, search_boards};
 pub use calibrating::{Calibrating, CalibrationState};

@@ -9,12 +9,24 @@ use crate::model::{FingerNumber, Section, Shown, UnusableConfiguration};
 use std::ops::Range;
 use toml_edit::{Document, Item, Table, Value};
 
-/// Reads and checks the text of a configuration file. Also returns, for each finger, whether the text names its port.
-pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wrong> {
+/// The tables that this library reads. Programs of their own read the tables `serve` and `remote`.
+const TABLES: [&str; 5] = ["hand", "telemetry", "finger", "serve", "remote"];
+
+/// What the text says, apart from the values.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Said {
+    /// For each finger, whether the text names its port.
+    pub ports: [bool; FINGERS],
+    /// Whether the text has the table `remote`.
+    pub remote: bool,
+}
+
+/// Reads and checks the text of a configuration file.
+pub(super) fn parse(text: &str) -> Result<(Configuration, Said), Wrong> {
     let document = Document::parse(text).map_err(Wrong::in_syntax)?;
     let root = document.as_table();
-    if let Some((key, _)) = root.iter().find(|(key, _)| !matches!(*key, "hand" | "telemetry" | "finger")) {
-        let reason = format!("unknown key `{}`, expected `hand`, `telemetry` or `finger`", Shown(key));
+    if let Some((key, _)) = root.iter().find(|(key, _)| !TABLES.contains(key)) {
+        let reason = format!("unknown key `{}`, expected `{}`", Shown(key), TABLES.join("`, `"));
         return Err(Wrong::at(span_of_key(root, key), reason));
     }
     let hand: ConfiguredHand = deserialize(&table(root, "hand")?).map_err(|wrong| wrong.in_key("hand"))?;
@@ -30,8 +42,8 @@ pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wron
         common.remove(&number);
     }
     let mut fingers: [ConfiguredFinger; FINGERS] = Default::default();
-    let mut ports_named = [false; FINGERS];
-    for ((number, finger), port_named) in numbers().zip(&mut fingers).zip(&mut ports_named) {
+    let mut ports = [false; FINGERS];
+    for ((number, finger), port_named) in numbers().zip(&mut fingers).zip(&mut ports) {
         let section = format!("finger.{number}");
         let own = table(&all, &number).map_err(|wrong| wrong.in_key("finger"))?;
         (*finger, *port_named) = finger_of(&common, &own).map_err(|wrong| wrong.in_key(&section))?;
@@ -39,8 +51,8 @@ pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wron
 
     let configuration = Configuration { hand, telemetry, fingers };
     check(&configuration).map_err(|refusal| unusable(root, &refusal))?;
-    refuse_simulated_beside_real(root, &configuration, ports_named)?;
-    Ok((configuration, ports_named))
+    refuse_simulated_beside_real(root, &configuration, ports)?;
+    Ok((configuration, Said { ports, remote: root.contains_key("remote") }))
 }
 
 /// Reads a finger from the table of all fingers and its own table. Also returns whether they name its port or its

@@ -1,0 +1,31 @@
+//! The struct of an event. Its doc comments are the C manual, as in `calls.rs`.
+
+// The names of the header.
+#![allow(non_camel_case_types)]
+
+use std::ffi::{c_int, c_ulong};
+
+/// An event: something that happened to a finger in one cycle of its servo.
+///
+/// part is 0 if the event concerns the whole finger. All events of a cycle have the same time. The oldest
+/// events are lost first.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct sun2xp_event {
+    /// sizeof (struct sun2xp_event), set before the call.
+    pub size: usize,
+    /// Finger, 1 to 3.
+    pub finger: c_int,
+    /// Kind of the event: SUN2XP_EVENT_...
+    pub kind: c_int,
+    /// Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0.
+    pub part: c_int,
+    /// Cycle of the event, as in sun2xp_status and sun2xp_record.
+    pub cycle: c_ulong,
+    /// Events that were lost since sun2xp_open: not taken in time.
+    pub lost: c_ulong,
+    /// Beginning of that cycle, s of CLOCK_MONOTONIC.
+    pub time: f64,
+    /// Values of the kind (docs/events.md); unused ones are 0.
+    pub values: [f64; 4],
+}

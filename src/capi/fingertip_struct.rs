@@ -1,0 +1,38 @@
+//! The struct of sun2xp_tip. Its doc comments are the C manual, as in `calls.rs`.
+
+// The names of the header.
+#![allow(non_camel_case_types)]
+
+use std::ffi::c_int;
+
+/// Result of sun2xp_tip. Vectors are in the finger's frame.
+///
+/// force is computed from the measured tensions, so it includes friction, weight and inertia of the finger.
+/// It is never NaN. Near singular poses there are directions that the joints cannot measure. Along these,
+/// force and stiffness are zero. contact_force does not contain constant errors of the gauges. It is zero
+/// while the finger is not running. stiffness contains the part of Kx that is in force. The joint limits, a
+/// tip near the axis of joint 0 and the rotational stiffness of a contact add to it. It is zero while the
+/// finger is not running. slide_speed is 0 while touching is 0. While touching is 1, the tip slides on the
+/// object at this speed, or tip and object move together at this speed.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct sun2xp_tip {
+    /// sizeof (struct sun2xp_tip), set before the call.
+    pub size: usize,
+    /// Directions of force that the joints can measure, 0 to 3.
+    pub force_directions: c_int,
+    /// Position of the tip: x, y, z, cm.
+    pub position: [f64; 3],
+    /// Force of the tip on an object, with friction and weight: x, y, z, N.
+    pub force: [f64; 3],
+    /// Measured tendon tensions, N.
+    pub tensions: [f64; 4],
+    /// Stiffness of the tip in its present pose, N/cm, row by row.
+    pub stiffness: [[f64; 3]; 3],
+    /// Force of the tip without friction, weight, inertia: x, y, z, N.
+    pub contact_force: [f64; 3],
+    /// Speed of the tip perpendicular to contact_force, cm/s.
+    pub slide_speed: f64,
+    /// 1: tensions and motion show that the finger touches something.
+    pub touching: c_int,
+}

@@ -1,0 +1,103 @@
+//! A hand of the table: one of this machine, or one on another machine.
+
+use crate::board::HandIo;
+use crate::capi::refusal::Refusal;
+use crate::capi::remote_hand::{RemoteHand, RemoteOpener, RemoteSource, over_the_network};
+use crate::capi::reporting;
+use crate::hand::{self, Configured, Hand, HandError};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+pub(super) enum OpenedHand {
+    Local(Hand),
+    Remote(Arc<dyn RemoteHand>),
+}
+
+/// Where the configuration of a hand comes from.
+pub(super) enum Source {
+    /// The file that OpenHand finds, or none.
+    Found,
+    File(PathBuf),
+    Text(String),
+}
+
+/// A configuration, and the hardware that the program provides.
+pub(super) struct SourceWithIo {
+    source: Source,
+    /// Hardware of the program; none in a call that takes none.
+    io: Option<HandIo>,
+}
+
+impl From<Source> for SourceWithIo {
+    fn from(source: Source) -> Self {
+        Self { source, io: None }
+    }
+}
+
+impl Source {
+    pub fn with_io(self, io: HandIo) -> SourceWithIo {
+        SourceWithIo { source: self, io: Some(io) }
+    }
+
+    fn read(&self) -> Result<Configured, HandError> {
+        let configured = match self {
+            Self::Found => hand::find_configuration(),
+            Self::File(path) => Configured::read(path),
+            Self::Text(text) => Configured::from_text(text),
+        };
+        configured.map_err(HandError::from)
+    }
+
+    /// Where another library finds the same configuration; none if there is no file.
+    fn to_remote(self, found: &Configured) -> Option<RemoteSource> {
+        match self {
+            Self::Text(text) => Some(RemoteSource::Text(text)),
+            Self::Found | Self::File(_) => found.file.clone().map(RemoteSource::File),
+        }
+    }
+}
+
+/// Opens the hand that a configuration describes: that of this machine, or with a table `[remote]` that of another. In
+/// a library without a network, `open_remote` opens the latter.
+pub(super) fn open(from: SourceWithIo, open_remote: RemoteOpener) -> Result<OpenedHand, Refusal> {
+    let SourceWithIo { source, io } = from;
+    let configured = source.read()?;
+    reporting::set_printing(configured.configuration.hand.print_refusals);
+    let opener = over_the_network();
+    if !configured.is_remote() {
+        return match opener {
+            Some(_) => Err(Refusal::OnlyRemote),
+            None => Ok(OpenedHand::Local(Hand::open_as_with_io(configured, io.unwrap_or_default())?)),
+        };
+    }
+    if io.is_some() {
+        return Err(Refusal::NotRemote);
+    }
+    let Some(source) = source.to_remote(&configured) else { return Err(Refusal::OnlyRemote) };
+    Ok(OpenedHand::Remote(opener.unwrap_or(open_remote)(source, &configured.configuration)?))
+}
+
+impl OpenedHand {
+    /// Begins to bring the hand to its end state, as [`Hand::request_end`] does.
+    pub fn request_end(&self) {
+        if let Self::Local(hand) = self {
+            hand.request_end();
+        }
+    }
+
+    /// Brings the hand to its end state. It need not be dropped afterwards.
+    pub fn end(&self) {
+        match self {
+            Self::Local(hand) => hand.end(),
+            Self::Remote(hand) => hand.close(),
+        }
+    }
+}
+
+impl Drop for OpenedHand {
+    fn drop(&mut self) {
+        if let Self::Remote(hand) = self {
+            hand.close();
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The ranges of joint angles and Kx. The clients of a hand on another machine check their commands with them too.
+
+use crate::hand::SetPointError;
+use crate::model::configuration::OutOfRange;
+use crate::model::{ContactError, FingerNumber, spring};
+use nalgebra::{Matrix3, Vector3};
+
+/// The ranges of one finger.
+#[derive(Clone, Copy, Debug)]
+pub struct Ranges {
+    /// The finger.
+    pub finger: FingerNumber,
+    /// Lower and upper joint limits, rad.
+    pub joint_limits: (Vector3<f64>, Vector3<f64>),
+    /// Bound on the largest eigenvalue of Kx, N/cm.
+    pub stiffness_bound: f64,
+    /// Refuse or clamp.
+    pub out_of_range: OutOfRange,
+}
+
+impl Ranges {
+    /// Checks desired joint angles, rad, and returns the angles for the servo.
+    ///
+    /// # Errors
+    /// An angle is not finite, or outside its limits.
+    pub fn joints(&self, joints: [f64; 3]) -> Result<Vector3<f64>, SetPointError> {
+        self.finite("Pos", &joints)?;
+        let mut admitted = Vector3::from(joints);
+        for joint in 0..3 {
+            let (low, high) = (self.joint_limits.0[joint], self.joint_limits.1[joint]);
+            // A limit that is sent as `float` may be rounded beyond the limit. It must be accepted.
+            let rounding = f64::from(f32::EPSILON) * low.abs().max(high.abs());
+            let value = joints[joint];
+            if (value < low - rounding || value > high + rounding) && self.out_of_range == OutOfRange::Refuse {
+                return Err(SetPointError::BeyondJointLimit { finger: self.finger, joint, value, low, high });
+            }
+            admitted[joint] = value.clamp(low, high);
+        }
+        Ok(admitted)
+    }
+
+    /// Checks that Kx, N/cm, is symmetric, positive semi-definite and within the bound, and returns it. The argument
+    /// is `rows[row][column]`.
+    ///
+    /// # Errors
+    /// Kx is not finite, no spring or too stiff.
+    pub fn kx(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
+        // nalgebra is column-major. Only this line converts from the row-major order of C.
+        let asked = Matrix3::from_fn(|row, column| rows[row][column]);
+        let (symmetric, (smallest, largest)) = spring(&asked).map_err(|error| self.no_spring(error))?;
+        let bound = self.stiffness_bound;
+        // A stiffness at the bound that is sent as `float` may be rounded beyond the bound. It must be accepted.
+        let too_stiff = largest > bound * (1.0 + 8.0 * f64::from(f32::EPSILON));
+        if too_stiff && self.out_of_range == OutOfRange::Refuse {
+            return Err(SetPointError::TooStiff { finger: self.finger, largest, bound });
+        }
+        if !too_stiff && smallest >= 0.0 {
+            return Ok(symmetric);
+        }
+        // The nearest admissible spring has the same principal directions.
+        let mut eigen = symmetric.symmetric_eigen();
+        eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
+        let recomposed = eigen.recompose();
+        Ok((recomposed + recomposed.transpose()) * 0.5)
+    }
+
+    /// The error for a Kx that is not a spring.
+    fn no_spring(&self, error: ContactError) -> SetPointError {
+        let finger = self.finger;
+        match error {
+            ContactError::NotFinite(value) => SetPointError::NotFinite { what: "Kx", finger, value },
+            ContactError::NotSymmetric { row, column, difference } => {
+                SetPointError::NotSymmetric { finger, row, column, difference }
+            }
+            ContactError::Negative { smallest } => SetPointError::Negative { finger, smallest },
+            ContactError::NoNormal => SetPointError::Contact { finger, source: error },
+        }
+    }
+
+    /// Refuses NaN and infinity, which must never reach the servo. `what` names the argument.
+    ///
+    /// # Errors
+    /// A value is not finite.
+    pub fn finite(&self, what: &'static str, values: &[f64]) -> Result<(), SetPointError> {
+        match values.iter().find(|value| !value.is_finite()) {
+            None => Ok(()),
+            Some(&value) => Err(SetPointError::NotFinite { what, finger: self.finger, value }),
+        }
+    }
+}
