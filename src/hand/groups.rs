@@ -108,7 +108,8 @@ impl FingerCommand {
 
 impl Hand {
     /// Sends commands to several fingers. All of them take effect in the same period of the hand, also if different
-    /// threads serve the fingers. This period begins within two periods. Either every command is sent, or none is.
+    /// threads serve the fingers. This period begins within two periods. Either every command is sent, or none is. The
+    /// command of a single finger takes effect in its next cycle.
     ///
     /// If a servo is so late that it skips this period, its fingers follow in their next cycle. With
     /// `hand.clock = "board"` the periods of the threads follow different clocks. Then a finger may follow one period
@@ -118,6 +119,13 @@ impl Hand {
     /// Returns an error if there is no such finger, if a finger has two commands, if a finger refuses its command, if a
     /// finger is faulted, or if 16 groups of a finger have not taken effect yet.
     pub fn send_group(&self, commands: &[FingerCommand]) -> Result<(), HandError> {
+        if let [alone] = commands {
+            // A single finger waits for no other one.
+            let finger = FingerNumber::try_from(alone.finger)?;
+            let present = self.dispatcher.last_report(finger)?.cycle.joints;
+            let what = (alone.replaced(), alone.validity);
+            return self.send(finger, what, |admission| alone.admit(admission, &present));
+        }
         let mut by_finger: [Option<&FingerCommand>; FINGERS] = [None; FINGERS];
         for command in commands {
             let finger = FingerNumber::try_from(command.finger)?;

@@ -170,7 +170,7 @@ impl Hand {
     /// Calls `admit`, which checks the arguments and returns a change of the set point. Then sends the change. The
     /// limits cannot change between the check and the sending. The change may still return an error, for example if the
     /// new stiffness does not suit the damping that was sent before.
-    fn send<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
+    pub(super) fn send<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
         &self,
         finger: FingerNumber,
         what: (Replaced, Validity),

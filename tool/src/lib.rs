@@ -25,6 +25,7 @@ mod recording;
 mod replay;
 mod schedule;
 mod sensors;
+mod serve;
 mod size;
 mod status;
 pub mod trace;
@@ -66,6 +67,7 @@ enum Tool {
     Replay(replay::Arguments),
     Schedule(schedule::Arguments),
     Sensors(sensors::Arguments),
+    Serve(serve::Arguments),
     Size(size::Arguments),
     Status(status::Arguments),
 }
@@ -101,6 +103,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Tool::Replay(arguments) => replay::run(&arguments),
         Tool::Schedule(arguments) => schedule::run(&arguments),
         Tool::Sensors(arguments) => sensors::run(&arguments).map(|()| ExitStatus::SUCCESS),
+        Tool::Serve(arguments) => serve::run(&arguments),
         Tool::Size(arguments) => size::run(&arguments),
         Tool::Status(arguments) => status::run(&arguments),
     };

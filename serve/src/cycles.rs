@@ -1,0 +1,159 @@
+//! The cycles of the fingers for States: every cycle once, in its order.
+
+use crate::goal::Goal;
+use std::sync::Arc;
+use sun2xp::finger::{CycleRecord, FingerReport};
+use sun2xp::telemetry::View;
+use sun2xp::{Hand, Stage};
+use sun2xp_remote_protocol::{FINGERS, Finger, MOST_RECORDS, Record, Stage as SentStage};
+
+type Goals = [Goal; FINGERS];
+
+/// Takes the cycles of the fingers of a hand.
+pub struct Cycles {
+    hand: Arc<Hand>,
+    view: View,
+    /// For each finger, the number of the controller that `view` knows.
+    controllers: [u32; FINGERS],
+    /// For each finger, the number of the last cycle that was taken.
+    last: [u64; FINGERS],
+    /// For each finger, whether it was caught at the last call.
+    caught: [bool; FINGERS],
+    records: Vec<CycleRecord>,
+}
+
+/// The cycles since the last call.
+#[derive(Debug, Default)]
+pub struct Taken {
+    /// The cycles.
+    pub records: Vec<Record>,
+    /// Number of cycles that are missing.
+    pub missing: u64,
+}
+
+impl Cycles {
+    /// The cycles of this hand from now on.
+    #[must_use]
+    pub fn new(hand: Arc<Hand>) -> Self {
+        let view = View::new(&hand.configuration());
+        let last = std::array::from_fn(|index| {
+            hand.report(index as i32 + 1).map_or(0, |report| report.losses.cycles.saturating_sub(1))
+        });
+        Self { view, controllers: [0; FINGERS], last, caught: [false; FINGERS], records: Vec::new(), hand }
+    }
+
+    /// Takes the cycles since the last call. `goals` have the command numbers.
+    pub fn take(&mut self, goals: &Goals) -> Taken {
+        let mut taken = Taken::default();
+        for finger in Finger::ALL {
+            // A finger that the hand does not have has no report.
+            let Ok(report) = self.hand.report(i32::from(finger.number())) else { continue };
+            self.note_controller(finger, &report);
+            self.take_finger(finger, &report, goals, &mut taken);
+        }
+        let most = MOST_RECORDS.min(taken.records.len());
+        let dropped = taken.records.len() - most;
+        taken.missing += dropped as u64;
+        taken.records.drain(..dropped);
+        taken
+    }
+
+    fn take_finger(&mut self, finger: Finger, report: &FingerReport, goals: &Goals, taken: &mut Taken) {
+        let index = finger.index();
+        self.records.clear();
+        // The finger has a report, so the hand has the finger.
+        let _ = self.hand.records_after(i32::from(finger.number()), self.last[index], &mut self.records);
+        for at in 0..self.records.len() {
+            let record = self.records[at];
+            let mut sent = self.record(finger, &record, goals);
+            sent.caught = report.expired && (self.caught[index] || at + 1 == self.records.len());
+            self.add(sent, taken);
+        }
+        self.caught[index] = report.expired;
+        // A finger that has stopped has no records. Its report still has its pose.
+        if self.records.is_empty() && matches!(report.stage, Stage::Faulted(_) | Stage::Closed) {
+            let cycle = report.losses.cycles;
+            if cycle > self.last[index] {
+                self.last[index] = cycle - 1;
+                let sent = self.of_report(finger, report, goals);
+                self.add(sent, taken);
+            }
+        }
+    }
+
+    /// Adds a record, and counts the cycles that are missing before it. A record with a number that is not finite
+    /// cannot be sent, and is missing too.
+    fn add(&mut self, record: Record, taken: &mut Taken) {
+        let last = &mut self.last[record.finger.index()];
+        taken.missing += record.cycle.saturating_sub(*last + 1);
+        *last = record.cycle;
+        let numbers = [&record.joints[..], &record.tip, &record.force, &record.tensions].concat();
+        let finite = numbers.iter().chain(record.set_point.iter().flatten()).all(|number| number.is_finite());
+        if finite {
+            taken.records.push(record);
+        } else {
+            taken.missing += 1;
+        }
+    }
+
+    fn record(&mut self, finger: Finger, record: &CycleRecord, goals: &Goals) -> Record {
+        let number = i32::from(finger.number());
+        let known = sun2xp::FingerNumber::try_from(number).expect("every finger of the protocol is one of the hand");
+        let sample = self.view.sample(known, record);
+        Record {
+            finger,
+            stage: stage(&record.stage),
+            command: goals[finger.index()].command_at(record.began),
+            cycle: record.cycle,
+            begin: record.began,
+            touching: sample.touching,
+            caught: false,
+            joints: sample.joints,
+            set_point: sample.joint_set_point,
+            tip: self.hand.tip_at(number, sample.joints).unwrap_or_default(),
+            force: sample.tip_force,
+            tensions: sample.tensions,
+        }
+    }
+
+    fn of_report(&self, finger: Finger, report: &FingerReport, goals: &Goals) -> Record {
+        let joints = report.cycle.joints.into();
+        Record {
+            finger,
+            stage: stage(&report.stage),
+            command: goals[finger.index()].command_at(report.last),
+            cycle: report.losses.cycles,
+            begin: report.last,
+            touching: false,
+            caught: report.expired,
+            joints,
+            set_point: None,
+            tip: self.hand.tip_at(i32::from(finger.number()), joints).unwrap_or_default(),
+            force: [0.0; 3],
+            tensions: report.cycle.tensions.into(),
+        }
+    }
+
+    /// Reads the geometry of the fingers again after a calibration or an adjustment.
+    fn note_controller(&mut self, finger: Finger, report: &FingerReport) {
+        let known = &mut self.controllers[finger.index()];
+        if *known != report.controller {
+            *known = report.controller;
+            self.view = View::new(&self.hand.configuration());
+        }
+    }
+}
+
+/// The stage as it is sent.
+#[must_use]
+pub fn stage(stage: &Stage) -> SentStage {
+    match stage {
+        Stage::Opening => SentStage::Opening,
+        Stage::Limp => SentStage::Limp,
+        Stage::Calibrating => SentStage::Calibrating,
+        Stage::Running => SentStage::Running,
+        Stage::Closing => SentStage::Closing,
+        Stage::Faulted(fault) => SentStage::Faulted(fault.kind.number().into()),
+        _ => SentStage::Closed,
+    }
+}

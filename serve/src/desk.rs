@@ -1,0 +1,235 @@
+//! The desk of the hand: everything that clients want passes here, one after the other. It knows the owner, decides
+//! which Targets are taken, and counts how long the owner may still be silent. It sends to the mailboxes of the fingers
+//! and never waits.
+
+use crate::acceptance::{Acceptance, Fresh, Rejection};
+use crate::fingers::Fingers;
+use crate::goal::Goal;
+use crate::ownership::{Owner, Ownership};
+use crate::settings::Limits;
+use crate::silence::{MILLISECOND, Silence};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use sun2xp::{Hand, HandError, Stage};
+use sun2xp_remote_protocol::{Answer, ClientName, Code, Counts, DecodeError, FINGERS, Target};
+
+/// Time after the end of the ownership at which the desk itself stops the fingers that have not stopped, ns. The servos
+/// count the same end.
+const GRACE: u64 = 20 * MILLISECOND;
+
+/// The desk of a hand.
+pub struct Desk {
+    hand: Arc<Hand>,
+    limits: Limits,
+    ownership: Ownership,
+    acceptance: Acceptance,
+    /// How long the owner may be silent; none without an owner, and while an acquire recovers fingers.
+    silence: Option<Silence>,
+    fingers: Fingers,
+    counts: Counts,
+    clients: BTreeSet<ClientName>,
+    /// Whether a finger was caught at the last look.
+    caught: bool,
+    /// The time at which fingers that still move are stopped, ns.
+    stop_at: Option<u64>,
+}
+
+impl Desk {
+    /// The desk of this hand.
+    #[must_use]
+    pub fn new(hand: Arc<Hand>, limits: Limits) -> Self {
+        Self {
+            fingers: Fingers::new(hand.clone(), limits.lead_force),
+            hand,
+            limits,
+            ownership: Ownership::default(),
+            acceptance: Acceptance::default(),
+            silence: None,
+            counts: Counts::default(),
+            clients: BTreeSet::new(),
+            caught: false,
+            stop_at: None,
+        }
+    }
+
+    /// Returns the owner; none if nobody owns the hand.
+    #[must_use]
+    pub fn owner(&self) -> Option<&Owner> {
+        self.ownership.owner()
+    }
+
+    /// Returns the number of the epoch in force; 0 without an owner.
+    #[must_use]
+    pub fn epoch_number(&self) -> u64 {
+        self.ownership.number()
+    }
+
+    /// Returns what the desk has counted.
+    #[must_use]
+    pub fn counts(&self) -> &Counts {
+        &self.counts
+    }
+
+    /// Returns the number of clients that have asked for anything.
+    #[must_use]
+    pub fn clients(&self) -> u32 {
+        self.clients.len() as u32
+    }
+
+    /// Returns what the owner wants of the fingers.
+    #[must_use]
+    pub fn goals(&self) -> [Goal; FINGERS] {
+        *self.fingers.goals()
+    }
+
+    /// Notes that this client has asked for something.
+    pub fn note_client(&mut self, client: &ClientName) {
+        if !self.clients.contains(client) {
+            self.clients.insert(client.clone());
+        }
+    }
+
+    /// Counts a message that could not be decoded.
+    pub fn count_malformed(&mut self) {
+        Rejection::Malformed.count(&mut self.counts);
+    }
+
+    /// Takes a Target, or counts why not. Returns an Answer for its sender if the hand refuses the Target. `client` is
+    /// the client whose key the Target has, and `now` is the time at which the Target was received, ns.
+    pub fn take_target(&mut self, client: &ClientName, payload: &[u8], now: u64) -> Option<Answer> {
+        let tested = Target::decode(payload).map_err(|_: DecodeError| Rejection::Malformed).and_then(|target| {
+            let owned = self.ownership.admits(client, target.epoch);
+            self.acceptance.test(&target, owned, now, self.limits.catch_ms).map(|fresh| (target, fresh))
+        });
+        let (target, fresh) = match tested {
+            Ok(tested) => tested,
+            Err(rejection) => {
+                rejection.count(&mut self.counts);
+                return None;
+            }
+        };
+        // The owner lives, also if the hand refuses what it sends.
+        let silence = self.hear(fresh)?;
+        match self.fingers.apply(&target.parts, &silence, now) {
+            Ok(()) => {
+                self.counts.taken += 1;
+                None
+            }
+            Err(error) => {
+                Rejection::Refused.count(&mut self.counts);
+                self.fingers.keep_valid(&silence, now);
+                let text = error.to_string();
+                Some(Answer { number: target.sequence, ..self.answer(code_of(&error), text, target.epoch, now) })
+            }
+        }
+    }
+
+    /// Notes that the owner lives. Returns none while an acquire recovers fingers.
+    fn hear(&mut self, fresh: Fresh) -> Option<Silence> {
+        let silence = self.silence.as_mut()?;
+        silence.renew(fresh.seen, fresh.validity);
+        Some(*silence)
+    }
+
+    /// Makes a client the owner, with this epoch. The owner's time begins with [`Desk::begin`].
+    ///
+    /// # Errors
+    /// Returns the name of the other owner. Then nothing has changed.
+    pub fn acquire(&mut self, client: &ClientName, take_over: bool, epoch: u64) -> Result<u64, ClientName> {
+        let number = self.ownership.acquire(client, take_over, epoch)?.number;
+        (self.acceptance, self.silence, self.stop_at) = (Acceptance::default(), None, None);
+        Ok(number)
+    }
+
+    /// Begins the time of the owner with this epoch at `now`, ns. Returns whether it still owns the hand.
+    pub fn begin(&mut self, client: &ClientName, epoch: u64, now: u64) -> bool {
+        if !self.ownership.admits(client, epoch) {
+            return false;
+        }
+        let silence = Silence::after_acquire(now, self.limits.catch_ms, self.limits.end_ms);
+        self.silence = Some(silence);
+        self.fingers.begin_epoch(&silence, now);
+        true
+    }
+
+    /// Returns whether this client owns the hand, and this is its epoch.
+    #[must_use]
+    pub fn admits(&self, client: &ClientName, epoch: u64) -> bool {
+        self.ownership.admits(client, epoch)
+    }
+
+    /// Ends the ownership, and stops every finger.
+    pub fn release(&mut self) {
+        self.ownership.end();
+        (self.silence, self.stop_at) = (None, None);
+        // Every finger of the hand can be stopped.
+        let _ = self.stop(None);
+    }
+
+    /// Ends the ownership. The fingers go to their end state as if the owner had fallen silent.
+    pub fn abandon(&mut self) {
+        self.ownership.end();
+        self.silence = None;
+    }
+
+    /// Stops this finger, or every finger if it is none, whoever owns the hand.
+    ///
+    /// # Errors
+    /// Returns an error if the hand does not have the finger. Then nothing has stopped.
+    pub fn stop(&self, finger: Option<i32>) -> Result<(), HandError> {
+        match finger {
+            Some(finger) => self.hand.stop(finger),
+            None => self.fingers.numbers().try_for_each(|number| self.hand.stop(number)),
+        }
+    }
+
+    /// Advances set points, and ends the ownership of an owner that has been silent for too long. It is called about
+    /// every 5 ms.
+    pub fn look(&mut self, now: u64) {
+        let caught = self.fingers.numbers().any(|number| self.hand.report(number).is_ok_and(|report| report.expired));
+        if caught && !self.caught {
+            self.counts.caught += 1;
+        }
+        self.caught = caught;
+        if let Some(silence) = self.silence {
+            if silence.is_over(now) {
+                self.counts.ended += 1;
+                self.ownership.end();
+                (self.silence, self.stop_at) = (None, Some(now + GRACE));
+            } else {
+                self.fingers.advance(&silence, now);
+            }
+        }
+        if self.stop_at.is_some_and(|at| now >= at) {
+            self.stop_at = None;
+            self.stop_what_moves();
+        }
+    }
+
+    /// Stops the fingers that have not stopped by themselves, for example because they were being calibrated.
+    fn stop_what_moves(&self) {
+        for number in self.fingers.numbers() {
+            let stage = self.hand.report(number).map(|report| report.stage);
+            if !matches!(stage, Ok(Stage::Faulted(_) | Stage::Closed)) {
+                let _ = self.hand.stop(number);
+            }
+        }
+    }
+
+    /// Returns an Answer of this time.
+    #[must_use]
+    pub fn answer(&self, code: Code, text: String, epoch: u64, now: u64) -> Answer {
+        Answer { code, catch_ms: self.limits.catch_ms, epoch, time: now, number: 0, text }
+    }
+}
+
+/// The code of an Answer for an error of the hand.
+#[must_use]
+pub fn code_of(error: &HandError) -> Code {
+    match error {
+        HandError::NoSuchFinger(_) | HandError::NotInHand { .. } | HandError::NotOpened(_) => Code::NoSuchFinger,
+        HandError::Faulted { .. } => Code::Stopped,
+        HandError::Busy(_) => Code::InProgress,
+        _ => Code::Argument,
+    }
+}

@@ -1,0 +1,19 @@
+//! Epochs that nobody can guess.
+
+use crate::ServeError;
+
+/// Returns a random number that is not 0.
+///
+/// # Errors
+/// Returns an error if the system has no random numbers.
+pub fn new_epoch() -> Result<u64, ServeError> {
+    loop {
+        let epoch = getrandom::u64().map_err(|error| ServeError::System {
+            doing: "get a random number for an epoch",
+            reason: error.to_string(),
+        })?;
+        if epoch != 0 {
+            return Ok(epoch);
+        }
+    }
+}

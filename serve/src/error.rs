@@ -1,0 +1,61 @@
+//! The errors of the server, each with its cause and its remedy.
+
+use std::path::PathBuf;
+use sun2xp::{ConfigurationError, HandError};
+use thiserror::Error;
+
+/// Why the server does not start, or has ended.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ServeError {
+    /// The configuration of the hand cannot be used.
+    #[error(transparent)]
+    Configuration(#[from] ConfigurationError),
+    /// The table `[serve]` cannot be used.
+    #[error("{}{}: {reason}", file.display(), line.map(|line| format!(":{line}")).unwrap_or_default())]
+    Settings {
+        /// The file.
+        file: PathBuf,
+        /// The line, if it is known.
+        line: Option<usize>,
+        /// What is wrong, with the remedy.
+        reason: String,
+    },
+    /// An endpoint that other machines can reach is configured without TLS.
+    #[error(
+        "{endpoint} can be reached from other machines: the server listens there only with TLS. Make certificates with \
+         `sun2xp serve --make-certificates FOLDER --server NAME --client NAME`, name them in [serve.tls], and use \
+         tls/HOST:PORT; or listen at tcp/127.0.0.1:7447"
+    )]
+    NotLoopback {
+        /// The endpoint.
+        endpoint: String,
+    },
+    /// The hand cannot be opened.
+    #[error(transparent)]
+    Hand(#[from] HandError),
+    /// The network cannot be used.
+    #[error("{doing}: {reason}")]
+    Network {
+        /// What the server was doing, with the endpoint.
+        doing: String,
+        /// The cause, with the remedy if there is one.
+        reason: String,
+    },
+    /// A certificate cannot be made, read or written.
+    #[error("{}: {reason}", path.display())]
+    Certificate {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with the remedy.
+        reason: String,
+    },
+    /// The system refuses something.
+    #[error("cannot {doing}: {reason}")]
+    System {
+        /// What the server was doing.
+        doing: &'static str,
+        /// The system's reason.
+        reason: String,
+    },
+}

@@ -1,0 +1,257 @@
+//! Sends what the owner wants to the fingers of the hand: new parts of Targets, the rest of the way to a destination
+//! that is far ahead of a finger, and the set points of fingers that were caught and whose owner lives again.
+
+use crate::goal::{Destination, Goal, is_path, matrix, rows};
+use crate::lead::admitted_part;
+use crate::silence::Silence;
+use std::sync::Arc;
+use sun2xp::finger::FingerReport;
+use sun2xp::groups::FingerCommand;
+use sun2xp::hand::plan_path;
+use sun2xp::motion::{PathPose, Pose, Validity};
+use sun2xp::nalgebra::Vector3;
+use sun2xp::{FingerNumber, Hand, HandError, OutOfRange, Stage};
+use sun2xp_remote_protocol::{FINGERS, Part, Place};
+
+/// A set point that moves by less than this, rad, is not sent.
+const SMALLEST_STEP: f64 = 1e-4;
+
+/// The fingers of the hand, and what the owner wants of them.
+pub struct Fingers {
+    hand: Arc<Hand>,
+    goals: [Goal; FINGERS],
+    /// The largest force of the lead, N.
+    lead_force: f64,
+    /// Whether commands beyond the limits are refused. Otherwise they are clamped.
+    refuses: bool,
+}
+
+/// A part of a Target before it is sent: the goal that results, the command for the group, and the poses of its path.
+struct Prepared {
+    finger: usize,
+    goal: Goal,
+    /// None if there is only a path.
+    command: Option<FingerCommand>,
+    path: Vec<PathPose>,
+}
+
+impl Fingers {
+    /// The fingers of this hand, of which nothing is wanted yet. `lead_force` is in N.
+    #[must_use]
+    pub fn new(hand: Arc<Hand>, lead_force: f64) -> Self {
+        let refuses = hand.configuration().hand.out_of_range == OutOfRange::Refuse;
+        Self { hand, goals: [Goal::default(); FINGERS], lead_force, refuses }
+    }
+
+    /// Returns what is wanted of each finger.
+    #[must_use]
+    pub fn goals(&self) -> &[Goal; FINGERS] {
+        &self.goals
+    }
+
+    /// The numbers of the fingers of the hand.
+    pub fn numbers(&self) -> impl Iterator<Item = i32> + use<> {
+        self.hand.fingers().members().map(|number| number.get())
+    }
+
+    /// Begins the epoch of a new owner. A finger that follows a path of the owner before stays where its path is.
+    pub fn begin_epoch(&mut self, silence: &Silence, now: u64) {
+        for number in self.numbers() {
+            let mut goal = std::mem::take(&mut self.goals[number as usize - 1]);
+            let Ok(report) = self.hand.report(number) else { continue };
+            goal.notice(&report);
+            if let Destination::Path(_) = goal.destination {
+                // A finger that has stopped meanwhile refuses this, and has no path any more.
+                let _ = self.hand.send_position(number, report.reference.joints.into());
+            }
+        }
+        self.keep_valid(silence, now);
+    }
+
+    /// Applies the parts of a Target that are new, all of them or none, and renews the validity of everything else.
+    ///
+    /// # Errors
+    /// Returns why a finger refuses its part. Then no part is applied, and the validity is not renewed.
+    pub fn apply(&mut self, parts: &[Part], silence: &Silence, now: u64) -> Result<(), HandError> {
+        let valid = silence.of_commanded(now);
+        let new = parts.iter().filter(|part| {
+            let index = part.finger.index();
+            self.goals[index].is_new(part)
+        });
+        let prepared = new.map(|part| self.prepare(part, valid, now)).collect::<Result<Vec<_>, _>>()?;
+        if !prepared.is_empty() {
+            let commands: Vec<FingerCommand> = prepared.iter().filter_map(|prepared| prepared.command).collect();
+            self.hand.send_group(&commands)?;
+        }
+        for Prepared { finger, goal, path, .. } in prepared {
+            if !path.is_empty() {
+                // It was checked already. It is refused only if the finger has stopped since.
+                self.hand.send_path(finger as i32 + 1, &path, None)?;
+            }
+            self.goals[finger] = goal;
+        }
+        self.keep_valid(silence, now);
+        Ok(())
+    }
+
+    /// Renews the validity of every finger. A finger that was caught follows again, from where it is.
+    pub fn keep_valid(&mut self, silence: &Silence, now: u64) {
+        for number in self.numbers() {
+            let index = number as usize - 1;
+            let Ok(report) = self.hand.report(number) else { continue };
+            self.goals[index].notice(&report);
+            let commanded = self.goals[index].is_commanded();
+            let valid = if commanded { silence.of_commanded(now) } else { silence.of_other(now) };
+            // A finger that has stopped needs no validity.
+            let _ = self.hand.keep_valid(number, valid);
+            if self.goals[index].is_interrupted(&report) {
+                self.resume(number, &report, valid);
+            }
+        }
+    }
+
+    /// Advances the set points of fingers whose destination is far ahead of them.
+    pub fn advance(&mut self, silence: &Silence, now: u64) {
+        if !silence.is_valid(now) {
+            return;
+        }
+        for number in self.numbers() {
+            let index = number as usize - 1;
+            let Ok(report) = self.hand.report(number) else { continue };
+            self.goals[index].notice(&report);
+            let goal = self.goals[index];
+            if report.stage != Stage::Running || report.expired {
+                continue;
+            }
+            if let Destination::Path(end) = goal.destination {
+                if self.admitted(number, &goal, &report, &report.reference.joints) < 1.0 {
+                    // The finger does not follow its path. It goes on as to a single place.
+                    self.goals[index].destination = Destination::Joints(end);
+                    self.send(number, &report, silence.of_commanded(now), false);
+                }
+            } else if goal.is_commanded() && !goal.whole {
+                self.send(number, &report, silence.of_commanded(now), false);
+            }
+        }
+    }
+
+    /// Sends everything that the owner wants of a finger that was caught.
+    fn resume(&mut self, number: i32, report: &FingerReport, valid: Validity) {
+        let goal = &mut self.goals[number as usize - 1];
+        if let Destination::Path(_) = goal.destination {
+            // A path is in the past. The finger stays where it is, until the next command.
+            goal.destination = Destination::None;
+            return;
+        }
+        self.send(number, report, valid, true);
+    }
+
+    /// Sends the destination of a finger, as far as the lead admits it, and its spring if `spring` is set.
+    fn send(&mut self, number: i32, report: &FingerReport, valid: Validity, spring: bool) {
+        let index = number as usize - 1;
+        let goal = self.goals[index];
+        let Ok((pose, whole)) = self.led(number, &goal, report) else { return };
+        if !spring && !whole && is_near(pose, report) {
+            return;
+        }
+        let mut command = FingerCommand::new(number).validity(valid);
+        command.pose = pose;
+        if let Some((kx, damping)) = goal.spring.filter(|_| spring) {
+            command = command.stiffness(rows(&kx)).damping(damping);
+        }
+        // A finger that has stopped meanwhile refuses it. The next call finds that.
+        if self.hand.send_group(&[command]).is_ok() {
+            self.goals[index].note_sent(report, whole);
+        }
+    }
+
+    /// Prepares a new part.
+    fn prepare(&self, part: &Part, valid: Validity, now: u64) -> Result<Prepared, HandError> {
+        let (finger, number) = (part.finger.index(), i32::from(part.finger.number()));
+        let report = self.hand.report(number)?;
+        let mut path = Vec::new();
+        let destination = match &part.place {
+            Place::Kept => None,
+            Place::Joints(joints) => Some(Destination::Joints(Vector3::from(*joints))),
+            Place::Tip(tip) => Some(Destination::Tip(self.hand.joints_at(number, *tip)?.into())),
+            Place::Path(poses) => {
+                path.extend(poses.iter().map(|pose| PathPose {
+                    time: pose.time,
+                    pose: Pose::Joints(pose.joints),
+                    stiffness: None,
+                }));
+                let finger = FingerNumber::try_from(number)?;
+                if !matches!(report.stage, Stage::Running | Stage::Faulted(_)) {
+                    return Err(HandError::Busy(finger));
+                }
+                plan_path(&self.hand.configuration(), finger, &report.reference, &path)?;
+                poses.last().map(|pose| Destination::Path(pose.joints.into()))
+            }
+        };
+        let mut goal = self.goals[finger].with(part, destination, &report, now);
+        if !is_path(part) && report.expired && matches!(goal.destination, Destination::Path(_)) {
+            goal.destination = Destination::None; // A path that was interrupted is in the past.
+        }
+        let mut command = FingerCommand::new(number).validity(valid);
+        (command.stiffness, command.damping) = (part.stiffness, part.damping);
+        if let Place::Joints(joints) = &part.place {
+            match self.within_limits(number, joints)? {
+                Some(admitted) => goal.destination = Destination::Joints(admitted),
+                // The hand refuses the group, with the reason.
+                None => command.pose = Some(Pose::Joints(*joints)),
+            }
+        }
+        if command.pose.is_none() {
+            (command.pose, goal.whole) = self.led(number, &goal, &report)?;
+        }
+        if let Some((kx, damping)) = goal.spring.filter(|_| report.expired) {
+            // The finger has the soft spring. What the owner had commanded before is in force again.
+            (command.stiffness, command.damping) = (Some(rows(&kx)), Some(damping));
+        }
+        let empty = command.pose.is_none() && command.stiffness.is_none() && command.damping.is_none();
+        Ok(Prepared { finger, goal, command: (!empty).then_some(command), path })
+    }
+
+    /// Returns the pose on the way to the destination that the lead admits, and whether it is the destination.
+    fn led(&self, number: i32, goal: &Goal, report: &FingerReport) -> Result<(Option<Pose>, bool), HandError> {
+        let (Destination::Joints(end) | Destination::Tip(end)) = goal.destination else { return Ok((None, true)) };
+        let part = self.admitted(number, goal, report, &end);
+        let joints = report.cycle.joints;
+        let place: [f64; 3] = if part < 1.0 { (joints + (end - joints) * part).into() } else { end.into() };
+        let pose = match goal.destination {
+            Destination::Tip(_) => Pose::Tip(self.hand.tip_at(number, place)?),
+            _ => Pose::Joints(place),
+        };
+        Ok((Some(pose), part >= 1.0))
+    }
+
+    /// Returns the part of the way from the finger to `end`, rad, that the lead admits.
+    fn admitted(&self, number: i32, goal: &Goal, report: &FingerReport, end: &Vector3<f64>) -> f64 {
+        let joints = report.cycle.joints;
+        let jacobian = self.hand.jacobian(number, Some(joints.into()));
+        match (goal.spring, jacobian) {
+            (Some((kx, _)), Ok(jacobian)) => admitted_part(&matrix(&jacobian), &kx, &joints, end, self.lead_force),
+            // Without a measured pose nothing is ahead of the finger.
+            _ => 0.0,
+        }
+    }
+
+    /// Returns joint angles within the limits, rad; none if the hand refuses these angles.
+    fn within_limits(&self, number: i32, joints: &[f64; 3]) -> Result<Option<Vector3<f64>>, HandError> {
+        let limits = self.hand.limits(number)?;
+        let (low, high) = (limits.joint_minimum, limits.joint_maximum);
+        let clamped: [f64; 3] = std::array::from_fn(|joint| joints[joint].clamp(low[joint], high[joint]));
+        let admitted = (0..3).all(|joint| {
+            // The hand admits a limit that was rounded to `float`.
+            let rounding = f64::from(f32::EPSILON) * low[joint].abs().max(high[joint].abs());
+            (joints[joint] - clamped[joint]).abs() <= rounding
+        });
+        Ok((admitted || !self.refuses).then(|| clamped.into()))
+    }
+}
+
+/// Whether the set point in force is almost at this pose.
+fn is_near(pose: Option<Pose>, report: &FingerReport) -> bool {
+    let near = |joints: [f64; 3]| (Vector3::from(joints) - report.set_point.joints).amax() < SMALLEST_STEP;
+    matches!(pose, Some(Pose::Joints(joints)) if near(joints))
+}

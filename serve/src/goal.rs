@@ -1,0 +1,116 @@
+//! What the owner wants of one finger, and what the server has sent to it.
+
+use sun2xp::finger::FingerReport;
+use sun2xp::nalgebra::{Matrix3, Vector3};
+use sun2xp_remote_protocol::{Part, Place};
+
+/// Where the owner wants a finger.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Destination {
+    /// Nowhere: the owner has not commanded its place.
+    #[default]
+    None,
+    /// At these joint angles, rad.
+    Joints(Vector3<f64>),
+    /// With the tip where these joint angles, rad, have it.
+    Tip(Vector3<f64>),
+    /// On a path that ends at these joint angles, rad.
+    Path(Vector3<f64>),
+}
+
+/// What the owner wants of one finger, in its epoch.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Goal {
+    /// The command number that was taken last; 0 if none in this epoch.
+    pub command: u32,
+    /// The command number before, and the time at which the last one was taken, ns.
+    before: (u32, u64),
+    pub destination: Destination,
+    /// Kx, N/cm, and relative damping that are in force for the owner.
+    pub spring: Option<(Matrix3<f64>, f64)>,
+    /// Whether the whole way to the destination has been sent, and not only the part that the lead admits.
+    pub whole: bool,
+    /// Recoveries of the finger and orders to it when this was sent. A later one ends what was wanted.
+    phase: (u32, u32),
+    /// The spring phase in which this was sent. A finger that is caught begins another one.
+    springs: u32,
+}
+
+impl Goal {
+    /// Returns the command number that was in force at `time`, ns.
+    #[must_use]
+    pub fn command_at(&self, time: u64) -> u32 {
+        if time >= self.before.1 { self.command } else { self.before.0 }
+    }
+
+    /// Returns whether the owner has commanded the finger, and it was neither recovered nor calibrated since.
+    #[must_use]
+    pub fn is_commanded(&self) -> bool {
+        self.spring.is_some()
+    }
+
+    /// Forgets what the owner wants if the finger was recovered or calibrated since. Such a finger holds its pose.
+    pub fn notice(&mut self, report: &FingerReport) {
+        if self.is_commanded() && self.phase != (report.recoveries, report.orders) {
+            *self = Self { command: self.command, before: self.before, ..Self::default() };
+        }
+    }
+
+    /// Returns whether the finger was caught, and nothing was sent since.
+    #[must_use]
+    pub fn is_interrupted(&self, report: &FingerReport) -> bool {
+        self.is_commanded() && report.expired && self.springs != report.springs
+    }
+
+    /// Notes that something was sent to the finger that had this report.
+    pub fn note_sent(&mut self, report: &FingerReport, whole: bool) {
+        (self.springs, self.whole) = (report.springs, whole);
+    }
+
+    /// Returns the goal after a part with a new command number, taken at `now`, ns. `destination` is that of the part;
+    /// none to keep it. `report` has the spring that is kept if neither the part nor an earlier one has a Kx.
+    #[must_use]
+    pub fn with(&self, part: &Part, destination: Option<Destination>, report: &FingerReport, now: u64) -> Self {
+        let (kx, damping) = self.spring.unwrap_or_else(|| in_force(report));
+        let kx = part.stiffness.map_or(kx, |rows| matrix(&rows));
+        Self {
+            command: part.command,
+            before: (self.command, now),
+            destination: destination.unwrap_or(self.destination),
+            spring: Some((kx, part.damping.unwrap_or(damping))),
+            whole: false,
+            phase: (report.recoveries, report.orders),
+            springs: report.springs,
+        }
+    }
+
+    /// Returns whether the part has a command number that was not taken yet.
+    #[must_use]
+    pub fn is_new(&self, part: &Part) -> bool {
+        part.command != self.command
+    }
+}
+
+/// Whether a part moves the finger along a path.
+#[must_use]
+pub fn is_path(part: &Part) -> bool {
+    matches!(part.place, Place::Path(_))
+}
+
+/// Kx, N/cm, and relative damping of the set point in force.
+fn in_force(report: &FingerReport) -> (Matrix3<f64>, f64) {
+    let kx = report.set_point.stiffness.fixed_view::<3, 3>(0, 0).into_owned();
+    (kx, report.set_point.damping)
+}
+
+/// The matrix with these rows.
+#[must_use]
+pub fn matrix(rows: &[[f64; 3]; 3]) -> Matrix3<f64> {
+    Matrix3::from_fn(|row, column| rows[row][column])
+}
+
+/// The rows of a matrix.
+#[must_use]
+pub fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
+    matrix.transpose().into()
+}

@@ -1,0 +1,97 @@
+//! Who owns the hand: at most one client, whose epoch fences every earlier owner.
+
+use sun2xp_remote_protocol::ClientName;
+
+/// The owner of the hand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Owner {
+    /// The client.
+    pub client: ClientName,
+    /// The epoch, which only the owner knows. It is not 0.
+    pub epoch: u64,
+    /// The number of the epoch since the server's start, from 1.
+    pub number: u64,
+}
+
+/// The ownership of a hand.
+#[derive(Debug, Default)]
+pub struct Ownership {
+    owner: Option<Owner>,
+    /// Number of epochs since the server's start.
+    epochs: u64,
+}
+
+impl Ownership {
+    /// Returns the owner; none if nobody owns the hand.
+    #[must_use]
+    pub fn owner(&self) -> Option<&Owner> {
+        self.owner.as_ref()
+    }
+
+    /// Returns the number of the epoch in force; 0 if nobody owns the hand.
+    #[must_use]
+    pub fn number(&self) -> u64 {
+        self.owner.as_ref().map_or(0, |owner| owner.number)
+    }
+
+    /// Returns whether this client owns the hand, and this is its epoch.
+    #[must_use]
+    pub fn admits(&self, client: &ClientName, epoch: u64) -> bool {
+        self.owner.as_ref().is_some_and(|owner| owner.client == *client && owner.epoch == epoch)
+    }
+
+    /// Makes this client the owner, with this epoch. The epoch before ends. If another client owns the hand, this is
+    /// refused unless `take_over` is set.
+    ///
+    /// # Errors
+    /// Returns the name of the other owner. Then nothing has changed.
+    pub fn acquire(&mut self, client: &ClientName, take_over: bool, epoch: u64) -> Result<&Owner, ClientName> {
+        if let Some(owner) = &self.owner
+            && owner.client != *client
+            && !take_over
+        {
+            return Err(owner.client.clone());
+        }
+        self.epochs += 1;
+        Ok(self.owner.insert(Owner { client: client.clone(), epoch, number: self.epochs }))
+    }
+
+    /// Ends the ownership. Returns the owner that there was.
+    pub fn end(&mut self) -> Option<Owner> {
+        self.owner.take()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn name(text: &str) -> ClientName {
+        text.parse().expect("a name")
+    }
+
+    #[test]
+    fn one_client_owns_the_hand_and_a_take_over_ends_its_epoch() {
+        let (alice, bob) = (name("alice"), name("bob"));
+        let mut ownership = Ownership::default();
+        assert!(!ownership.admits(&alice, 0) && ownership.number() == 0);
+        assert_eq!(ownership.acquire(&alice, false, 7).expect("free").number, 1);
+        assert!(ownership.admits(&alice, 7) && !ownership.admits(&alice, 8) && !ownership.admits(&bob, 7));
+        assert_eq!(ownership.acquire(&bob, false, 8), Err(alice.clone()));
+        assert!(ownership.admits(&alice, 7), "a refusal changes nothing");
+        assert_eq!(ownership.acquire(&bob, true, 8).expect("taken over").number, 2);
+        assert!(!ownership.admits(&alice, 7) && ownership.admits(&bob, 8));
+    }
+
+    #[test]
+    fn an_owner_that_acquires_again_fences_its_earlier_self() {
+        let alice = name("alice");
+        let mut ownership = Ownership::default();
+        ownership.acquire(&alice, false, 7).expect("free");
+        assert_eq!(ownership.acquire(&alice, false, 9).expect("its own").number, 2);
+        assert!(!ownership.admits(&alice, 7) && ownership.admits(&alice, 9));
+        assert_eq!(ownership.end().map(|owner| owner.epoch), Some(9));
+        assert!(!ownership.admits(&alice, 9) && ownership.number() == 0);
+        assert_eq!(ownership.acquire(&alice, false, 3).expect("free").number, 3, "numbers are not used again");
+    }
+}

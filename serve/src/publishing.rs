@@ -1,0 +1,123 @@
+//! What the server publishes by itself: a State every 5 ms, Events, and a Status every second. It runs in one ordinary
+//! thread, because a reader whose line is full can hold up a message for a millisecond.
+
+use crate::ServeError;
+use crate::cycles::{Cycles, Taken};
+use crate::shared::Shared;
+use crate::status::status;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use sun2xp::events::EventQueue;
+use sun2xp::realtime::{Clock, MonotonicClock, now};
+use sun2xp_remote_protocol::{Event, FieldError, Finger, State};
+use zenoh::pubsub::Publisher;
+use zenoh::qos::CongestionControl;
+use zenoh::{Session, Wait};
+
+/// Interval of States, ns.
+const STATE_INTERVAL: u64 = 5_000_000;
+
+/// States from one Status to the next.
+const STATES_PER_STATUS: u64 = 200;
+
+/// Most Events between two States. The queue holds later ones.
+const MOST_EVENTS: usize = 64;
+
+/// The publishers of a hand.
+pub struct Publishing {
+    shared: Arc<Shared>,
+    cycles: Cycles,
+    events: EventQueue,
+    state: Publisher<'static>,
+    event: Publisher<'static>,
+    status: Publisher<'static>,
+    /// Number of States and of Events that were published.
+    states: u64,
+    sent_events: u64,
+}
+
+impl Publishing {
+    /// Declares the publishers.
+    ///
+    /// # Errors
+    /// Returns an error if zenoh refuses them.
+    pub fn new(shared: &Arc<Shared>, session: &Session) -> Result<Self, ServeError> {
+        let declare = |key: String| {
+            let publisher = session.declare_publisher(key.clone()).congestion_control(CongestionControl::Drop);
+            publisher
+                .express(true)
+                .wait()
+                .map_err(|error| ServeError::Network { doing: format!("declare {key}"), reason: error.to_string() })
+        };
+        let events = shared.hand.events();
+        events.clear();
+        Ok(Self {
+            cycles: Cycles::new(shared.hand.clone()),
+            events,
+            state: declare(shared.keys.state())?,
+            event: declare(shared.keys.events())?,
+            status: declare(shared.keys.status())?,
+            states: 0,
+            sent_events: 0,
+            shared: shared.clone(),
+        })
+    }
+
+    /// Publishes until the server ends.
+    pub fn run(mut self) {
+        let mut next = now();
+        while !self.shared.ending.load(Ordering::Acquire) {
+            self.publish();
+            // A late thread does not catch up: the next State has the cycles of both intervals.
+            next = (next + STATE_INTERVAL).max(now());
+            MonotonicClock.sleep_until(next);
+        }
+    }
+
+    fn publish(&mut self) {
+        let goals = self.shared.desk.lock().goals();
+        let Taken { records, missing } = self.cycles.take(&goals);
+        self.states += 1;
+        let (time, owner) = {
+            // The time is read while the desk is locked, so that no later Answer has an earlier epoch.
+            let desk = self.shared.desk.lock();
+            (now(), desk.epoch_number())
+        };
+        let missing = u32::try_from(missing).unwrap_or(u32::MAX);
+        send(&self.state, State { missing, number: self.states, time, owner, records }.encode());
+        for _ in 0..MOST_EVENTS {
+            let Some(event) = self.events.next() else { break };
+            self.publish_event(&event);
+        }
+        if self.states % STATES_PER_STATUS == 1 {
+            let shared = &self.shared;
+            let encoded = status(&shared.hand, &shared.settings.limits, &shared.desk.lock(), now()).encode();
+            send(&self.status, encoded);
+        }
+    }
+
+    fn publish_event(&mut self, event: &sun2xp::events::Event) {
+        // Clients detect the Events that the queue has lost by their numbers.
+        self.sent_events += 1;
+        let Some(finger) = Finger::new(event.finger.get()) else { return };
+        let sent = Event {
+            finger,
+            part: event.part.number(),
+            kind: u16::from(event.kind.number()),
+            number: self.sent_events + self.events.lost(),
+            cycle: event.cycle,
+            begin: event.time,
+            values: event.values,
+        };
+        send(&self.event, sent.encode());
+    }
+}
+
+/// Sends a message. A message that the page does not allow is not sent: the server makes none, except for numbers that
+/// are not finite.
+fn send(publisher: &Publisher<'_>, encoded: Result<Vec<u8>, FieldError>) {
+    if let Ok(bytes) = encoded {
+        // The session is closed only when the server ends.
+        let _ = publisher.put(bytes).wait();
+    }
+}

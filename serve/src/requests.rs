@@ -1,0 +1,203 @@
+//! Requests of clients: acquire, release, recover, calibrate, identify and stop. What takes long runs in a thread of
+//! its own, because the threads of zenoh must not wait.
+
+use crate::access::permission;
+use crate::desk::code_of;
+use crate::epoch::new_epoch;
+use crate::settings::Permission;
+use crate::shared::Shared;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use sun2xp::realtime::{Priority, now, spawn};
+use sun2xp::{Hand, HandError};
+use sun2xp_remote_protocol::{Action, Answer, ClientName, Code, DecodeError, Finger, Request};
+
+/// Answers a Request. `reply` sends the Answer, at once or later. `client` is the client whose key the Request has.
+pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload: &[u8], reply: impl Reply) {
+    let refuse = |code, text: String| shared.desk.lock().answer(code, text, 0, now());
+    let request = match Request::decode(payload) {
+        Ok(request) => request,
+        Err(error) => {
+            shared.desk.lock().count_malformed();
+            let other = matches!(error, DecodeError::Version { .. });
+            let code = if other { Code::OtherVersion } else { Code::Malformed };
+            return reply.send(&refuse(code, error.to_string()));
+        }
+    };
+    if request.action != action {
+        shared.desk.lock().count_malformed();
+        let text = format!("the key is that of {}, and the Request that of {}", action.name(), request.action.name());
+        return reply.send(&refuse(Code::Malformed, text));
+    }
+    match permission(&shared.settings.clients, &client) {
+        Some(Permission::Command) => {}
+        Some(_) if action == Action::Stop => {}
+        _ => {
+            let text = format!(
+                "{client} may not {}: list it in [serve.clients] of the server as `{client} = \"command\"`",
+                action.name()
+            );
+            return reply.send(&refuse(Code::NotOwner, text));
+        }
+    }
+    shared.desk.lock().note_client(&client);
+    carry_out(shared, &request, client, reply);
+}
+
+/// Where an Answer goes.
+pub trait Reply: Send + 'static {
+    /// Sends the Answer.
+    fn send(self, answer: &Answer);
+}
+
+fn carry_out(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: impl Reply) {
+    let (request, time) = (*request, now());
+    let owned = shared.desk.lock().admits(&client, request.epoch);
+    match request.action {
+        Action::Acquire => return acquire(shared, &request, client, reply),
+        Action::Stop => {
+            let desk = shared.desk.lock();
+            let stopped = desk.stop(request.finger.map(number));
+            let answer = result(&desk.answer(Code::Done, String::new(), request.epoch, time), stopped);
+            drop(desk);
+            return reply.send(&answer);
+        }
+        _ if !owned => {
+            let text = "you do not own the hand, or with an earlier epoch: acquire the hand first".into();
+            let answer = shared.desk.lock().answer(Code::NotOwner, text, request.epoch, time);
+            return reply.send(&answer);
+        }
+        Action::Release => {
+            let mut desk = shared.desk.lock();
+            desk.release();
+            let answer = desk.answer(Code::Done, String::new(), request.epoch, time);
+            drop(desk);
+            return reply.send(&answer);
+        }
+        Action::Recover | Action::Calibrate | Action::Identify => {}
+    }
+    long(shared, request.epoch, reply, move |shared, reply| {
+        let done = match (request.action, request.finger) {
+            (Action::Calibrate, Some(finger)) => calibrated(&shared.hand, finger, Hand::zero),
+            (Action::Identify, Some(finger)) => calibrated(&shared.hand, finger, Hand::identify),
+            (_, finger) => recover(&shared.hand, finger),
+        };
+        let answer = shared.desk.lock().answer(Code::Done, String::new(), request.epoch, now());
+        reply.send(&result(&answer, done));
+    });
+}
+
+/// Makes the client the owner, and recovers the fingers if this is requested.
+fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: impl Reply) {
+    let epoch = match new_epoch() {
+        Ok(epoch) => epoch,
+        Err(error) => {
+            let answer = shared.desk.lock().answer(Code::Closed, error.to_string(), 0, now());
+            return reply.send(&answer);
+        }
+    };
+    if request.recover && shared.busy.swap(true, Ordering::AcqRel) {
+        return reply.send(&in_progress(shared, 0));
+    }
+    let acquired = shared.desk.lock().acquire(&client, request.take_over, epoch);
+    let number = match acquired {
+        Ok(number) => number,
+        Err(other) => {
+            if request.recover {
+                shared.busy.store(false, Ordering::Release);
+            }
+            let text = format!("{other} owns the hand: wait until it releases the hand, or take the hand over");
+            let answer = shared.desk.lock().answer(Code::Owned, text, 0, now());
+            return reply.send(&answer);
+        }
+    };
+    let begin = move |shared: &Shared, recovered: Result<(), HandError>| {
+        let mut desk = shared.desk.lock();
+        let time = now();
+        if !desk.begin(&client, epoch, time) {
+            let text = "another client has taken the hand over meanwhile".into();
+            return desk.answer(Code::Owned, text, 0, time);
+        }
+        if recovered.is_err() {
+            desk.abandon();
+        }
+        result(&Answer { number, ..desk.answer(Code::Done, String::new(), epoch, time) }, recovered)
+    };
+    if !request.recover {
+        return reply.send(&begin(shared, Ok(())));
+    }
+    run(shared, reply, move |shared, reply| {
+        let recovered = recover(&shared.hand, None);
+        reply.send(&begin(shared, recovered));
+    });
+}
+
+/// Runs something that takes long, unless something else does already.
+fn long<R: Reply>(shared: &Arc<Shared>, epoch: u64, reply: R, body: impl FnOnce(&Shared, R) + Send + 'static) {
+    match shared.busy.swap(true, Ordering::AcqRel) {
+        true => reply.send(&in_progress(shared, epoch)),
+        false => run(shared, reply, body),
+    }
+}
+
+/// Runs something that takes long in a thread. The caller has set `busy`.
+fn run<R: Reply>(shared: &Arc<Shared>, reply: R, body: impl FnOnce(&Shared, R) + Send + 'static) {
+    let of_thread = shared.clone();
+    let started = spawn("sun2xp request", Priority::default(), move |_| {
+        body(&of_thread, reply);
+        of_thread.busy.store(false, Ordering::Release);
+    });
+    match started {
+        Ok(thread) => {
+            let mut threads = shared.requests.lock();
+            threads.retain(|thread| !thread.is_finished());
+            threads.push(thread);
+        }
+        Err(error) => {
+            shared.busy.store(false, Ordering::Release);
+            eprintln!("sun2xp-serve: cannot start a thread for a request: {error}");
+        }
+    }
+}
+
+fn in_progress(shared: &Shared, epoch: u64) -> Answer {
+    let text = "the hand is being recovered or calibrated already: repeat the request when that has ended".into();
+    shared.desk.lock().answer(Code::InProgress, text, epoch, now())
+}
+
+/// Recovers this finger, or every finger if it is none.
+fn recover(hand: &Hand, finger: Option<Finger>) -> Result<(), HandError> {
+    match finger {
+        Some(finger) => hand.recover(number(finger)),
+        None => hand.fingers().members().try_for_each(|finger| hand.recover(finger.get())),
+    }
+}
+
+type Calibration = fn(&Hand, i32, fn(sun2xp::Progress)) -> Result<sun2xp::Findings, HandError>;
+
+/// Runs a calibration, and stores its results in the configuration file, if there is one.
+fn calibrated(hand: &Hand, finger: Finger, calibration: Calibration) -> Result<(), HandError> {
+    calibration(hand, number(finger), |_| {})?;
+    hand.store_calibration(number(finger)).map(|_| ())
+}
+
+fn number(finger: Finger) -> i32 {
+    i32::from(finger.number())
+}
+
+/// The Answer if this was done, or else the refusal.
+fn result(answer: &Answer, done: Result<(), HandError>) -> Answer {
+    match done {
+        Ok(()) => answer.clone(),
+        Err(error) => Answer { code: code_of(&error), number: 0, text: error.to_string(), ..answer.clone() },
+    }
+}
+
+/// Waits for the threads of requests. The fingers have stopped, so the requests end too.
+pub fn join(shared: &Shared) {
+    let threads: Vec<_> = shared.requests.lock().drain(..).collect();
+    for thread in threads {
+        // A panic in such a thread has been reported already.
+        let _ = thread.join();
+    }
+}

@@ -1,0 +1,171 @@
+//! The server: subscribes to Targets, answers Requests, and publishes.
+
+use crate::ServeError;
+use crate::access::at_hand;
+use crate::answers::{Answers, Outgoing, send};
+use crate::publishing::Publishing;
+use crate::requests::{self, Reply};
+use crate::session;
+use crate::settings::{Limits, Settings};
+use crate::shared::Shared;
+use crate::status::status;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::thread::JoinHandle;
+use sun2xp::motion::ExpiryReaction;
+use sun2xp::realtime::{Clock, MonotonicClock, Priority, now, spawn};
+use sun2xp::{Configuration, Hand};
+use sun2xp_remote_protocol::{Action, Answer};
+use zenoh::key_expr::KeyExpr;
+use zenoh::query::Query;
+use zenoh::sample::Sample;
+use zenoh::{Session, Wait};
+
+/// Interval at which set points advance and the silence of the owner is looked at, ns.
+const LOOK_INTERVAL: u64 = 5_000_000;
+
+/// A server that offers a hand. [`Server::end`] must be called at its end.
+#[must_use = "a server offers its hand until `end` is called"]
+pub struct Server {
+    shared: Arc<Shared>,
+    session: Session,
+    threads: Vec<JoinHandle<()>>,
+}
+
+/// Configures the dead man's handle of the servos: a finger whose Target has become invalid holds its pose softly, and
+/// the server gives the times with each command.
+pub fn prepare(configuration: &mut Configuration, limits: &Limits) {
+    for finger in &mut configuration.fingers {
+        finger.motion.on_expiry = ExpiryReaction::Hold;
+        finger.motion.expired_stiffness = limits.soft_stiffness;
+        (finger.motion.valid_ms, finger.motion.end_state_ms) = (None, None);
+    }
+}
+
+impl Server {
+    /// Offers this hand, whose configuration was prepared with [`prepare`].
+    ///
+    /// # Errors
+    /// Returns an error if the network cannot be used.
+    pub fn start(hand: Hand, settings: Settings) -> Result<Self, ServeError> {
+        let access = at_hand(&settings.name, &settings.clients);
+        let session = session::open(&settings, &access)?;
+        let shared = Arc::new(Shared::new(Arc::new(hand), settings));
+        let mut server = Self { shared, session, threads: Vec::new() };
+        match server.declare() {
+            Ok(()) => Ok(server),
+            Err(error) => {
+                server.end();
+                Err(error)
+            }
+        }
+    }
+
+    fn declare(&mut self) -> Result<(), ServeError> {
+        let publishing = Publishing::new(&self.shared, &self.session)?;
+        let (answers, queue) = Answers::new();
+        let session = self.session.clone();
+        self.thread("sun2xp states", move |_| publishing.run())?;
+        self.thread("sun2xp desk", |shared| look(&shared))?;
+        self.thread("sun2xp answers", move |shared| send(&shared, &session, &queue))?;
+        for action in Action::ALL {
+            let (shared, answers) = (self.shared.clone(), answers.clone());
+            let declared = self.session.declare_queryable(self.shared.keys.every_request(action));
+            let declared = declared.callback(move |query| on_request(&shared, &answers, action, query));
+            declared.background().wait().map_err(refused(action.name()))?;
+        }
+        let (shared, of_status) = (self.shared.clone(), answers.clone());
+        let declared = self.session.declare_queryable(self.shared.keys.status());
+        let declared = declared.callback(move |query| on_status(&shared, &of_status, query)).background().wait();
+        declared.map_err(refused("status"))?;
+        let shared = self.shared.clone();
+        let declared = self.session.declare_subscriber(self.shared.keys.every_target());
+        let declared = declared.callback(move |sample| on_target(&shared, &answers, &sample)).background().wait();
+        declared.map_err(refused("target"))
+    }
+
+    fn thread(&mut self, name: &str, body: impl FnOnce(Arc<Shared>) + Send + 'static) -> Result<(), ServeError> {
+        let shared = self.shared.clone();
+        let started = spawn(name, Priority::default(), move |_| body(shared));
+        let started =
+            started.map_err(|error| ServeError::System { doing: "start a thread", reason: error.to_string() })?;
+        self.threads.push(started);
+        Ok(())
+    }
+
+    /// Returns the hand, for tests and benchmarks in the same process.
+    #[must_use]
+    pub fn hand(&self) -> &Hand {
+        &self.shared.hand
+    }
+
+    /// Ends the ownership, brings every finger to its end state, and closes session and hand.
+    pub fn end(self) {
+        let Self { shared, session, threads } = self;
+        shared.desk.lock().abandon();
+        shared.ending.store(true, Ordering::Release);
+        // A session that cannot be closed any more has ended already.
+        let _ = session.close().wait();
+        drop(session);
+        shared.hand.end();
+        requests::join(&shared);
+        for thread in threads {
+            // A panic in such a thread has been reported already.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn refused(what: &'static str) -> impl Fn(zenoh::Error) -> ServeError {
+    move |error| ServeError::Network { doing: format!("declare {what}"), reason: error.to_string() }
+}
+
+/// Advances set points and looks at the silence of the owner, until the server ends.
+fn look(shared: &Shared) {
+    let mut next = now();
+    while !shared.ending.load(Ordering::Acquire) {
+        shared.desk.lock().look(now());
+        next = (next + LOOK_INTERVAL).max(now());
+        MonotonicClock.sleep_until(next);
+    }
+}
+
+/// Takes a Target. The set points are in the mailboxes of the fingers when this returns.
+fn on_target(shared: &Shared, answers: &Answers, sample: &Sample) {
+    let Some(client) = shared.keys.client_of_target(sample.key_expr().as_str()) else { return };
+    let time = now();
+    let payload = sample.payload().to_bytes();
+    let refusal = shared.desk.lock().take_target(&client, &payload, time);
+    if let Some(bytes) = refusal.and_then(|answer| answer.encode().ok()) {
+        answers.put(Outgoing::Refusal(client, bytes));
+    }
+}
+
+struct QueryReply {
+    answers: Answers,
+    query: Query,
+    key: KeyExpr<'static>,
+}
+
+impl Reply for QueryReply {
+    fn send(self, answer: &Answer) {
+        if let Ok(bytes) = answer.encode() {
+            self.answers.put(Outgoing::Reply(self.query, self.key, bytes));
+        }
+    }
+}
+
+fn on_request(shared: &Arc<Shared>, answers: &Answers, action: Action, query: Query) {
+    // A key with a wildcard is that of no client.
+    let Some(client) = shared.keys.client_of_request(action, query.key_expr().as_str()) else { return };
+    let payload = query.payload().map(|payload| payload.to_bytes().into_owned()).unwrap_or_default();
+    let key = query.key_expr().clone().into_owned();
+    requests::answer(shared, action, client, &payload, QueryReply { answers: answers.clone(), query, key });
+}
+
+fn on_status(shared: &Shared, answers: &Answers, query: Query) {
+    let encoded = status(&shared.hand, &shared.settings.limits, &shared.desk.lock(), now()).encode();
+    if let (Ok(bytes), Ok(key)) = (encoded, KeyExpr::try_from(shared.keys.status())) {
+        answers.put(Outgoing::Reply(query, key, bytes));
+    }
+}

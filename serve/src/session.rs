@@ -1,0 +1,102 @@
+//! The session of zenoh: where it listens and connects, TLS, and access control. Multicast scouting and gossip are off:
+//! the server speaks only to what is configured. The threads of zenoh are ordinary ones, also if this process was
+//! started with a real-time priority, because they are started by an ordinary thread.
+
+use crate::ServeError;
+use crate::endpoint::Endpoint;
+use crate::json::{string, strings};
+use crate::settings::{Settings, TlsFiles};
+use std::fs::File;
+use std::path::Path;
+use sun2xp::realtime::{Priority, spawn};
+use zenoh::{Config, Session, Wait};
+
+/// Largest message that the server receives, bytes. The longest Target has less than 4 kB.
+const LARGEST_MESSAGE: usize = 65_536;
+
+/// Opens a session for these settings, with this access control if there is TLS.
+///
+/// # Errors
+/// Returns an error if a file of TLS is missing, if the server cannot listen, or if a router cannot be reached.
+pub fn open(settings: &Settings, access: &str) -> Result<Session, ServeError> {
+    let config = config(settings, access)?;
+    let doing = format!(
+        "{}{}",
+        listed("listen at ", &settings.listen),
+        listed(if settings.listen.is_empty() { "connect to " } else { ", connect to " }, &settings.connect)
+    );
+    let failed = |reason: String| ServeError::Network { doing: doing.clone(), reason };
+    let opening = spawn("sun2xp network", Priority::default(), move |_| zenoh::open(config).wait());
+    let opening = opening.map_err(|error| failed(error.to_string()))?;
+    let opened = opening.join().map_err(|_| failed("zenoh has failed".into()))?;
+    opened.map_err(|error| {
+        let text = error.to_string();
+        // zenoh appends the place in its sources.
+        let cause = text.split(" at /").next().unwrap_or(&text).trim_end_matches('.');
+        failed(format!("{cause}. Is the address that of this machine and the port free? Does the router run?"))
+    })
+}
+
+fn listed(what: &str, endpoints: &[Endpoint]) -> String {
+    let texts: Vec<String> = endpoints.iter().map(Endpoint::to_string).collect();
+    if texts.is_empty() { String::new() } else { format!("{what}{}", texts.join(", ")) }
+}
+
+/// Returns the configuration of zenoh.
+///
+/// # Errors
+/// Returns an error if a file of TLS is missing.
+fn config(settings: &Settings, access: &str) -> Result<Config, ServeError> {
+    let mut config = Config::default();
+    // A hand behind a router is its client. Otherwise it is the router of its clients.
+    let mode = if settings.listen.is_empty() { "client" } else { "router" };
+    let endpoints = |endpoints: &[Endpoint]| strings(endpoints.iter().map(Endpoint::to_string));
+    let largest = LARGEST_MESSAGE.to_string();
+    let listen = endpoints(&settings.listen);
+    let connect = endpoints(&settings.connect);
+    let mut entries = vec![
+        ("mode", string(mode)),
+        ("listen/endpoints", listen),
+        ("connect/endpoints", connect),
+        // The router may start later than the hand.
+        ("connect/timeout_ms", "-1".into()),
+        ("connect/exit_on_failure", "false".into()),
+        ("scouting/delay", "0".into()),
+        ("scouting/multicast/enabled", "false".into()),
+        ("scouting/gossip/enabled", "false".into()),
+        ("transport/link/rx/max_message_size", largest),
+    ];
+    if let Some(files) = &settings.tls {
+        entries.push(("transport/link/protocols", r#"["tls"]"#.into()));
+        entries.push(("transport/link/tls", tls(files)?));
+        // A hand that is only a client of a router trusts the access control of the router.
+        if !settings.listen.is_empty() {
+            entries.push(("access_control", access.into()));
+        }
+    } else {
+        entries.push(("transport/link/protocols", r#"["tcp"]"#.into()));
+    }
+    for (key, value) in entries {
+        config.insert_json5(key, &value).map_err(|error| ServeError::Network {
+            doing: format!("configure {key} of zenoh"),
+            reason: error.to_string(),
+        })?;
+    }
+    Ok(config)
+}
+
+fn tls(files: &TlsFiles) -> Result<String, ServeError> {
+    let path = |path: &Path| {
+        File::open(path).map_err(|error| ServeError::Certificate {
+            path: path.into(),
+            reason: format!("{error}. `sun2xp serve --make-certificates` makes such files"),
+        })?;
+        Ok::<_, ServeError>(string(&path.to_string_lossy()))
+    };
+    let (authority, certificate, key) = (path(&files.authority)?, path(&files.certificate)?, path(&files.key)?);
+    Ok(format!(
+        r#"{{"root_ca_certificate":{authority},"enable_mtls":true,"verify_name_on_connect":true,
+            "close_link_on_expiration":true,"listen_certificate":{certificate},"listen_private_key":{key},
+            "connect_certificate":{certificate},"connect_private_key":{key}}}"#
+    ))
+}

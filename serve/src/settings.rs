@@ -1,0 +1,223 @@
+//! The tables `[serve]`, `[serve.clients]` and `[serve.tls]` of the configuration file.
+
+use crate::ServeError;
+use crate::endpoint::Endpoint;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use sun2xp::files::read_regular_file;
+use sun2xp::hand::{Wrong, deserialize};
+use sun2xp_remote_protocol::{ClientName, HandName};
+use toml_edit::{Document, Item};
+
+/// Largest configuration file, bytes, as in the library.
+const LARGEST: u64 = 1 << 20;
+
+/// The endpoint at which a server listens that is not configured otherwise.
+const LOOPBACK: &str = "tcp/127.0.0.1:7447";
+
+/// What a client may do.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum Permission {
+    /// Read states, events and statuses, and stop fingers.
+    Read,
+    /// Also own and command the hand.
+    Command,
+    /// At a router: offer the hand with this name.
+    Hand,
+}
+
+/// The files of TLS, PEM.
+#[derive(Clone, Debug, Deserialize, PartialEq, Eq)]
+#[serde(deny_unknown_fields)]
+pub struct TlsFiles {
+    /// The certificate of the authority.
+    pub authority: PathBuf,
+    /// The certificate of the server.
+    pub certificate: PathBuf,
+    /// The private key of the server.
+    pub key: PathBuf,
+}
+
+/// The table `[serve]` as it is in the file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Serve {
+    name: String,
+    listen: Option<Vec<String>>,
+    connect: Vec<String>,
+    catch_ms: u32,
+    end_ms: u32,
+    soft_stiffness: f64,
+    lead_force: f64,
+    clients: BTreeMap<String, Permission>,
+    tls: Option<TlsFiles>,
+}
+
+impl Default for Serve {
+    fn default() -> Self {
+        Self {
+            name: "hand".into(),
+            listen: None,
+            connect: Vec::new(),
+            catch_ms: 100,
+            end_ms: 1000,
+            soft_stiffness: 1.0,
+            lead_force: 10.0,
+            clients: BTreeMap::new(),
+            tls: None,
+        }
+    }
+}
+
+/// The limits of an owner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Longest validity of a Target, ms.
+    pub catch_ms: u32,
+    /// Time without a Target after which every finger goes to its end state, ms.
+    pub end_ms: u32,
+    /// Kx with which a finger is caught, N/cm.
+    pub soft_stiffness: f64,
+    /// Largest force of the lead, N.
+    pub lead_force: f64,
+}
+
+/// What `[serve]` says.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The name of the hand.
+    pub name: HandName,
+    /// Where the server listens.
+    pub listen: Vec<Endpoint>,
+    /// The routers to which the server connects.
+    pub connect: Vec<Endpoint>,
+    /// The limits of an owner.
+    pub limits: Limits,
+    /// Who may do what.
+    pub clients: BTreeMap<ClientName, Permission>,
+    /// The files of TLS; none without TLS.
+    pub tls: Option<TlsFiles>,
+}
+
+/// What the command line says in place of the file.
+#[derive(Clone, Debug, Default)]
+pub struct Overrides {
+    /// The name of the hand.
+    pub name: Option<String>,
+    /// Where the server listens.
+    pub listen: Vec<String>,
+}
+
+impl Settings {
+    /// Reads the table `[serve]` of a file; without a file, all values are the default values. Relative paths of TLS
+    /// begin in the folder of the file.
+    ///
+    /// # Errors
+    /// Returns an error, with file and line, if the file cannot be read or the table cannot be used. Returns an error
+    /// if an endpoint can be reached from other machines and there is no TLS.
+    pub fn read(file: Option<&Path>, overrides: &Overrides) -> Result<Self, ServeError> {
+        let Some(path) = file else { return Self::from_text("", Path::new("command line"), overrides) };
+        let text = read_regular_file(path, LARGEST).map_err(|source| ServeError::Settings {
+            file: path.into(),
+            line: None,
+            reason: format!("cannot be read: {source}"),
+        })?;
+        Self::from_text(&text, path, overrides)
+    }
+
+    /// Like [`Settings::read`], from the text of the file.
+    ///
+    /// # Errors
+    /// Returns the same errors.
+    pub fn from_text(text: &str, file: &Path, overrides: &Overrides) -> Result<Self, ServeError> {
+        let wrong = |wrong: Wrong| ServeError::Settings {
+            file: file.into(),
+            line: wrong.line(text),
+            reason: wrong.to_string(),
+        };
+        let document = Document::parse(text).map_err(|error| wrong(Wrong::in_syntax(error)))?;
+        let item = document.as_table().get("serve");
+        let table = match item {
+            None => Serve::default(),
+            Some(Item::Table(table)) => deserialize(table).map_err(|error| wrong(error.in_key("serve")))?,
+            Some(other) => return Err(wrong(Wrong::at(other.span(), "must be a table".into()).in_key("serve"))),
+        };
+        let refuse = |key: &str, reason: String| {
+            let tables = item.and_then(Item::as_table);
+            let span = key.split('.').next().and_then(|first| tables.and_then(|table| table.key(first)?.span()));
+            wrong(Wrong::at(span, reason).in_key(key).in_key("serve"))
+        };
+        Self::checked(table, file.parent().unwrap_or(Path::new("")), overrides, &refuse)
+    }
+
+    fn checked(
+        table: Serve,
+        folder: &Path,
+        overrides: &Overrides,
+        refuse: &dyn Fn(&str, String) -> ServeError,
+    ) -> Result<Self, ServeError> {
+        let name = overrides.name.as_ref().unwrap_or(&table.name);
+        let name = name.parse().map_err(|error| refuse("name", format!("\"{name}\": {error}")))?;
+        table.check_numbers(refuse)?;
+        let endpoints = |key: &str, texts: &[String]| {
+            texts.iter().map(|text| text.parse().map_err(|reason| refuse(key, reason))).collect::<Result<Vec<_>, _>>()
+        };
+        let connect: Vec<Endpoint> = endpoints("connect", &table.connect)?;
+        let listen = match (&overrides.listen[..], &table.listen) {
+            ([], Some(listen)) => endpoints("listen", listen)?,
+            ([], None) if connect.is_empty() => endpoints("listen", &[LOOPBACK.into()])?,
+            ([], None) => Vec::new(),
+            (listen, _) => endpoints("listen", listen)?,
+        };
+        if listen.is_empty() && connect.is_empty() {
+            return Err(refuse("listen", format!("is empty, and so is connect: set listen = [\"{LOOPBACK}\"]")));
+        }
+        let clients = table.clients.iter().map(|(client, &permission)| match client.parse() {
+            Ok(name) => Ok((name, permission)),
+            Err(error) => Err(refuse("clients", format!("\"{client}\": {error}"))),
+        });
+        let clients = clients.collect::<Result<_, _>>()?;
+        let tls = table.tls.as_ref().map(|files| TlsFiles {
+            authority: folder.join(&files.authority),
+            certificate: folder.join(&files.certificate),
+            key: folder.join(&files.key),
+        });
+        for endpoint in listen.iter().chain(&connect) {
+            endpoint.check(tls.is_some()).map_err(|reason| match reason {
+                Some(reason) => refuse(if listen.contains(endpoint) { "listen" } else { "connect" }, reason),
+                None => ServeError::NotLoopback { endpoint: endpoint.to_string() },
+            })?;
+        }
+        Ok(Self { name, listen, connect, limits: table.limits(), clients, tls })
+    }
+}
+
+impl Serve {
+    fn limits(&self) -> Limits {
+        let &Self { catch_ms, end_ms, soft_stiffness, lead_force, .. } = self;
+        Limits { catch_ms, end_ms, soft_stiffness, lead_force }
+    }
+
+    fn check_numbers(&self, refuse: &dyn Fn(&str, String) -> ServeError) -> Result<(), ServeError> {
+        if !(10..=10_000).contains(&self.catch_ms) {
+            return Err(refuse("catch_ms", format!("{} ms is outside 10 to 10000 ms", self.catch_ms)));
+        }
+        if !(self.catch_ms..=60_000).contains(&self.end_ms) {
+            let reason = format!("{} ms is outside {} ms (catch_ms) to 60000 ms", self.end_ms, self.catch_ms);
+            return Err(refuse("end_ms", reason));
+        }
+        if !(0.0..=1000.0).contains(&self.soft_stiffness) {
+            let reason = format!("{} N/cm is outside 0 to 1000 N/cm", self.soft_stiffness);
+            return Err(refuse("soft_stiffness", reason));
+        }
+        if !(0.1..=1000.0).contains(&self.lead_force) {
+            return Err(refuse("lead_force", format!("{} N is outside 0.1 to 1000 N", self.lead_force)));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,44 @@
+//! What the threads of the server share.
+
+use crate::desk::Desk;
+use crate::settings::Settings;
+use parking_lot::Mutex;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::thread::JoinHandle;
+use sun2xp::Hand;
+use sun2xp_remote_protocol::HandKeys;
+
+/// What the threads of the server share.
+pub struct Shared {
+    /// The hand.
+    pub hand: Arc<Hand>,
+    /// What `[serve]` says.
+    pub settings: Settings,
+    /// The keys of the hand.
+    pub keys: HandKeys,
+    /// The desk. No thread holds it while it sends or waits.
+    pub desk: Mutex<Desk>,
+    /// Whether a request that takes long is in progress.
+    pub busy: AtomicBool,
+    /// Whether the server ends.
+    pub ending: AtomicBool,
+    /// The threads of requests that take long.
+    pub requests: Mutex<Vec<JoinHandle<()>>>,
+}
+
+impl Shared {
+    /// What the threads of the server of this hand share.
+    #[must_use]
+    pub fn new(hand: Arc<Hand>, settings: Settings) -> Self {
+        Self {
+            keys: HandKeys::new(settings.name.clone()),
+            desk: Mutex::new(Desk::new(hand.clone(), settings.limits)),
+            hand,
+            settings,
+            busy: AtomicBool::new(false),
+            ending: AtomicBool::new(false),
+            requests: Mutex::default(),
+        }
+    }
+}

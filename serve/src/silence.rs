@@ -1,0 +1,81 @@
+//! The dead man's handle, as the server counts it: how long the owner may still be silent. The servos count the same
+//! times themselves, so a server that hangs delays nothing.
+
+use std::time::Duration;
+use sun2xp::motion::Validity;
+
+/// A millisecond, ns.
+pub const MILLISECOND: u64 = 1_000_000;
+
+/// How long the owner has been silent.
+#[derive(Clone, Copy, Debug)]
+pub struct Silence {
+    /// The moment from which the validity of the newest Target counts, ns.
+    heard: u64,
+    /// The validity of the newest Target, ns.
+    validity: u64,
+    /// The time after `heard` at which every finger goes to its end state, ns.
+    end: u64,
+}
+
+impl Silence {
+    /// Returns the silence after an acquire at `now`, ns, which counts as a Target with the validity `catch_ms`.
+    #[must_use]
+    pub fn after_acquire(now: u64, catch_ms: u32, end_ms: u32) -> Self {
+        let nanoseconds = |milliseconds| u64::from(milliseconds) * MILLISECOND;
+        Self { heard: now, validity: nanoseconds(catch_ms), end: nanoseconds(end_ms) }
+    }
+
+    /// Notes the newest Target. Its validity counts from `heard`, ns.
+    pub fn renew(&mut self, heard: u64, validity: u64) {
+        (self.heard, self.validity) = (heard, validity);
+    }
+
+    /// Returns what remains at `now`, ns, for a finger that the owner has commanded.
+    #[must_use]
+    pub fn of_commanded(&self, now: u64) -> Validity {
+        Validity { hold_after: Some(self.remaining(self.validity, now)), ..self.of_other(now) }
+    }
+
+    /// Returns what remains at `now`, ns, for another finger. It is not caught, but it goes to its end state.
+    #[must_use]
+    pub fn of_other(&self, now: u64) -> Validity {
+        Validity { hold_after: None, end_after: Some(self.remaining(self.end, now)) }
+    }
+
+    /// Returns whether the newest Target is still valid.
+    #[must_use]
+    pub fn is_valid(&self, now: u64) -> bool {
+        now < self.heard.saturating_add(self.validity)
+    }
+
+    /// Returns whether the ownership is over.
+    #[must_use]
+    pub fn is_over(&self, now: u64) -> bool {
+        now >= self.heard.saturating_add(self.end)
+    }
+
+    fn remaining(&self, time: u64, now: u64) -> Duration {
+        Duration::from_nanos(self.heard.saturating_add(time).saturating_sub(now))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_times_count_from_what_was_heard_last() {
+        let at = |milliseconds: u64| (1000 + milliseconds) * MILLISECOND;
+        let mut silence = Silence::after_acquire(at(0), 100, 1000);
+        assert!(silence.is_valid(at(99)) && !silence.is_valid(at(100)));
+        assert!(!silence.is_over(at(999)) && silence.is_over(at(1000)));
+        silence.renew(at(500), 50 * MILLISECOND);
+        let left = silence.of_commanded(at(520));
+        assert_eq!(left.hold_after, Some(Duration::from_millis(30)));
+        assert_eq!(left.end_after, Some(Duration::from_millis(980)));
+        assert_eq!(silence.of_other(at(520)), Validity { hold_after: None, ..left });
+        assert_eq!(silence.of_commanded(at(700)).hold_after, Some(Duration::ZERO));
+        assert!(silence.is_over(at(1500)));
+    }
+}

@@ -1,0 +1,191 @@
+//! The dead man's handle: clients that are killed, stopped or silent. The times are those of the servo's cycles, which
+//! are 1 ms long: a simulated finger slows down with a busy machine.
+
+mod common;
+
+use common::child::{WANTED, run_if_child, start};
+use common::client::{part, request};
+use common::{Rig, wait_for};
+use std::process::Child;
+use std::time::Duration;
+use sun2xp::finger::FingerReport;
+use sun2xp::realtime::now;
+use sun2xp::{FaultKind, Stage};
+use sun2xp_remote_protocol::{Action, Code, Place};
+
+/// Longest time from the last life sign of a client until its fingers are caught, cycles.
+const CAUGHT: u64 = 120;
+
+/// Longest time until the fingers are in their end state, cycles.
+const ENDED: u64 = 1100;
+
+fn report(rig: &Rig) -> FingerReport {
+    rig.hand().report(1).expect("a report")
+}
+
+/// The process of a client, which the tests start. Without the variable it does nothing.
+#[test]
+fn client() {
+    run_if_child();
+}
+
+fn signal(child: &Child, signal: i32) {
+    let process = i32::try_from(child.id()).expect("a process number");
+    // SAFETY: the process is a child that has not been waited for.
+    #[allow(unsafe_code)]
+    let sent = unsafe { libc::kill(process, signal) };
+    assert_eq!(sent, 0);
+}
+
+/// Commands finger 1 from a process, lets `fall_silent` happen to it, and checks what the fingers do.
+fn falls_silent(fall_silent: impl FnOnce(&mut Child)) {
+    let rig = Rig::new("");
+    let mut child = start("client", &rig.endpoint);
+    wait_for("command", || (rig.set_point() == WANTED).then_some(()));
+    let silent_from = report(&rig).losses.cycles;
+    fall_silent(&mut child);
+    let caught = wait_for("catch", || Some(report(&rig)).filter(|report| report.expired));
+    assert_eq!(caught.set_point.stiffness[(0, 0)], 1.0, "the soft stiffness");
+    let (mut records, finger) = (Vec::new(), 1);
+    let ended = wait_for("end state", || {
+        records.clear();
+        rig.hand().records_after(finger, silent_from, &mut records).expect("finger 1");
+        records.iter().find(|record| matches!(record.stage, Stage::Faulted(_))).map(|record| record.cycle)
+    });
+    let soft = |record: &&sun2xp::finger::CycleRecord| {
+        record.control.is_some_and(|control| match control.input.activity {
+            sun2xp::control::Activity::Follow(set_point) => set_point.stiffness[(0, 0)] == 1.0,
+            _ => false,
+        })
+    };
+    let caught = records.iter().find(soft).expect("the cycle of the catch").cycle;
+    println!("caught after {} cycles, ended after {}", caught - silent_from, ended - silent_from);
+    assert!(caught - silent_from <= CAUGHT, "{}", caught - silent_from);
+    assert!(ended - silent_from <= ENDED, "{}", ended - silent_from);
+    let Stage::Faulted(fault) = report(&rig).stage else { panic!("not faulted") };
+    assert!(matches!(fault.kind, FaultKind::SetPointExpired | FaultKind::FingerStopCall), "{fault}");
+    let mut bob = rig.connect("bob");
+    assert_eq!(bob.acquire().text, "", "the next client acquires");
+    let counts = bob.status().expect("a Status").counts;
+    assert_eq!((counts.caught, counts.ended), (1, 1));
+    signal(&child, libc::SIGKILL);
+    child.wait().expect("the client");
+    rig.server.end();
+}
+
+#[test]
+fn a_client_is_killed() {
+    falls_silent(|child| {
+        child.kill().expect("killed");
+    });
+}
+
+#[test]
+fn a_client_is_stopped() {
+    falls_silent(|child| signal(child, libc::SIGSTOP));
+}
+
+#[test]
+fn an_owner_that_never_commands_is_ended_too() {
+    let rig = Rig::new("");
+    let mut alice = rig.connect("alice");
+    alice.acquire_with(request(Action::Acquire));
+    let springs = report(&rig).springs;
+    wait_for("end state", || matches!(report(&rig).stage, Stage::Faulted(_)).then_some(()));
+    assert_eq!(report(&rig).springs, springs, "a finger that nobody has commanded is not caught");
+    let bob = rig.connect("bob");
+    let status = wait_for("end of the ownership", || bob.status().filter(|status| status.owner.is_none()));
+    assert_eq!(status.counts.ended, 1);
+    rig.server.end();
+}
+
+#[test]
+fn an_owner_that_returns_leads_its_finger_on() {
+    let rig = Rig::new("end_ms = 20000");
+    let mut alice = rig.connect("alice");
+    alice.acquire_with(request(Action::Acquire));
+    let stiff = [[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]];
+    let mut wanted = part(1, WANTED);
+    wanted.stiffness = Some(stiff);
+    let in_force = |rig: &Rig| {
+        let report = report(rig);
+        (rig.set_point() == WANTED && report.set_point.stiffness[(0, 0)] == 4.0).then_some(())
+    };
+    alice.repeat_until(&[wanted.clone()], "set point", |_| in_force(&rig));
+    wait_for("catch", || report(&rig).expired.then_some(()));
+    wait_for("State that says so", || {
+        let state = alice.state()?;
+        state.records.iter().any(|record| record.finger.number() == 1 && record.caught).then_some(())
+    });
+    // The same command number: the part is not new, but the finger was caught.
+    wanted.stiffness = None;
+    alice.repeat_until(&[wanted], "set point", |_| in_force(&rig));
+    assert!(!report(&rig).expired);
+    rig.server.end();
+}
+
+#[test]
+fn a_far_target_pulls_with_the_force_of_the_lead_only() {
+    let rig = Rig::new("lead_force = 1.0\nend_ms = 20000");
+    let mut alice = rig.connect("alice");
+    alice.acquire_with(request(Action::Acquire));
+    let from = report(&rig).cycle.joints;
+    let far = [from[0] + 0.5, from[1] + 0.3, from[2] + 0.4];
+    let mut wanted = part(1, far);
+    wanted.stiffness = Some([[5.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 5.0]]);
+    let mut led = false;
+    alice.repeat_until(&[wanted], "arrival", |_| {
+        let report = report(&rig);
+        led |= report.set_point_number > 0 && rig.set_point() != far;
+        let near = (report.cycle.joints - sun2xp::nalgebra::Vector3::from(far)).amax() < 0.05;
+        (near && rig.set_point() == far).then_some(())
+    });
+    assert!(led, "the set point went ahead of the finger in steps");
+    rig.server.end();
+}
+
+#[test]
+fn a_path_does_not_outlive_its_owner() {
+    let rig = Rig::new("end_ms = 20000");
+    let mut alice = rig.connect("alice");
+    alice.acquire_with(request(Action::Acquire));
+    let mut path = part(1, [0.0; 3]);
+    let start = report(&rig).cycle.joints;
+    let end = [start[0] + 0.2, start[1], start[2]];
+    path.place = Place::Path(vec![sun2xp_remote_protocol::PathPose { time: 30.0, joints: end }]);
+    alice.repeat_until(&[path], "path", |alice| (alice.status()?.counts.taken > 3).then_some(()));
+    let silent_from = report(&rig).losses.cycles;
+    let caught = wait_for("catch", || Some(report(&rig)).filter(|report| report.expired));
+    // The client may have slept before it fell silent.
+    assert!(caught.losses.cycles - silent_from < 10 * CAUGHT, "{}", caught.losses.cycles - silent_from);
+    assert!((caught.set_point.joints[0] - end[0]).abs() > 0.1, "the path has not ended");
+    rig.server.end();
+}
+
+#[test]
+fn states_have_every_cycle_once() {
+    let rig = Rig::new("");
+    let client = rig.connect("carol");
+    wait_for("States", || (client.states().len() > 100).then_some(()));
+    let states = client.states();
+    let begun = now();
+    assert!(states.windows(2).all(|pair| pair[1].number == pair[0].number + 1), "no State is lost on loopback");
+    for finger in 1..=3 {
+        let records = states.iter().flat_map(|state| &state.records);
+        let cycles: Vec<u64> = records.filter(|record| record.finger.number() == finger).map(|r| r.cycle).collect();
+        let missing: u32 = states.iter().map(|state| state.missing).sum();
+        let gaps: u64 = cycles.windows(2).map(|pair| pair[1] - pair[0] - 1).sum();
+        assert!(cycles.len() > 100 && gaps <= u64::from(missing), "{} {gaps} {missing}", cycles.len());
+    }
+    let newest = states.last().expect("a State");
+    assert!(
+        newest.time <= begun
+            && newest.owner == 0
+            && begun - newest.time < 10 * Duration::from_secs(1).as_nanos() as u64
+    );
+    assert_eq!(client.status().map(|status| status.fingers.iter().flatten().count()), Some(3));
+    let refused =
+        rig.connect("alice").request(sun2xp_remote_protocol::Request { epoch: 3, ..request(Action::Recover) });
+    assert_eq!(refused.code, Code::NotOwner);
+    rig.server.end();
+}

@@ -1,0 +1,41 @@
+//! `sun2xp serve`: offers the hand to planners on other machines. The program `sun2xp-serve` does it, so that the tool
+//! needs no network library.
+
+use crate::failure::{ExitStatus, Failure};
+use std::ffi::OsString;
+use std::io;
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The program that offers the hand.
+const PROGRAM: &str = "sun2xp-serve";
+
+/// Offers the hand to planners on other machines, with the program sun2xp-serve beside this one.
+///
+/// Every option is one of sun2xp-serve: `sun2xp serve -- --help` lists them.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Options of sun2xp-serve, such as --config FILE, --router and --make-certificates FOLDER.
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTION")]
+    options: Vec<OsString>,
+}
+
+/// Runs the command. Does not return if the program starts, because the program takes the place of this one.
+pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
+    let program = beside(&std::env::current_exe()?);
+    let error = Command::new(&program).args(&arguments.options).exec();
+    let shown = program.display();
+    Err(match error.kind() {
+        io::ErrorKind::NotFound => {
+            format!("{shown} is missing: install sun2xp-serve beside sun2xp (cargo build -p sun2xp-serve builds it)")
+        }
+        _ => format!("{shown} cannot be started: {error}"),
+    }
+    .into())
+}
+
+/// The program beside this one.
+fn beside(own: &Path) -> PathBuf {
+    own.with_file_name(PROGRAM)
+}
