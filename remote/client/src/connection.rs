@@ -1,0 +1,120 @@
+//! The connection to a server or a router over Zenoh.
+
+use crate::configuration::RemoteConfiguration;
+use crate::error::RemoteError;
+use std::net::{TcpStream, ToSocketAddrs};
+use std::sync::mpsc;
+use std::time::Duration;
+use zenoh::{Config, Session, Wait};
+
+/// The time in which a connection must be there.
+const CONNECT_MS: u64 = 3000;
+
+/// The time for which a message waits for its connection to be found dead, ms. It only decides when the connection is
+/// made again; the hand is protected by the age of Targets.
+const LEASE_MS: u64 = 4000;
+
+/// The largest message that is accepted, bytes. A State with all its records has 48 032.
+const LARGEST: u64 = 131_072;
+
+/// Opens a session.
+pub fn open(configuration: &RemoteConfiguration) -> Result<Session, RemoteError> {
+    let config = session_configuration(configuration)
+        .map_err(|error| RemoteError::NotConnected(format!("Zenoh refuses its configuration: {}", short(&error))))?;
+    zenoh::open(config).wait().map_err(|error| RemoteError::NotConnected(unreachable(configuration, &short(&error))))
+}
+
+fn session_configuration(configuration: &RemoteConfiguration) -> zenoh::Result<Config> {
+    let mut config = Config::default();
+    let text = |text: &str| serde_json::to_string(text).unwrap_or_default();
+    let settings = [
+        ("mode", "\"client\"".to_string()),
+        ("connect/endpoints", format!("[{}]", text(&configuration.endpoint))),
+        ("connect/timeout_ms", CONNECT_MS.to_string()),
+        ("connect/retry", "{ period_init_ms: 100, period_max_ms: 500, period_increase_factor: 2 }".into()),
+        ("listen/endpoints", "[]".into()),
+        ("scouting/multicast/enabled", "false".into()),
+        ("scouting/gossip/enabled", "false".into()),
+        ("transport/unicast/open_timeout", (CONNECT_MS / 2).to_string()),
+        ("transport/link/tx/lease", LEASE_MS.to_string()),
+        ("transport/link/rx/max_message_size", LARGEST.to_string()),
+    ];
+    for (key, value) in settings {
+        config.insert_json5(key, &value)?;
+    }
+    if let Some(tls) = &configuration.tls {
+        let file = |path: &std::path::Path| text(&path.to_string_lossy());
+        config.insert_json5("transport/link/protocols", "[\"tls\"]")?;
+        config.insert_json5("transport/link/tls/root_ca_certificate", &file(&tls.authority))?;
+        config.insert_json5("transport/link/tls/enable_mtls", "true")?;
+        config.insert_json5("transport/link/tls/connect_certificate", &file(&tls.certificate))?;
+        config.insert_json5("transport/link/tls/connect_private_key", &file(&tls.key))?;
+        config.insert_json5("transport/link/tls/close_link_on_expiration", "true")?;
+    }
+    Ok(config)
+}
+
+/// Zenoh's errors end with a place in its sources, which is of no use to a planner.
+fn short(error: &zenoh::Error) -> String {
+    let text = error.to_string();
+    text.split(" at /").next().unwrap_or_default().trim_end_matches(['.', '!']).into()
+}
+
+/// Finds out why there is no connection. Zenoh does not say it.
+fn unreachable(configuration: &RemoteConfiguration, error: &str) -> String {
+    let endpoint = &configuration.endpoint;
+    let place = endpoint.split_once('/').map_or("", |(_, place)| place);
+    let remedy = match place.to_socket_addrs().map(|mut addresses| addresses.next()) {
+        Err(source) => format!("{source}: correct the host in remote.endpoint"),
+        Ok(None) => "the host has no address: correct the host in remote.endpoint".into(),
+        Ok(Some(address)) => match TcpStream::connect_timeout(&address, Duration::from_millis(500)) {
+            Err(source) => format!(
+                "{source}: start `sun2xp serve` there, correct remote.endpoint, or open the port in the firewall"
+            ),
+            Ok(_) if configuration.tls.is_some() => {
+                "a program answers there, but the TLS handshake fails: check that it is `sun2xp serve` with TLS, that \
+                 remote.tls.authority has signed the certificates of both ends, that the server's certificate has the \
+                 host of remote.endpoint, and that no certificate has expired (sun2xp-serve prints the reason)"
+                    .into()
+            }
+            Ok(_) => {
+                "a program answers there, but not as `sun2xp serve` without TLS: check the port, or use `tls/`".into()
+            }
+        },
+    };
+    format!("cannot connect to {endpoint} ({error}): {remedy}")
+}
+
+/// Sends a get, and returns the replies until all have come or the time is over. `most` is the number of replies after
+/// which it does not wait any longer. An empty list means that nobody was reached.
+pub fn get(
+    session: &Session,
+    selector: &str,
+    payload: Option<Vec<u8>>,
+    (limit, most): (Duration, usize),
+) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let (to, replies) = mpsc::channel();
+    let mut query = session.get(selector).timeout(limit);
+    if let Some(payload) = payload {
+        query = query.payload(payload);
+    }
+    let query = query.target(zenoh::query::QueryTarget::All).callback(move |reply| {
+        let reply = match reply.result() {
+            Ok(sample) => Ok((sample.key_expr().to_string(), sample.payload().to_bytes().into_owned())),
+            Err(error) => Err(error.payload().try_to_string().map_or_else(|_| "an error".into(), |text| text.into())),
+        };
+        // The receiver is gone if it has enough replies.
+        let _ = to.send(reply);
+    });
+    query.wait().map_err(|error| short(&error))?;
+    let mut received = Vec::new();
+    while received.len() < most {
+        // The sender is dropped when all replies have come, or when the connection is lost.
+        match replies.recv_timeout(limit + Duration::from_secs(1)) {
+            Ok(Ok(reply)) => received.push(reply),
+            Ok(Err(error)) if received.is_empty() => return Err(error),
+            Ok(Err(_)) | Err(_) => break,
+        }
+    }
+    Ok(received)
+}

@@ -1,0 +1,148 @@
+//! The errors of the client. Each text names the cause and the remedy.
+
+mod kind;
+mod loss;
+
+pub use kind::RemoteErrorKind;
+pub use loss::Loss;
+
+use crate::admission::AdmissionError;
+use std::path::PathBuf;
+use sun2xp_remote_protocol::{Code, Finger, HandName};
+use thiserror::Error;
+
+/// A call that was refused or that failed. A refused call changes nothing.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RemoteError {
+    /// The number of a finger is not 1, 2 or 3.
+    #[error("there is no finger {0}: fingers are 1, 2 and 3")]
+    NoSuchFinger(i32),
+    /// The hand does not have this finger.
+    #[error("the hand {hand} has no finger {finger}: use one of its fingers, or add it to hand.fingers of the server")]
+    NotInHand {
+        /// The finger.
+        finger: Finger,
+        /// The name of the hand.
+        hand: HandName,
+    },
+    /// An argument that the finger cannot take.
+    #[error(transparent)]
+    Argument(#[from] AdmissionError),
+    /// A hand is commanded twice in one call.
+    #[error("the call has two groups for the hand {0}: put their commands into one group")]
+    TwiceTogether(HandName),
+    /// The finger has stopped because of a fault.
+    #[error(
+        "finger {finger} is faulted (fault {fault}){}{text}. Remove the cause (docs/faults.md), and recover the finger",
+        if text.is_empty() { "" } else { ": " }
+    )]
+    Faulted {
+        /// The finger.
+        finger: Finger,
+        /// The number of the fault.
+        fault: u16,
+        /// The beginning of the text of the fault; empty if no Status had it yet.
+        text: String,
+    },
+    /// The finger is not a spring.
+    #[error("finger {finger} is {stage}: wait until it is running")]
+    Busy {
+        /// The finger.
+        finger: Finger,
+        /// The name of its stage.
+        stage: &'static str,
+    },
+    /// There is no connection to the hand.
+    #[error("{0}")]
+    NotConnected(String),
+    /// What is known of the finger is too old.
+    #[error(
+        "the newest cycle of finger {finger} is {age_ms} ms old, and remote.stale_ms is {stale_ms}: check the line to \
+         {endpoint} and the server, or raise remote.stale_ms"
+    )]
+    Stale {
+        /// The finger.
+        finger: Finger,
+        /// The age of its newest cycle, ms.
+        age_ms: u64,
+        /// The configured limit, ms.
+        stale_ms: u32,
+        /// The configured endpoint.
+        endpoint: String,
+    },
+    /// Nothing was heard of the hand for too long to send set points.
+    #[error(
+        "nothing was heard of the hand {hand} for {age_ms} ms, and remote.stale_ms is {stale_ms}, so the set point is \
+         not sent: check the line to {endpoint} and the server, and send a new set point when the position can be read"
+    )]
+    Silent {
+        /// The name of the hand.
+        hand: HandName,
+        /// The time since the newest State, ms.
+        age_ms: u64,
+        /// The configured limit, ms.
+        stale_ms: u32,
+        /// The configured endpoint.
+        endpoint: String,
+    },
+    /// Another client owns the hand.
+    #[error("{0}")]
+    Owned(String),
+    /// This client does not own the hand.
+    #[error("this client does not own the hand {hand}: {loss}")]
+    NotOwner {
+        /// The name of the hand.
+        hand: HandName,
+        /// The reason.
+        loss: Loss,
+    },
+    /// The server has refused an earlier set point.
+    #[error("the hand has refused an earlier set point, and keeps the one before: {0}")]
+    Refused(String),
+    /// The server has refused a request.
+    #[error("{text}")]
+    Answered {
+        /// The code of the Answer.
+        code: Code,
+        /// The text of the Answer.
+        text: String,
+    },
+    /// The server does not speak this version of the protocol.
+    #[error(
+        "the server of the hand {hand} has sent what is not a message of version 1 of the protocol ({reason}): use \
+             a client and a server of the same version"
+    )]
+    Protocol {
+        /// The name of the hand.
+        hand: HandName,
+        /// What is wrong with the message.
+        reason: String,
+    },
+    /// The table `[remote]` cannot be used.
+    #[error("{}{reason}", place(file, *line))]
+    Configuration {
+        /// The file, or a description of the text.
+        file: PathBuf,
+        /// The line, from 1.
+        line: Option<usize>,
+        /// The cause and the remedy.
+        reason: String,
+    },
+    /// The system has refused an operation.
+    #[error("cannot {doing}: {source}")]
+    System {
+        /// The refused operation.
+        doing: String,
+        /// The error that the system reported.
+        source: std::io::Error,
+    },
+}
+
+/// Formats the place of an error in a configuration.
+fn place(file: &std::path::Path, line: Option<usize>) -> String {
+    match line {
+        Some(line) => format!("{}, line {line}: ", file.display()),
+        None => format!("{}: ", file.display()),
+    }
+}

@@ -1,0 +1,37 @@
+//! Why a client does not own a hand.
+
+use std::fmt;
+
+/// Why a client does not own a hand. Nothing is acquired again by itself, because then a hand would follow a planner
+/// that does not know what happened meanwhile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Loss {
+    /// It only watches.
+    Never,
+    /// The ownership has ended at the server.
+    Ended,
+    /// Another client has acquired the hand.
+    TakenOver,
+    /// The server was started again.
+    Restarted,
+    /// It has released the hand.
+    Released,
+}
+
+impl fmt::Display for Loss {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Never => "it only watches. Open the hand instead",
+            Self::Ended => {
+                "the server has ended its ownership, because no Target arrived for `end_ms`, or because it was \
+                 released. Check the line, then open or reopen the hand"
+            }
+            Self::TakenOver => {
+                "another client has acquired it. The status names the owner; reopen the hand when it is free"
+            }
+            Self::Restarted => "the server was started again. Open or reopen the hand",
+            Self::Released => "it has released the hand. Open or reopen the hand",
+        })
+    }
+}

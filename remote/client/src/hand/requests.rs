@@ -1,0 +1,51 @@
+//! The calls that wait for an answer of the server.
+
+use crate::RemoteHand;
+use crate::error::RemoteError;
+use sun2xp_remote_protocol::{Action, Finger};
+
+impl RemoteHand {
+    /// Recovers finger 1, 2 or 3, or every finger, after a fault or a stop. Returns when the finger holds its pose.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger, if this client does not own the hand, if the finger does not
+    /// recover, or if the hand cannot be reached.
+    pub fn recover(&self, finger: Option<i32>) -> Result<(), RemoteError> {
+        self.request(Action::Recover, finger)
+    }
+
+    /// Brings finger 1, 2 or 3, or every finger, to its end state at once. Any client may do this, whoever owns the
+    /// hand.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger, or if the hand cannot be reached.
+    pub fn stop(&self, finger: Option<i32>) -> Result<(), RemoteError> {
+        self.request(Action::Stop, finger)
+    }
+
+    /// Zeros finger 1, 2 or 3. Returns when this is done, after up to ten minutes. The result is in force at the server.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger, if this client does not own the hand, if the calibration fails, or
+    /// if the hand cannot be reached.
+    pub fn zero(&self, finger: i32) -> Result<(), RemoteError> {
+        self.request(Action::Calibrate, Some(finger))
+    }
+
+    /// Identifies finger 1, 2 or 3. Returns when this is done, after up to ten minutes. The result is in force at the
+    /// server.
+    ///
+    /// # Errors
+    /// Returns the errors of [`RemoteHand::zero`].
+    pub fn identify(&self, finger: i32) -> Result<(), RemoteError> {
+        self.request(Action::Identify, Some(finger))
+    }
+
+    fn request(&self, action: Action, finger: Option<i32>) -> Result<(), RemoteError> {
+        let finger: Option<Finger> = finger.map(|number| self.link.shared.lock().finger(number)).transpose()?;
+        if action != Action::Stop {
+            self.link.shared.lock().owned()?;
+        }
+        self.link.request(action, finger, false).map(drop)
+    }
+}

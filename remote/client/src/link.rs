@@ -1,0 +1,273 @@
+//! The link to one hand: a session, the subscriptions, and the thread that sends Targets.
+
+use crate::clock::now;
+use crate::configuration::RemoteConfiguration;
+use crate::connection;
+use crate::error::{Loss, RemoteError};
+use crate::events::EventSource;
+use crate::exchange::Exchange;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+use sun2xp_remote_protocol::{
+    Action, Answer, ClientName, Code, DecodeError, Event, Finger, HandKeys, Request, State, Status,
+};
+use zenoh::pubsub::Publisher;
+use zenoh::qos::{CongestionControl, Priority};
+use zenoh::sample::Sample;
+use zenoh::{Session, Wait};
+
+/// The time in which the server answers most requests. Recovering takes up the slack of tendons.
+const ANSWER: Duration = Duration::from_secs(30);
+
+/// The time in which a calibration ends. The protocol says ten minutes.
+const CALIBRATION: Duration = Duration::from_secs(610);
+
+/// The time in which a Status is received, and the first records.
+const FIRST: Duration = Duration::from_secs(3);
+
+/// What the callbacks, the sending thread and the planner share.
+pub struct Shared {
+    exchange: Mutex<Exchange>,
+    /// Notified when there is something to send, when something was received, and at the end.
+    changed: Condvar,
+    /// Set while the exchange is locked, so that the thread cannot miss it.
+    ended: AtomicBool,
+    pub events: EventSource,
+}
+
+impl Shared {
+    pub fn lock(&self) -> MutexGuard<'_, Exchange> {
+        self.exchange.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Wakes the thread that sends.
+    pub fn wake(&self) {
+        self.changed.notify_all();
+    }
+
+    /// Takes a message. A message that is malformed is counted, and changes nothing.
+    fn take<T>(&self, decoded: Result<T, DecodeError>, take: impl FnOnce(&mut Exchange, T)) {
+        let mut exchange = self.lock();
+        match decoded {
+            Ok(message) => take(&mut exchange, message),
+            Err(_) => exchange.view.statistics.malformed += 1,
+        }
+        drop(exchange);
+        self.changed.notify_all();
+    }
+}
+
+/// The link to one hand.
+pub struct Link {
+    session: Session,
+    pub shared: Arc<Shared>,
+    sender: Option<JoinHandle<()>>,
+    pub configuration: RemoteConfiguration,
+    client: ClientName,
+    keys: HandKeys,
+}
+
+impl Link {
+    /// Connects, receives the Status, and subscribes. The hand is not owned yet.
+    pub fn open(configuration: &RemoteConfiguration) -> Result<Self, RemoteError> {
+        let client = configuration.checked_client()?;
+        let (hand, endpoint) = (configuration.hand.clone(), configuration.endpoint.clone());
+        let shared = Arc::new(Shared {
+            exchange: Mutex::new(Exchange::new(hand.clone(), endpoint, configuration.stale_ms)),
+            changed: Condvar::new(),
+            ended: AtomicBool::new(false),
+            events: EventSource::default(),
+        });
+        let (session, keys) = (connection::open(configuration)?, HandKeys::new(hand));
+        let mut link = Self { session, shared, sender: None, configuration: configuration.clone(), client, keys };
+        link.subscribe().map_err(|error| link.not_connected(&error.to_string()))?;
+        link.first_status()?;
+        link.sender = Some(link.start_sender()?);
+        link.wait_for_records()?;
+        Ok(link)
+    }
+
+    fn not_connected(&self, reason: &str) -> RemoteError {
+        let (hand, endpoint) = (&self.configuration.hand, &self.configuration.endpoint);
+        RemoteError::NotConnected(format!("no connection to the hand {hand} at {endpoint}: {reason}"))
+    }
+
+    fn subscribe(&self) -> zenoh::Result<()> {
+        let listen = |key: String, take: Box<dyn Fn(&Shared, &[u8]) + Send + Sync>| {
+            let shared = self.shared.clone();
+            let callback = move |sample: Sample| take(&shared, &sample.payload().to_bytes());
+            self.session.declare_subscriber(key).callback(callback).background().wait()
+        };
+        listen(
+            self.keys.state(),
+            Box::new(|shared, payload| {
+                shared.take(State::decode(payload), |exchange, state| exchange.take_state(&state, now()));
+            }),
+        )?;
+        listen(
+            self.keys.status(),
+            Box::new(|shared, payload| {
+                shared.take(Status::decode(payload), |exchange, status| exchange.view.take_status(status));
+            }),
+        )?;
+        listen(
+            self.keys.refused(&self.client),
+            Box::new(|shared, payload| {
+                shared.take(Answer::decode(payload), |exchange, answer| exchange.take_refusal(&answer));
+            }),
+        )?;
+        listen(
+            self.keys.events(),
+            Box::new(|shared, payload| match Event::decode(payload) {
+                Ok(event) => shared.events.put(event),
+                Err(_) => shared.lock().view.statistics.malformed += 1,
+            }),
+        )
+    }
+
+    /// Requests the Status, and so finds out whether the hand is there.
+    fn first_status(&self) -> Result<(), RemoteError> {
+        let replies = connection::get(&self.session, &self.keys.status(), None, (FIRST, 1));
+        let replies = replies.map_err(|error| self.not_connected(&error))?;
+        let Some((_, payload)) = replies.first() else {
+            return Err(self.not_connected(
+                "nobody answers for it. Check remote.hand, whether the server lists this client in [serve.clients], \
+                 and whether `sun2xp serve` of this hand is connected to this router",
+            ));
+        };
+        let status = Status::decode(payload).map_err(|error| self.protocol(&error))?;
+        self.shared.lock().view.take_status(status);
+        Ok(())
+    }
+
+    fn protocol(&self, error: &DecodeError) -> RemoteError {
+        RemoteError::Protocol { hand: self.configuration.hand.clone(), reason: error.to_string() }
+    }
+
+    /// Waits until a record of every finger was received, so that every finger can be read and commanded.
+    fn wait_for_records(&self) -> Result<(), RemoteError> {
+        let missing = |exchange: &mut Exchange| {
+            let has =
+                |finger: &Finger| exchange.view.status().is_some_and(|status| status.fingers[finger.index()].is_some());
+            Finger::ALL.iter().any(|finger| has(finger) && exchange.view.newest(*finger).is_none())
+        };
+        let waited = self.shared.changed.wait_timeout_while(self.shared.lock(), FIRST, missing);
+        let (exchange, waited) = waited.unwrap_or_else(PoisonError::into_inner);
+        let malformed = exchange.view.statistics.malformed;
+        match (waited.timed_out(), malformed) {
+            (false, _) => Ok(()),
+            (true, 0) => Err(self.not_connected(
+                "it answers, but its State does not arrive. Check whether the server permits this client to read",
+            )),
+            (true, _) => Err(self.protocol(&DecodeError::Short(0))),
+        }
+    }
+
+    fn start_sender(&self) -> Result<JoinHandle<()>, RemoteError> {
+        let publisher = self.session.declare_publisher(self.keys.target(&self.client));
+        let publisher = publisher.congestion_control(CongestionControl::Drop).priority(Priority::RealTime);
+        let publisher = publisher.express(true).wait().map_err(|error| self.not_connected(&error.to_string()))?;
+        let shared = self.shared.clone();
+        let started =
+            std::thread::Builder::new().name("sun2xp targets".into()).spawn(move || send(&shared, &publisher));
+        started.map_err(|source| RemoteError::System { doing: "start the thread that sends Targets".into(), source })
+    }
+
+    /// Sends a Request, and waits for its Answer. An Answer that is not *done* is an error.
+    pub fn request(&self, action: Action, finger: Option<Finger>, recover: bool) -> Result<Answer, RemoteError> {
+        let acquires = action == Action::Acquire;
+        let epoch = self.shared.lock().outbox.ownership().map_or(0, |ownership| ownership.epoch);
+        let take_over = acquires && self.configuration.take_over;
+        let request = Request { action, finger, take_over, recover, epoch };
+        let payload = request.encode().map_err(|error| RemoteError::NotConnected(error.to_string()))?;
+        let limit = if matches!(action, Action::Calibrate | Action::Identify) { CALIBRATION } else { ANSWER };
+        let key = self.keys.request(action, &self.client);
+        let replies = connection::get(&self.session, &key, Some(payload), (limit, 1));
+        let replies = replies.map_err(|error| self.not_connected(&error))?;
+        let Some((_, payload)) = replies.first() else {
+            let reason = format!(
+                "the request `{}` has no answer. Check the line, and whether the server lists the client {} in \
+                 [serve.clients]",
+                action.name(),
+                self.client
+            );
+            return Err(self.not_connected(&reason));
+        };
+        let answer = Answer::decode(payload).map_err(|error| self.protocol(&error))?;
+        match answer.code {
+            Code::Done => Ok(answer),
+            Code::Owned => Err(RemoteError::Owned(answer.text)),
+            Code::NotOwner => Err(self.not_owner(answer)),
+            code => Err(RemoteError::Answered { code, text: answer.text }),
+        }
+    }
+
+    /// The error for an Answer that this client does not own the hand.
+    fn not_owner(&self, answer: Answer) -> RemoteError {
+        match self.shared.lock().outbox.ownership() {
+            Err(loss) => RemoteError::NotOwner { hand: self.configuration.hand.clone(), loss },
+            Ok(_) => RemoteError::Answered { code: Code::NotOwner, text: answer.text },
+        }
+    }
+
+    /// Becomes the owner of the hand, and recovers the fingers that have stopped.
+    pub fn acquire(&self) -> Result<(), RemoteError> {
+        let answer = self.request(Action::Acquire, None, true)?;
+        self.shared.lock().outbox.acquired(&answer);
+        self.shared.wake();
+        Ok(())
+    }
+
+    /// Releases the hand if it is owned.
+    pub fn release(&self) -> Result<(), RemoteError> {
+        if self.shared.lock().outbox.ownership().is_err() {
+            return Ok(());
+        }
+        let released = self.request(Action::Release, None, false);
+        self.shared.lock().outbox.lose(Loss::Released);
+        released.map(drop)
+    }
+
+    /// Ends the thread and the session.
+    pub fn end(&mut self) {
+        let mut exchange = self.shared.lock();
+        exchange.outbox.lose(Loss::Released);
+        self.shared.ended.store(true, Ordering::Relaxed);
+        drop(exchange);
+        self.shared.wake();
+        if let Some(sender) = self.sender.take() {
+            // The thread does not panic.
+            let _ = sender.join();
+        }
+        self.shared.events.close();
+        // The session is closed also if Zenoh reports an error.
+        let _ = self.session.close().wait();
+    }
+}
+
+/// Sends Targets until the end.
+fn send(shared: &Shared, publisher: &Publisher<'_>) {
+    let mut exchange = shared.lock();
+    while !shared.ended.load(Ordering::Relaxed) {
+        let now = now();
+        if let Some(target) = exchange.outbox.next(now) {
+            exchange.view.statistics.targets += 1;
+            drop(exchange);
+            // A Target that is lost, or that cannot be sent now, is repeated.
+            if let Ok(payload) = target.encode() {
+                let _ = publisher.put(payload).wait();
+            }
+            exchange = shared.lock();
+            continue;
+        }
+        exchange = match exchange.outbox.due() {
+            None => shared.changed.wait(exchange).unwrap_or_else(PoisonError::into_inner),
+            Some(due) => {
+                let left = Duration::from_nanos(due.saturating_sub(now));
+                shared.changed.wait_timeout(exchange, left).unwrap_or_else(PoisonError::into_inner).0
+            }
+        };
+    }
+}

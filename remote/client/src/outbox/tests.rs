@@ -1,0 +1,310 @@
+//! The outbox in simulated time.
+
+use super::*;
+use crate::command::FingerCommand;
+use sun2xp_remote_protocol::{Code, Part, PathPose, Place};
+
+const MS: u64 = 1_000_000;
+const ONE: Finger = Finger::ALL[0];
+const KX: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+fn answer(code: Code, number: u64) -> Answer {
+    Answer { code, catch_ms: 100, epoch: 77, time: 1000 * MS, number, text: String::new() }
+}
+
+fn owner() -> Outbox {
+    let mut outbox = Outbox::new(Loss::Never);
+    outbox.acquired(&answer(Code::Done, 5));
+    outbox
+}
+
+fn changes(change: Change) -> [Option<Change>; FINGERS] {
+    [Some(change), None, None]
+}
+
+fn joints(angle: f64) -> [Option<Change>; FINGERS] {
+    changes(Change::of(&FingerCommand::new(1).joints([angle; 3])))
+}
+
+fn stiffness() -> [Option<Change>; FINGERS] {
+    changes(Change::of(&FingerCommand::new(1).stiffness(KX)))
+}
+
+fn path() -> [Option<Change>; FINGERS] {
+    let poses = vec![PathPose { time: 1.0, joints: [0.5; 3] }];
+    changes(Change { place: Place::Path(poses), ..Change::default() })
+}
+
+/// The only part of the next Target.
+fn part(outbox: &mut Outbox, now: u64) -> Part {
+    let mut target = outbox.next(now).expect("a Target is due");
+    assert_eq!(target.parts.len(), 1);
+    target.parts.remove(0)
+}
+
+#[test]
+fn without_ownership_nothing_is_sent() {
+    let mut outbox = Outbox::new(Loss::Never);
+    outbox.put(joints(0.5), None);
+    assert_eq!((outbox.due(), outbox.next(u64::MAX)), (None, None));
+    let mut outbox = owner();
+    outbox.put(joints(0.5), None);
+    outbox.lose(Loss::Ended);
+    assert_eq!((outbox.due(), outbox.next(u64::MAX), outbox.ownership()), (None, None, Err(Loss::Ended)));
+}
+
+#[test]
+fn an_owner_that_commands_nothing_says_that_it_lives() {
+    let mut outbox = owner();
+    let target = outbox.next(0).expect("at once");
+    assert_eq!((target.epoch, target.sequence, target.validity_ms, target.seen), (77, 1, 100, 1000 * MS));
+    assert!(target.parts.is_empty());
+    assert_eq!(outbox.next(19 * MS), None);
+    outbox.heard(1010 * MS, 5);
+    let target = outbox.next(20 * MS).expect("after 20 ms");
+    assert_eq!((target.sequence, target.sent, target.seen), (2, 20 * MS, 1010 * MS));
+    assert_eq!(outbox.due(), Some(40 * MS));
+}
+
+#[test]
+fn a_change_is_sent_at_once_and_repeated_with_its_number() {
+    let mut outbox = owner();
+    assert!(outbox.next(0).is_some());
+    outbox.put(joints(0.5), None);
+    let sent = part(&mut outbox, MS);
+    assert_eq!((sent.finger, sent.command, &sent.place), (ONE, 1, &Place::Joints([0.5; 3])));
+    assert_eq!(outbox.next(2 * MS), None);
+    assert_eq!(part(&mut outbox, 21 * MS), sent);
+    outbox.confirm(ONE, 1);
+    assert_eq!(part(&mut outbox, 41 * MS), sent);
+}
+
+#[test]
+fn a_planner_that_sends_without_a_pause_sends_the_newest() {
+    let mut outbox = owner();
+    let mut sent = Vec::new();
+    // A call each microsecond for 10 ms.
+    for now in (0..10 * MS).step_by(1000) {
+        outbox.put(joints(now as f64), None);
+        sent.extend(outbox.next(now).map(|target| (now, target)));
+    }
+    assert_eq!(sent.len(), 20, "one each 0.5 ms");
+    for (now, target) in sent {
+        assert_eq!(target.parts[0].place, Place::Joints([now as f64; 3]));
+    }
+}
+
+#[test]
+fn what_is_not_confirmed_is_sent_with_the_next_change() {
+    let mut outbox = owner();
+    outbox.put(joints(0.5), None);
+    part(&mut outbox, 0);
+    outbox.put(stiffness(), None);
+    let both = part(&mut outbox, MS);
+    assert_eq!((both.command, &both.place, both.stiffness), (2, &Place::Joints([0.5; 3]), Some(KX)));
+    // A confirmation of the earlier part does not confirm this one.
+    outbox.confirm(ONE, 1);
+    outbox.put(changes(Change::of(&FingerCommand::new(1).damping(0.5))), None);
+    let all = part(&mut outbox, 2 * MS);
+    assert_eq!((&all.place, all.stiffness, all.damping), (&Place::Joints([0.5; 3]), Some(KX), Some(0.5)));
+}
+
+#[test]
+fn what_is_confirmed_is_not_sent_again_with_a_new_number() {
+    let mut outbox = owner();
+    outbox.put(joints(0.5), None);
+    part(&mut outbox, 0);
+    outbox.confirm(ONE, 1);
+    outbox.put(stiffness(), None);
+    let alone = part(&mut outbox, MS);
+    assert_eq!((alone.command, alone.place, alone.stiffness), (2, Place::Kept, Some(KX)));
+}
+
+#[test]
+fn a_path_begins_once() {
+    let mut outbox = owner();
+    outbox.put(path(), None);
+    assert!(matches!(part(&mut outbox, 0).place, Place::Path(_)));
+    outbox.put(stiffness(), None);
+    assert_eq!(outbox.next(MS), None, "Kx waits for the path");
+    let repeated = part(&mut outbox, 20 * MS);
+    assert_eq!((repeated.command, repeated.stiffness), (1, None));
+    outbox.confirm(ONE, 1);
+    let alone = part(&mut outbox, 21 * MS);
+    assert_eq!((alone.command, alone.place, alone.stiffness), (2, Place::Kept, Some(KX)));
+}
+
+#[test]
+fn a_place_replaces_a_path_at_once() {
+    let mut outbox = owner();
+    outbox.put(path(), None);
+    part(&mut outbox, 0);
+    outbox.put(stiffness(), None);
+    outbox.put(joints(0.25), None);
+    let replaced = part(&mut outbox, MS);
+    assert_eq!((replaced.place, replaced.stiffness), (Place::Joints([0.25; 3]), Some(KX)));
+}
+
+#[test]
+fn a_group_waits_as_a_whole() {
+    let mut outbox = owner();
+    outbox.put(path(), None);
+    part(&mut outbox, 0);
+    let [one, _, _] = stiffness();
+    let [other, _, _] = joints(0.5);
+    outbox.put([one, other, None], None);
+    assert_eq!(outbox.next(MS), None);
+    outbox.confirm(ONE, 1);
+    let target = outbox.next(2 * MS).expect("both");
+    assert_eq!(target.parts.len(), 2);
+}
+
+#[test]
+fn refused_values_are_not_sent_again() {
+    let mut outbox = owner();
+    outbox.put(joints(0.5), None);
+    part(&mut outbox, 0);
+    let text = "too stiff: send a softer Kx".to_string();
+    outbox.refused(&Answer { text: text.clone(), time: 1005 * MS, ..answer(Code::Argument, 1) });
+    let target = outbox.next(20 * MS).expect("it lives");
+    assert_eq!((target.parts.len(), target.seen), (0, 1005 * MS));
+    assert_eq!((outbox.take_refusal(), outbox.take_refusal()), (Some(text), None));
+    outbox.put(stiffness(), None);
+    assert_eq!(part(&mut outbox, 21 * MS).place, Place::Kept);
+}
+
+#[test]
+fn a_refusal_does_not_concern_later_or_confirmed_values() {
+    let mut outbox = owner();
+    outbox.put(joints(0.5), None);
+    part(&mut outbox, 0);
+    outbox.confirm(ONE, 1);
+    outbox.refused(&answer(Code::Argument, 1));
+    assert_eq!(part(&mut outbox, 20 * MS).command, 1, "it was confirmed");
+    outbox.put(joints(0.25), None);
+    part(&mut outbox, 40 * MS);
+    outbox.refused(&answer(Code::Argument, 2));
+    assert_eq!(part(&mut outbox, 60 * MS).command, 2, "it came with Target 3");
+    outbox.refused(&Answer { epoch: 76, ..answer(Code::Argument, 9) });
+    assert_eq!(part(&mut outbox, 80 * MS).command, 2, "that was another epoch");
+}
+
+#[test]
+fn the_owner_notices_that_it_has_lost_the_hand() {
+    let mut outbox = owner();
+    outbox.heard(1000 * MS, 4);
+    assert!(outbox.ownership().is_ok(), "that State was older than the Answer");
+    outbox.heard(1001 * MS, 5);
+    assert!(outbox.ownership().is_ok());
+    outbox.heard(1002 * MS, 6);
+    assert_eq!(outbox.ownership(), Err(Loss::TakenOver));
+    let mut outbox = owner();
+    outbox.heard(1002 * MS, 0);
+    assert_eq!(outbox.ownership(), Err(Loss::Ended));
+}
+
+#[test]
+fn a_new_epoch_begins_without_old_set_points() {
+    let mut outbox = owner();
+    outbox.put(joints(0.5), None);
+    part(&mut outbox, 0);
+    outbox.put(joints(0.75), None);
+    outbox.acquired(&Answer { epoch: 78, ..answer(Code::Done, 6) });
+    let target = outbox.next(MS).expect("it lives");
+    assert_eq!((target.epoch, target.sequence, target.parts.len()), (78, 1, 0));
+    outbox.put(joints(0.25), None);
+    assert_eq!(part(&mut outbox, 2 * MS).command, 2, "numbers continue");
+}
+
+#[test]
+fn time_stamps_are_shared_and_do_not_go_back() {
+    let mut outbox = owner();
+    outbox.put(joints(0.5), Some(3 * MS));
+    assert_eq!(outbox.next(4 * MS).expect("a Target").sent, 3 * MS);
+    outbox.put(joints(0.25), Some(2 * MS));
+    assert_eq!(outbox.next(5 * MS).expect("a Target").sent, 3 * MS);
+    assert_eq!(outbox.next(25 * MS).expect("a Target").sent, 25 * MS);
+}
+
+#[test]
+fn after_the_highest_command_number_comes_1() {
+    let mut outbox = owner();
+    outbox.command = u32::MAX;
+    outbox.put(joints(0.5), None);
+    assert_eq!(part(&mut outbox, 0).command, 1);
+}
+
+/// A server that takes parts as the protocol says.
+#[derive(Default)]
+struct Server {
+    command: u32,
+    values: Change,
+    paths: usize,
+}
+
+impl Server {
+    fn take(&mut self, target: &Target) {
+        let Some(part) = target.parts.iter().find(|part| part.command != self.command) else { return };
+        self.command = part.command;
+        self.paths += usize::from(matches!(part.place, Place::Path(_)));
+        let Part { place, stiffness, damping, .. } = part.clone();
+        self.values.add(Change { place, stiffness, damping });
+    }
+}
+
+/// A small generator of random numbers (SplitMix64).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, bound: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (mixed ^ (mixed >> 31)) % bound
+    }
+
+    /// A change of a planner.
+    fn change(&mut self) -> Change {
+        let angles = [self.below(256) as f64; 3];
+        match self.below(3) {
+            0 => Change { place: Place::Joints(angles), ..Change::default() },
+            1 => Change { stiffness: Some([angles; 3]), ..Change::default() },
+            _ => Change { place: Place::Path(vec![PathPose { time: 1.0, joints: angles }]), ..Change::default() },
+        }
+    }
+}
+
+/// Whatever Targets and confirmations are lost or late, the finger ends with the newest values, and no path begins more
+/// often than it was sent.
+#[test]
+fn the_newest_values_arrive() {
+    let mut random = Random(1);
+    for run in 0..5000 {
+        let (mut outbox, mut server, mut now) = (owner(), Server::default(), 0);
+        let (mut newest, mut paths, mut on_the_way) = (Change::default(), 0, std::collections::VecDeque::new());
+        for _ in 0..random.below(60) {
+            if random.below(4) != 0 {
+                let change = random.change();
+                newest.add(change.clone());
+                paths += usize::from(matches!(change.place, Place::Path(_)));
+                outbox.put(changes(change), None);
+            }
+            now += random.below(30 * MS) * random.below(2);
+            if let Some(target) = outbox.next(now).filter(|_| random.below(3) != 0) {
+                server.take(&target);
+            }
+            on_the_way.push_back(server.command);
+            while on_the_way.len() as u64 > random.below(5) {
+                outbox.confirm(ONE, on_the_way.pop_front().expect("one"));
+            }
+        }
+        for _ in 0..3 {
+            now += REPETITION;
+            outbox.next(now).iter().for_each(|target| server.take(target));
+            outbox.confirm(ONE, server.command);
+        }
+        assert_eq!(server.values, newest, "run {run}");
+        assert!(server.paths <= paths, "run {run}: {paths} paths were sent, and {} begun", server.paths);
+    }
+}

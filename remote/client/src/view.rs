@@ -1,0 +1,81 @@
+//! What a client knows of a hand. It has no clock and no thread.
+
+use crate::server_clock::ServerClock;
+use sun2xp_remote_protocol::{FINGERS, Finger, Record, State, Status};
+
+/// What a client has received and sent since it has opened the hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct RemoteStatistics {
+    /// States that were received.
+    pub states: u64,
+    /// States that were lost on the way.
+    pub lost_states: u64,
+    /// Cycles of which the server has sent no record, because it was late.
+    pub missing_cycles: u64,
+    /// Messages that are not of this version of the protocol, or malformed.
+    pub malformed: u64,
+    /// Targets that were sent.
+    pub targets: u64,
+    /// Set points that the hand has refused.
+    pub refused: u64,
+}
+
+/// What a client knows of a hand.
+#[derive(Debug, Default)]
+pub struct View {
+    clock: ServerClock,
+    newest: [Option<Record>; FINGERS],
+    /// The newest Status.
+    status: Option<Status>,
+    /// The reception of the newest State.
+    heard: Option<u64>,
+    /// The number of the newest State.
+    number: Option<u64>,
+    pub statistics: RemoteStatistics,
+}
+
+impl View {
+    /// Takes a State. Returns false if it comes from a server that was started again.
+    pub fn take_state(&mut self, state: &State, now: u64) -> bool {
+        let continued = self.number.is_none_or(|before| state.number > before);
+        if !continued {
+            (self.clock, self.newest, self.number) = (ServerClock::default(), [None; FINGERS], None);
+        }
+        let lost = self.number.map_or(0, |before| state.number - before - 1);
+        self.number = Some(state.number);
+        self.statistics.states += 1;
+        self.statistics.lost_states += lost;
+        self.statistics.missing_cycles += u64::from(state.missing);
+        self.clock.heard(state.time, now);
+        self.heard = Some(now);
+        for record in &state.records {
+            self.newest[record.finger.index()] = Some(*record);
+        }
+        continued
+    }
+
+    pub fn take_status(&mut self, status: Status) {
+        self.status = Some(status);
+    }
+
+    pub fn status(&self) -> Option<&Status> {
+        self.status.as_ref()
+    }
+
+    /// The newest record of a finger.
+    pub fn newest(&self, finger: Finger) -> Option<&Record> {
+        self.newest[finger.index()].as_ref()
+    }
+
+    /// The age of the newest record of a finger, ns. It includes the time since its reception, and the delay on the way
+    /// beyond the smallest one.
+    pub fn age(&self, finger: Finger, now: u64) -> Option<u64> {
+        self.clock.age(self.newest(finger)?.begin, now)
+    }
+
+    /// The time since the newest State, ns.
+    pub fn silence(&self, now: u64) -> Option<u64> {
+        self.heard.map(|heard| now.saturating_sub(heard))
+    }
+}
