@@ -15,7 +15,7 @@ use std::thread::JoinHandle;
 use sun2xp::motion::ExpiryReaction;
 use sun2xp::realtime::{Clock, MonotonicClock, Priority, now, spawn};
 use sun2xp::{Configuration, Hand};
-use sun2xp_remote_protocol::{Action, Answer};
+use sun2xp_remote_protocol::{Action, Answer, ClientName, Status};
 use zenoh::key_expr::KeyExpr;
 use zenoh::query::Query;
 use zenoh::sample::Sample;
@@ -97,6 +97,19 @@ impl Server {
     #[must_use]
     pub fn hand(&self) -> &Hand {
         &self.shared.hand
+    }
+
+    /// Takes a payload as if it had arrived now under the key of this client, for tests in the same process. Returns the
+    /// refusal of the hand, if it refuses a Target.
+    #[must_use]
+    pub fn take_target(&self, client: &ClientName, payload: &[u8]) -> Option<Answer> {
+        self.shared.desk.lock().take_target(client, payload, now())
+    }
+
+    /// Returns the Status of now, for tests in the same process.
+    #[must_use]
+    pub fn status(&self) -> Status {
+        status(&self.shared.hand, &self.shared.settings.limits, &self.shared.desk.lock(), now())
     }
 
     /// Ends the ownership, brings every finger to its end state, and closes session and hand.
