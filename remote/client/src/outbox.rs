@@ -16,7 +16,7 @@ const LEAST_INTERVAL: u64 = 500_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ownership {
     pub epoch: u64,
-    /// The number of the epoch since the server's start.
+    /// The number of the epoch.
     pub number: u64,
     /// The time of the Answer that gave the epoch, ns, server's clock.
     since: u64,

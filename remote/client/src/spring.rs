@@ -1,4 +1,5 @@
-//! The check that Kx is a spring. It is the check of the hand, so that a call refuses at once what the hand would refuse.
+//! The check that Kx is a spring. It is the check of the hand, so that a call refuses at once what the hand would
+//! refuse.
 
 use nalgebra::Matrix3;
 

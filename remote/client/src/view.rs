@@ -30,20 +30,20 @@ pub struct View {
     status: Option<Status>,
     /// The reception of the newest State.
     heard: Option<u64>,
-    /// The number of the newest State.
-    number: Option<u64>,
+    /// The number and the time of the newest State.
+    newest_state: Option<(u64, u64)>,
     pub statistics: RemoteStatistics,
 }
 
 impl View {
     /// Takes a State. Returns false if it comes from a server that was started again.
     pub fn take_state(&mut self, state: &State, now: u64) -> bool {
-        let continued = self.number.is_none_or(|before| state.number > before);
+        let continued = self.newest_state.is_none_or(|(number, time)| state.number > number && state.time > time);
         if !continued {
-            (self.clock, self.newest, self.number) = (ServerClock::default(), [None; FINGERS], None);
+            (self.clock, self.newest, self.newest_state) = (ServerClock::default(), [None; FINGERS], None);
         }
-        let lost = self.number.map_or(0, |before| state.number - before - 1);
-        self.number = Some(state.number);
+        let lost = self.newest_state.map_or(0, |(number, _)| state.number - number - 1);
+        self.newest_state = Some((state.number, state.time));
         self.statistics.states += 1;
         self.statistics.lost_states += lost;
         self.statistics.missing_cycles += u64::from(state.missing);

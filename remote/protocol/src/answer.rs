@@ -18,8 +18,8 @@ pub struct Answer {
     pub epoch: u64,
     /// Time, ns, server's clock: a value for [`Target::seen`](crate::Target::seen).
     pub time: u64,
-    /// For the refusal of a Target: its sequence number. For acquire: the number of the new epoch since the server's
-    /// start, which is [`State::owner`](crate::State::owner) from now on. Otherwise 0.
+    /// For the refusal of a Target: its sequence number. For acquire: the number of the new epoch, which is
+    /// [`State::owner`](crate::State::owner) from now on. Otherwise 0.
     pub number: u64,
     /// The cause and the remedy; empty if it is done.
     pub text: String,

@@ -19,7 +19,7 @@ pub struct State {
     pub number: u64,
     /// Time of publication, ns, server's clock.
     pub time: u64,
-    /// The number of the owner's epoch since the server's start; 0 if there is no owner.
+    /// The number of the owner's epoch; 0 if there is no owner.
     pub owner: u64,
     /// The cycles. Those of a finger are in their order.
     pub records: Vec<Record>,

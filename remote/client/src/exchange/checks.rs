@@ -16,9 +16,13 @@ impl Exchange {
     /// The newest record of a finger, if it is not too old.
     pub fn record(&self, number: i32, now: u64) -> Result<&Record, RemoteError> {
         let finger = self.finger(number)?;
-        let (Some(record), Some(age)) = (self.view.newest(finger), self.view.age(finger, now)) else {
-            return Err(self.nothing_heard());
+        let record = self.view.newest(finger).ok_or_else(|| self.nothing_heard())?;
+        // A finger that has stopped may have no new cycles.
+        let age = match record.stage {
+            Stage::Faulted(_) => self.view.silence(now),
+            _ => self.view.age(finger, now),
         };
+        let age = age.ok_or_else(|| self.nothing_heard())?;
         if age > u64::from(self.stale_ms) * MS {
             let (age_ms, stale_ms, endpoint) = (age / MS, self.stale_ms, self.endpoint.clone());
             return Err(RemoteError::Stale { finger, age_ms, stale_ms, endpoint });

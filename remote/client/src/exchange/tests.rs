@@ -188,6 +188,11 @@ fn a_finger_that_has_stopped_is_reported_with_its_fault() {
     let (kind, text) = refused(send(&mut exchange, good(1), 11 * MS));
     assert!(text.starts_with("finger 1 is faulted (fault 10): the cable: plug it in. Remove"), "{kind:?}: {text}");
     assert!(exchange.record(1, 11 * MS).is_ok(), "its record can be read");
+    // Its servo has no cycles any more, but the server repeats the newest one.
+    let State { records, .. } = state(2, 11 * MS, Stage::Faulted(10));
+    exchange.take_state(&State { records, ..state(3, 500 * MS, Stage::Running) }, 500 * MS);
+    assert_eq!(exchange.moving(1, 600 * MS).expect_err("faulted").kind(), RemoteErrorKind::Faulted);
+    assert_eq!(exchange.moving(1, 601 * MS).expect_err("stale").kind(), RemoteErrorKind::Stale);
 }
 
 #[test]
@@ -213,12 +218,16 @@ fn a_client_that_lost_the_hand_is_told_why() {
 
 #[test]
 fn a_server_that_was_started_again_is_noticed() {
+    for restarted in [state(1, 20 * MS, Stage::Running), State { time: 7 * MS, ..state(9, 0, Stage::Running) }] {
+        let mut exchange = owner();
+        exchange.take_state(&restarted, 30 * MS);
+        let (kind, text) = refused(send(&mut exchange, good(1), 30 * MS));
+        assert!(kind == RemoteErrorKind::NotOwner && text.contains("the server was started again"), "{text}");
+    }
     let mut exchange = owner();
-    // The new server has the same owner's number by chance, and a clock that began again.
-    let restarted = State { time: 7 * MS, ..state(1, 20 * MS, Stage::Running) };
-    exchange.take_state(&restarted, 30 * MS);
-    let (kind, text) = refused(send(&mut exchange, good(1), 30 * MS));
-    assert!(kind == RemoteErrorKind::NotOwner && text.contains("the server was started again"), "{text}");
+    let other = State { owner: 0, ..state(9, 20 * MS, Stage::Running) };
+    exchange.take_state(&other, 30 * MS);
+    assert!(refused(send(&mut exchange, good(1), 30 * MS)).1.contains("the server has ended its ownership"));
 }
 
 #[test]

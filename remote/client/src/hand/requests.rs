@@ -23,7 +23,8 @@ impl RemoteHand {
         self.request(Action::Stop, finger)
     }
 
-    /// Zeros finger 1, 2 or 3. Returns when this is done, after up to ten minutes. The result is in force at the server.
+    /// Zeros finger 1, 2 or 3. Returns when this is done, after up to ten minutes. The result is in force at the
+    /// server.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if this client does not own the hand, if the calibration fails, or

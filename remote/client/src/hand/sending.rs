@@ -10,9 +10,9 @@ impl RemoteHand {
     /// Sends theta_d of finger 1, 2 or 3: joints 0, 1 and 2, rad.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger, if an angle is NaN, infinite or beyond a joint limit, or if the hand
-    /// cannot be commanded: it is not owned, the finger has stopped, nothing was heard of the hand for `stale_ms`, or
-    /// the hand has refused an earlier set point, which is reported once.
+    /// Returns an error if there is no such finger, if an angle is NaN, infinite or beyond a joint limit, or if the
+    /// hand cannot be commanded: it is not owned, the finger has stopped, nothing was heard of the hand for
+    /// `stale_ms`, or the hand has refused an earlier set point, which is reported once.
     pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), RemoteError> {
         self.send_group(&[FingerCommand::new(finger).joints(joints)])
     }
@@ -40,15 +40,15 @@ impl RemoteHand {
     /// The hand refuses a ratio that is outside its range; a later call reports this.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger, if the ratio is NaN, infinite or not positive, or if the hand cannot
-    /// be commanded ([`RemoteHand::send_position`]).
+    /// Returns an error if there is no such finger, if the ratio is NaN, infinite or not positive, or if the hand
+    /// cannot be commanded ([`RemoteHand::send_position`]).
     pub fn send_damping(&self, finger: i32, ratio: f64) -> Result<(), RemoteError> {
         self.send_group(&[FingerCommand::new(finger).damping(ratio)])
     }
 
-    /// Sends a path to finger 1, 2 or 3: 1 to 32 poses with rising times, s, from the moment in which the hand takes the
-    /// path. The hand checks the path as a whole; a later call reports a refusal. A Kx or damping that is sent right
-    /// after a path waits until the hand has confirmed the path.
+    /// Sends a path to finger 1, 2 or 3: 1 to 32 poses with rising times, s, from the moment in which the hand takes
+    /// the path. The hand checks the path as a whole; a later call reports a refusal. A Kx or damping that is sent
+    /// right after a path waits until the hand has confirmed the path.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if the finger is not running, if the number of poses, a time or an

@@ -1,12 +1,15 @@
 //! The hand behind the small server: its owner, and what its fingers do.
 
+use std::sync::LazyLock;
 use std::time::Instant;
 use sun2xp_remote_client::{ClientName, Counts, Event, Finger, FingerStatus, Record, Stage, Status};
 use sun2xp_remote_protocol::{Action, Answer, Code, FaultText, Place, Request, State, Target};
 use zenoh::Session;
 
+/// The clock of the machine: a server that is started again does not set it back.
+static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
+
 pub struct FakeHand {
-    begin: Instant,
     /// Every Target of the owner, in the order of reception.
     pub targets: Vec<Target>,
     /// Every Request.
@@ -33,12 +36,11 @@ pub struct FakeHand {
 impl FakeHand {
     pub fn new() -> Self {
         Self {
-            begin: Instant::now(),
             targets: Vec::new(),
             requests: Vec::new(),
             owner: None,
             epoch: 0,
-            epochs: 0,
+            epochs: BEGIN.elapsed().as_nanos() as u64,
             commands: [0; 2],
             joints: [[0.25; 3]; 2],
             stage: Stage::Running,
@@ -53,7 +55,7 @@ impl FakeHand {
     }
 
     fn now(&self) -> u64 {
-        1 + self.begin.elapsed().as_nanos() as u64
+        1 + BEGIN.elapsed().as_nanos() as u64
     }
 
     /// Takes a Target of the epoch in force. Returns the refusal, if it is refused.
