@@ -90,6 +90,8 @@ impl Scope {
             rule("is answered", &["reply"], "egress", asked),
         ];
         if permission == Permission::Command {
+            // A declared publisher sends only if it is told of a subscriber.
+            rules.push(rule("is told", &["declare_subscriber"], "egress", vec![self.key("target/*")]));
             rules.push(rule("commands", &["put"], "ingress", vec![self.key(&format!("target/{client}"))]));
         }
         rules
@@ -147,7 +149,7 @@ mod tests {
         for key in ["target/planner", "acquire/planner", "stop/planner", "stop/screen", "refused/planner"] {
             assert!(control.contains(&format!("sun2xp/hand/{key}\"")), "{key}");
         }
-        for key in ["target/screen", "acquire/screen", "target/*", "**"] {
+        for key in ["target/screen", "acquire/screen", "**"] {
             assert!(!control.contains(&format!("sun2xp/hand/{key}\"")), "{key}");
         }
     }

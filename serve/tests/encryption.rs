@@ -5,6 +5,7 @@ mod common;
 use common::client::{Certificate, part, request};
 use common::{CLIENTS, Client, Rig, free_port, wait_for};
 use std::path::Path;
+use sun2xp_remote_client::{RemoteConfiguration, RemoteHand};
 use sun2xp_remote_protocol::{Action, Code};
 use sun2xp_serve::certificates::{Wanted, make};
 
@@ -62,6 +63,24 @@ fn a_client_uses_only_the_keys_of_its_certificate() {
     let next = [0.15, 0.5, 0.9];
     alice.repeat_until(&[part(2, next)], "set point", |_| (rig.set_point() == next).then_some(()));
     assert_eq!(carol.request(request(Action::Stop)).code, Code::Done);
+    rig.server.end();
+}
+
+#[test]
+fn the_client_of_the_project_commands_with_its_certificate() {
+    let folder = tempfile::tempdir().expect("a folder");
+    certificates(folder.path(), &["alice"]);
+    let rig = rig(folder.path());
+    let text = format!(
+        "[remote]\nendpoint = '{}'\nhand = 'hand'\n[remote.tls]\nauthority = 'ca.pem'\ncertificate = 'alice.pem'\n\
+         key = 'alice.key'\n",
+        rig.endpoint
+    );
+    let configuration = RemoteConfiguration::from_text(&text, folder.path()).expect("usable").expect("a table");
+    let hand = RemoteHand::open(&configuration).unwrap_or_else(|error| panic!("{error}"));
+    hand.send_position(1, [0.1, 0.5, 0.9]).expect("sent");
+    wait_for("set point", || (rig.set_point() == [0.1, 0.5, 0.9]).then_some(()));
+    hand.close().expect("released");
     rig.server.end();
 }
 

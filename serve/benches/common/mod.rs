@@ -1,0 +1,91 @@
+//! A server with the simulated hand in this process, and clients in others.
+
+#![allow(dead_code)]
+
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use sun2xp::{Configuration, Hand, RealTime};
+use sun2xp_remote_client::{RemoteConfiguration, RemoteHand};
+use sun2xp_serve::certificates::{Wanted, make};
+use sun2xp_serve::server::{Server, prepare};
+use sun2xp_serve::settings::{Overrides, Settings};
+
+/// The clients. Alice commands; the others only read.
+const CLIENTS: &str = "[serve.clients]\nalice = 'command'\nbob = 'command'\ncarol = 'read'\n";
+
+/// A hand that is offered on loopback.
+pub struct Offer {
+    server: Server,
+    pub endpoint: String,
+    certificates: Option<tempfile::TempDir>,
+}
+
+impl Offer {
+    /// Offers the simulated hand at this rate, Hz.
+    pub fn new(tls: bool, rate: f64) -> Self {
+        let port = TcpListener::bind("127.0.0.1:0").and_then(|at| at.local_addr()).expect("a free port").port();
+        let endpoint = format!("{}/127.0.0.1:{port}", if tls { "tls" } else { "tcp" });
+        let certificates = tls.then(|| tempfile::tempdir().expect("a folder"));
+        let mut text = format!("[serve]\nlisten = ['{endpoint}']\n{CLIENTS}");
+        if let Some(folder) = &certificates {
+            let names = |names: &[&str]| names.iter().map(|name| name.parse().expect("a name")).collect();
+            let (servers, clients) = (names(&["server"]), names(&["alice", "bob", "carol"]));
+            make(folder.path(), &Wanted { servers, addresses: Vec::new(), clients }).expect("certificates");
+            text += "[serve.tls]\nauthority = 'ca.pem'\ncertificate = 'server.pem'\nkey = 'server.key'\n";
+        }
+        let folder = certificates.as_ref().map_or(PathBuf::new(), |folder| folder.path().into());
+        let settings = Settings::from_text(&text, &folder.join("sun2xp.toml"), &Overrides::default());
+        let settings = settings.unwrap_or_else(|error| panic!("{error}"));
+        let mut configuration = Configuration::default();
+        configuration.hand.rate = rate;
+        configuration.hand.real_time = RealTime::Try;
+        prepare(&mut configuration, &settings.limits);
+        let hand = Hand::open(configuration).expect("the simulated hand");
+        let server = Server::start(hand, settings).unwrap_or_else(|error| panic!("{error}"));
+        Self { server, endpoint, certificates }
+    }
+
+    pub fn hand(&self) -> &Hand {
+        self.server.hand()
+    }
+
+    /// The folder with the certificates.
+    pub fn folder(&self) -> Option<&Path> {
+        self.certificates.as_ref().map(tempfile::TempDir::path)
+    }
+
+    pub fn end(self) {
+        self.server.end();
+    }
+}
+
+/// The configuration of the client with this name.
+pub fn configuration(endpoint: &str, name: &str, folder: Option<&str>) -> RemoteConfiguration {
+    let mut text = format!("[remote]\nendpoint = '{endpoint}'\nhand = 'hand'\n");
+    match folder {
+        Some(_) => {
+            text += &format!("[remote.tls]\nauthority = 'ca.pem'\ncertificate = '{name}.pem'\nkey = '{name}.key'\n");
+        }
+        None => text += &format!("client = '{name}'\n"),
+    }
+    let read = RemoteConfiguration::from_text(&text, Path::new(folder.unwrap_or_default()));
+    read.expect("a configuration").expect("a table")
+}
+
+/// Opens the hand for alice.
+pub fn remote(endpoint: &str, folder: Option<&str>) -> RemoteHand {
+    RemoteHand::open(&configuration(endpoint, "alice", folder)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The set point with this number, rad. Every number has its own.
+pub fn pose_of(number: u32) -> [f64; 3] {
+    [0.1, 0.5, 0.9 + 1e-6 * f64::from(number % 100_000)]
+}
+
+/// The value that this part of `values` does not exceed.
+pub fn percentile(values: &[f64], part: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let index = (part * sorted.len() as f64).ceil() as usize;
+    sorted.get(index.saturating_sub(1)).copied().unwrap_or(f64::NAN)
+}
