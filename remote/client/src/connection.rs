@@ -110,6 +110,7 @@ pub fn get(
     let mut received = Vec::new();
     while received.len() < most {
         // The sender is dropped when all replies have come, or when the connection is lost.
+        // Zenoh ends the query after the limit.
         match replies.recv_timeout(limit + Duration::from_secs(1)) {
             Ok(Ok(reply)) => received.push(reply),
             Ok(Err(error)) if received.is_empty() => return Err(error),

@@ -13,13 +13,17 @@ use std::time::Duration;
 use sun2xp_remote_protocol::{
     Action, Answer, ClientName, Code, DecodeError, Event, Finger, HandKeys, Request, State, Status,
 };
-use zenoh::pubsub::Publisher;
+use zenoh::key_expr::KeyExpr;
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::sample::Sample;
 use zenoh::{Session, Wait};
 
 /// The time in which the server answers most requests. Recovering takes up the slack of tendons.
 const ANSWER: Duration = Duration::from_secs(30);
+
+/// The time in which the server answers a release or a stop. A planner that closes the hand must not wait longer if the
+/// line is cut.
+const QUICK_ANSWER: Duration = Duration::from_secs(3);
 
 /// The time in which a calibration ends. The protocol says ten minutes.
 const CALIBRATION: Duration = Duration::from_secs(610);
@@ -95,36 +99,26 @@ impl Link {
     }
 
     fn subscribe(&self) -> zenoh::Result<()> {
-        let listen = |key: String, take: Box<dyn Fn(&Shared, &[u8]) + Send + Sync>| {
-            let shared = self.shared.clone();
-            let callback = move |sample: Sample| take(&shared, &sample.payload().to_bytes());
-            self.session.declare_subscriber(key).callback(callback).background().wait()
-        };
-        listen(
-            self.keys.state(),
-            Box::new(|shared, payload| {
-                shared.take(State::decode(payload), |exchange, state| exchange.take_state(&state, now()));
-            }),
-        )?;
-        listen(
-            self.keys.status(),
-            Box::new(|shared, payload| {
-                shared.take(Status::decode(payload), |exchange, status| exchange.view.take_status(status));
-            }),
-        )?;
-        listen(
-            self.keys.refused(&self.client),
-            Box::new(|shared, payload| {
-                shared.take(Answer::decode(payload), |exchange, answer| exchange.take_refusal(&answer));
-            }),
-        )?;
-        listen(
-            self.keys.events(),
-            Box::new(|shared, payload| match Event::decode(payload) {
-                Ok(event) => shared.events.put(event),
-                Err(_) => shared.lock().view.statistics.malformed += 1,
-            }),
-        )
+        self.listen(self.keys.state(), |shared, payload| {
+            shared.take(State::decode(payload), |exchange, state| exchange.take_state(&state, now()));
+        })?;
+        self.listen(self.keys.status(), |shared, payload| {
+            shared.take(Status::decode(payload), |exchange, status| exchange.view.take_status(status));
+        })?;
+        self.listen(self.keys.refused(&self.client), |shared, payload| {
+            shared.take(Answer::decode(payload), |exchange, answer| exchange.take_refusal(&answer));
+        })?;
+        self.listen(self.keys.events(), |shared, payload| match Event::decode(payload) {
+            Ok(event) => shared.events.put(event),
+            Err(_) => shared.lock().view.statistics.malformed += 1,
+        })
+    }
+
+    /// Calls `take` with every payload of a key, in a thread of Zenoh.
+    fn listen(&self, key: String, take: fn(&Shared, &[u8])) -> zenoh::Result<()> {
+        let shared = self.shared.clone();
+        let callback = move |sample: Sample| take(&shared, &sample.payload().to_bytes());
+        self.session.declare_subscriber(key).callback(callback).background().wait()
     }
 
     /// Requests the Status, and so finds out whether the hand is there.
@@ -166,12 +160,11 @@ impl Link {
     }
 
     fn start_sender(&self) -> Result<JoinHandle<()>, RemoteError> {
-        let publisher = self.session.declare_publisher(self.keys.target(&self.client));
-        let publisher = publisher.congestion_control(CongestionControl::Drop).priority(Priority::RealTime);
-        let publisher = publisher.express(true).wait().map_err(|error| self.not_connected(&error.to_string()))?;
-        let shared = self.shared.clone();
-        let started =
-            std::thread::Builder::new().name("sun2xp targets".into()).spawn(move || send(&shared, &publisher));
+        let key = KeyExpr::try_from(self.keys.target(&self.client));
+        let key = key.map_err(|error| self.not_connected(&error.to_string()))?;
+        let (shared, session) = (self.shared.clone(), self.session.clone());
+        let thread = std::thread::Builder::new().name("sun2xp targets".into());
+        let started = thread.spawn(move || send(&shared, &session, &key));
         started.map_err(|source| RemoteError::System { doing: "start the thread that sends Targets".into(), source })
     }
 
@@ -182,7 +175,11 @@ impl Link {
         let take_over = acquires && self.configuration.take_over;
         let request = Request { action, finger, take_over, recover, epoch };
         let payload = request.encode().map_err(|error| RemoteError::NotConnected(error.to_string()))?;
-        let limit = if matches!(action, Action::Calibrate | Action::Identify) { CALIBRATION } else { ANSWER };
+        let limit = match action {
+            Action::Calibrate | Action::Identify => CALIBRATION,
+            Action::Release | Action::Stop => QUICK_ANSWER,
+            Action::Acquire | Action::Recover => ANSWER,
+        };
         let key = self.keys.request(action, &self.client);
         let replies = connection::get(&self.session, &key, Some(payload), (limit, 1));
         let replies = replies.map_err(|error| self.not_connected(&error))?;
@@ -199,7 +196,7 @@ impl Link {
         match answer.code {
             Code::Done => Ok(answer),
             Code::Owned => Err(RemoteError::Owned(answer.text)),
-            Code::NotOwner => Err(self.not_owner(answer)),
+            Code::NotOwner if !acquires => Err(self.not_owner(answer)),
             code => Err(RemoteError::Answered { code, text: answer.text }),
         }
     }
@@ -248,7 +245,7 @@ impl Link {
 }
 
 /// Sends Targets until the end.
-fn send(shared: &Shared, publisher: &Publisher<'_>) {
+fn send(shared: &Shared, session: &Session, key: &KeyExpr<'_>) {
     let mut exchange = shared.lock();
     while !shared.ended.load(Ordering::Relaxed) {
         let now = now();
@@ -257,7 +254,10 @@ fn send(shared: &Shared, publisher: &Publisher<'_>) {
             drop(exchange);
             // A Target that is lost, or that cannot be sent now, is repeated.
             if let Ok(payload) = target.encode() {
-                let _ = publisher.put(payload).wait();
+                // A declared publisher would send only if the server could tell it of its subscriber, which the access
+                // control does not permit.
+                let put = session.put(key, payload).congestion_control(CongestionControl::Drop);
+                let _ = put.priority(Priority::RealTime).express(true).wait();
             }
             exchange = shared.lock();
             continue;

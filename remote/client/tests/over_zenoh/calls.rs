@@ -1,8 +1,6 @@
-//! The client against a small server, over Zenoh on loopback.
+//! What a planner sees of a hand, of its loss, and of a server that is gone.
 
-mod common;
-
-use common::{FakeServer, LIMIT, configuration, free_port, until};
+use crate::server::{FakeServer, LIMIT, configuration, free_port, until};
 use sun2xp_remote_client::{
     Event, Finger, FingerCommand, RemoteError, RemoteErrorKind, RemoteHand, Stage, discover, send_together,
 };

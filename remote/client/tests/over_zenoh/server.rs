@@ -1,9 +1,6 @@
 //! A small server that speaks the protocol over Zenoh on loopback, with fingers that are at once where they are sent.
 
-mod fake_hand;
-
-pub use fake_hand::FakeHand;
-
+use crate::fake_hand::FakeHand;
 use std::net::TcpListener;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::thread::JoinHandle;

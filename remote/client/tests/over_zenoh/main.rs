@@ -1,0 +1,6 @@
+//! The client against a small server, over Zenoh on loopback.
+
+mod calls;
+mod fake_hand;
+mod latency;
+mod server;
