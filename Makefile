@@ -2,7 +2,9 @@
 #
 #   make                     builds them in target/dist, with cargo
 #   make install             installs what was built, below /usr/local
-#   make uninstall           removes exactly the files that make install has installed
+#   make remote              builds the server and the library of remote hands in target/dist
+#   make install-remote      installs them too, after make install
+#   make uninstall           removes exactly the files that were installed
 #   make deb                 builds a Debian package, target/dist/sun2xp_VERSION_ARCHITECTURE.deb
 #   make wheel               builds the Python wheel in target/wheels, the same bytes from the same source
 #   make check-installed     installs into an empty folder, and uses the result with every compiler and build system
@@ -30,6 +32,12 @@ all:
 install:
 	packaging/install
 
+remote:
+	BUILT=$(BUILT) packaging/build-remote --target-dir $(TARGET) $(CARGOFLAGS)
+
+install-remote:
+	packaging/install-remote
+
 uninstall:
 	packaging/uninstall
 
@@ -45,4 +53,4 @@ check-installed: all
 clean:
 	rm -rf $(BUILT)
 
-.PHONY: all install uninstall deb wheel check-installed clean
+.PHONY: all install remote install-remote uninstall deb wheel check-installed clean

@@ -181,6 +181,7 @@
 
        [remote]
        endpoint = "tls/cell:7447"
+       hand = "left"
 
 
    8. THE CALLS: below, each with its manual. The examples are statements of a function that has opened

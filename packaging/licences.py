@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Writes packaging/third-party-licences.txt: the licences of all crates that the library, the tool and the Python package
-contain.
+contain. Writes packaging/third-party-licences-remote.txt: those of the other crates that the server and the library of
+remote hands contain.
 
-Run it after a change of Cargo.lock. tool/tests/third_party.rs compares the list of crates.
+Run it after a change of Cargo.lock. tool/tests/third_party.rs compares the lists of crates.
 """
 
 import json
@@ -23,11 +24,16 @@ EMBEDDED = {
 }
 
 
-def contained(metadata):
-    """Returns the crates that are linked, without crates that only run during the build."""
+LOCAL = ("sun2xp", "sun2xp-tool", "sun2xp-python")
+REMOTE = ("sun2xp-serve", "sun2xp-remote-library")
+REMOTE_FILE = "third-party-licences-remote.txt"
+
+
+def contained(metadata, owners):
+    """Returns the crates that are linked to packages, without crates that only run during the build."""
     # The metadata has the crates of all features; the tree has those of the enabled ones.
     command = ["cargo", "tree", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}"]
-    command += ["--package", "sun2xp", "--package", "sun2xp-tool", "--package", "sun2xp-python", "--target", TARGET]
+    command += [argument for owner in owners for argument in ("--package", owner)] + ["--target", TARGET]
     lines = subprocess.check_output(command, cwd=ROOT, text=True).splitlines()
     linked = {tuple(line.split()[:2]) for line in lines if line and "(/" not in line}
     found = [package for package in metadata["packages"] if (package["name"], "v" + package["version"]) in linked]
@@ -55,25 +61,37 @@ def split(text):
     return notices, "\n\n".join(rest)
 
 
-def main():
-    command = ["cargo", "metadata", "--format-version", "1", "--locked", "--filter-platform", TARGET]
-    crates = contained(json.loads(subprocess.check_output(command, cwd=ROOT)))
+def write(file, title, crates, embedded):
+    """Writes a list of crates with the texts of their licences."""
     licences = {}
-    lines = ["The library, the tool and the Python package contain these crates:", ""]
+    lines = [title, ""]
     for package in crates:
         name = f"{package['name']} {package['version']}"
         lines.append(f"{name}: {package['license'] or 'see the text'}")
-        for file in files(package):
-            notices, rest = split(file.read_text(errors="replace"))
+        # Some crates offer the Apache licence without its text.
+        apache = [ROOT / "LICENSE-APACHE"] if file == REMOTE_FILE and "Apache-2.0" in (package["license"] or "") else []
+        for source in files(package) or apache:
+            notices, rest = split(source.read_text(errors="replace"))
             licences.setdefault(rest, []).append((name, notices))
     for text, users in sorted(licences.items(), key=lambda item: item[1]):
         lines += ["", "-" * 100]
         for name, notices in users:
             lines.append("; ".join([name, *dict.fromkeys(notices)]))
         lines += ["-" * 100, "", text]
-    for name, file in EMBEDDED.items():
-        lines += ["", "-" * 100, name, "-" * 100, "", (ROOT / file).read_text().strip()]
-    (ROOT / "packaging/third-party-licences.txt").write_text("\n".join(lines) + "\n")
+    for name, source in embedded.items():
+        lines += ["", "-" * 100, name, "-" * 100, "", (ROOT / source).read_text().strip()]
+    (ROOT / "packaging" / file).write_text("\n".join(lines) + "\n")
+
+
+def main():
+    command = ["cargo", "metadata", "--format-version", "1", "--locked", "--filter-platform", TARGET]
+    metadata = json.loads(subprocess.check_output(command, cwd=ROOT))
+    local = contained(metadata, LOCAL)
+    title = "The library, the tool and the Python package contain these crates:"
+    write("third-party-licences.txt", title, local, EMBEDDED)
+    remote = [package for package in contained(metadata, REMOTE) if package not in local]
+    title = "The server and the library of remote hands contain these crates, besides those of third-party-licences.txt:"
+    write(REMOTE_FILE, title, remote, {})
 
 
 if __name__ == "__main__":

@@ -94,7 +94,11 @@ fn file_name() -> String {
     format!("libsun2xp_remote.so.{SUN2XP_ABI_VERSION}")
 }
 
-/// Loads the library, which stays loaded: from the folder of this library, or from where the loader searches.
+/// The folder of the library in the folder of this one. It has the soname of this library, so it must not be where the
+/// system's loader searches.
+const FOLDER: &str = "sun2xp-remote";
+
+/// Loads the library, which stays loaded: from the place where it is installed, or from where the loader searches.
 pub(super) fn load() -> Result<&'static RemoteLibrary, RemoteRefusal> {
     static LOADING: Mutex<()> = Mutex::new(());
     let _loading = LOADING.lock();
@@ -102,8 +106,8 @@ pub(super) fn load() -> Result<&'static RemoteLibrary, RemoteRefusal> {
         return Ok(library);
     }
     let name = file_name();
-    let beside = own_folder().map(|folder| folder.join(&name)).filter(|path| path.exists());
-    let place = beside.as_deref().unwrap_or(Path::new(&name));
+    let installed = own_folder().map(|folder| folder.join(FOLDER).join(&name)).filter(|path| path.exists());
+    let place = installed.as_deref().unwrap_or(Path::new(&name));
     let file = CString::new(place.as_os_str().as_bytes()).unwrap_or_default();
     // SAFETY: the name is a C string. The initialisers of the library are those of this project.
     let library = unsafe { libc::dlopen(file.as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL) };
@@ -111,8 +115,8 @@ pub(super) fn load() -> Result<&'static RemoteLibrary, RemoteRefusal> {
         return Err(refusal(
             libc::ELIBACC,
             format!(
-                "the configuration has a table [remote], and {name} cannot be loaded ({}): install it beside libsun2xp \
-                 (make install-remote), or add its folder to LD_LIBRARY_PATH",
+                "the configuration has a table [remote], and {name} cannot be loaded ({}): install it (make \
+                 install-remote), or add its folder to LD_LIBRARY_PATH",
                 loader_error()
             ),
         ));

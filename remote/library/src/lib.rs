@@ -1,1 +1,28 @@
 //! The C calls of libsun2xp for a hand on another machine.
+//!
+//! The exported functions are those of the package `sun2xp`: the same names, structs, texts, and the same care for the
+//! planner's process. This package makes them open hands over the network, and only those.
+
+#![deny(unsafe_code)]
+#![warn(missing_docs)]
+
+mod network_hand;
+mod opening;
+mod refusals;
+mod results;
+mod stop_calls;
+mod waiting;
+
+/// Runs when the library is loaded.
+#[allow(unsafe_code, reason = "the loader calls the functions of this section")]
+mod start {
+    extern "C" fn start() {
+        sun2xp::capi::open_only_remote_hands(crate::opening::open);
+    }
+
+    // SAFETY: the loader calls each address of the section as a function. This one does not panic, and needs nothing
+    // that other libraries initialise.
+    #[used]
+    #[unsafe(link_section = ".init_array")]
+    static START: extern "C" fn() = start;
+}

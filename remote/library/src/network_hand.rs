@@ -1,0 +1,286 @@
+//! A hand on another machine, over the network.
+
+use crate::refusals::{closed, refusal};
+use crate::results;
+use crate::stop_calls::{StopCalls, Stoppable};
+use crate::waiting::FingerWait;
+use std::array::from_fn;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+use sun2xp::calibration::Task;
+use sun2xp::capi::{RemoteHand, RemoteRefusal};
+use sun2xp::capi::{sun2xp_event, sun2xp_fault, sun2xp_limits, sun2xp_status, sun2xp_tip};
+use sun2xp::groups::{FingerCommand, Pose, Until};
+use sun2xp::hand::{Fingers, Ranges};
+use sun2xp::nalgebra::Vector3;
+use sun2xp::{Configuration, FingerNumber, HandError};
+use sun2xp_remote_client as client;
+
+/// Interval at which a wait looks at the newest records, which arrive every 10 ms.
+const LOOK: Duration = Duration::from_millis(5);
+
+/// Longest wait for an event before the thread checks whether the hand was closed.
+const EVENT_CHECK: Duration = Duration::from_millis(100);
+
+pub(crate) struct NetworkHand {
+    /// None when the hand is closed.
+    connection: RwLock<Option<Arc<Connection>>>,
+    /// `[hand]` and `[finger.events]` of the planner's configuration.
+    configuration: Configuration,
+    /// The joint angles of each finger that were sent last; none if another pose was sent last.
+    sent: Mutex<[Option<[f64; 3]>; 3]>,
+}
+
+/// What ends when the hand is closed.
+struct Connection {
+    hand: client::RemoteHand,
+    events: client::RemoteEvents,
+    /// The first record of each finger.
+    first: [Mutex<Option<client::Record>>; 3],
+    _stop_calls: StopCalls,
+}
+
+impl Stoppable for NetworkHand {
+    fn stop_every_finger(&self) {
+        // Nobody is left to tell: the call that asked for this has returned.
+        let _ = self.stop(0);
+    }
+}
+
+impl NetworkHand {
+    /// Takes over an open hand.
+    pub fn start(
+        hand: client::RemoteHand,
+        configuration: &Configuration,
+    ) -> Result<Arc<dyn RemoteHand>, RemoteRefusal> {
+        let own = Arc::new(Self {
+            connection: RwLock::new(None),
+            configuration: configuration.clone(),
+            sent: Mutex::new([None; 3]),
+        });
+        let _stop_calls = StopCalls::watch(Arc::downgrade(&own))?;
+        let events = hand.events();
+        let connection = Connection { hand, events, first: from_fn(|_| Mutex::new(None)), _stop_calls };
+        *own.connection.write().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(connection));
+        Ok(own)
+    }
+
+    fn connection(&self) -> Result<Arc<Connection>, RemoteRefusal> {
+        self.connection.read().unwrap_or_else(PoisonError::into_inner).clone().ok_or_else(closed)
+    }
+
+    /// The checks of a command that a hand of this machine makes, with the same results. The server makes the others.
+    fn admitted(
+        &self,
+        hand: &client::RemoteHand,
+        command: &FingerCommand,
+    ) -> Result<client::FingerCommand, RemoteRefusal> {
+        let finger = member(hand, command.finger)?;
+        let status = hand.finger_status(finger.get()).map_err(refusal)?;
+        let ranges = Ranges {
+            finger,
+            joint_limits: (Vector3::from(status.low), Vector3::from(status.high)),
+            stiffness_bound: status.stiffness_bound,
+            out_of_range: self.configuration.hand.out_of_range,
+        };
+        let checked = || {
+            let pose = match command.pose {
+                Some(Pose::Joints(joints)) => Some(client::Pose::Joints(ranges.joints(joints)?.into())),
+                Some(Pose::Tip(tip)) => {
+                    ranges.finite("Tip", &tip)?;
+                    Some(client::Pose::Tip(tip))
+                }
+                _ => None,
+            };
+            let kx = command.stiffness.map(|rows| ranges.kx(rows)).transpose()?;
+            ranges.finite("Damping", command.damping.as_slice())?;
+            // Each row of the symmetric matrix is the column with the same number.
+            Ok((pose, kx.map(|kx| from_fn(|row| from_fn(|column| kx[(row, column)])))))
+        };
+        let (pose, stiffness) = checked().map_err(|error| RemoteRefusal::Hand(HandError::SetPoint(error)))?;
+        let mut admitted = client::FingerCommand::new(finger.get());
+        (admitted.pose, admitted.stiffness, admitted.damping) = (pose, stiffness, command.damping);
+        Ok(admitted)
+    }
+
+    fn sent(&self) -> MutexGuard<'_, [Option<[f64; 3]>; 3]> {
+        self.sent.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn newest(&self, finger: i32) -> Result<(Arc<Connection>, client::Record), RemoteRefusal> {
+        let connection = self.connection()?;
+        let finger = member(&connection.hand, finger)?;
+        let record = connection.hand.record(finger.get()).map_err(refusal)?;
+        connection.first[finger.index()]
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .get_or_insert_with(|| record.clone());
+        Ok((connection, record))
+    }
+}
+
+/// A finger that the hand has.
+fn member(hand: &client::RemoteHand, number: i32) -> Result<FingerNumber, RemoteRefusal> {
+    let finger = FingerNumber::new(number).ok_or(HandError::NoSuchFinger(number))?;
+    let has = |number: FingerNumber| hand.fingers().iter().any(|finger| i32::from(finger.number()) == number.get());
+    if has(finger) {
+        return Ok(finger);
+    }
+    let members: Vec<FingerNumber> = FingerNumber::ALL.into_iter().filter(|&number| has(number)).collect();
+    let fingers = Fingers::try_from(members).unwrap_or(Fingers::ALL);
+    Err(HandError::NotInHand { finger, fingers }.into())
+}
+
+/// The finger of a call that takes 0 for all fingers; none for all.
+fn one_or_all(hand: &client::RemoteHand, number: i32) -> Result<Option<i32>, RemoteRefusal> {
+    if number == 0 { Ok(None) } else { member(hand, number).map(|finger| Some(finger.get())) }
+}
+
+impl RemoteHand for NetworkHand {
+    fn send(&self, commands: &[FingerCommand]) -> Result<(), RemoteRefusal> {
+        let connection = self.connection()?;
+        let admitted: Vec<_> =
+            commands.iter().map(|command| self.admitted(&connection.hand, command)).collect::<Result<_, _>>()?;
+        connection.hand.send_group(&admitted).map_err(refusal)?;
+        let mut sent = self.sent();
+        for command in &admitted {
+            // `admitted` has found the finger.
+            if let (Some(pose), Some(place)) = (&command.pose, sent.get_mut(command.finger as usize - 1)) {
+                *place = match pose {
+                    client::Pose::Joints(joints) => Some(*joints),
+                    _ => None,
+                };
+            }
+        }
+        Ok(())
+    }
+
+    fn position(&self, finger: i32) -> Result<[f64; 3], RemoteRefusal> {
+        let connection = self.connection()?;
+        let finger = member(&connection.hand, finger)?;
+        connection.hand.position(finger.get()).map_err(refusal)
+    }
+
+    fn tip(&self, finger: i32) -> Result<sun2xp_tip, RemoteRefusal> {
+        let (connection, record) = self.newest(finger)?;
+        // Refuses a finger that has stopped, as for a hand of this machine.
+        connection.hand.position(finger).map_err(refusal)?;
+        Ok(results::tip(&record))
+    }
+
+    fn status(&self, finger: i32) -> Result<sun2xp_status, RemoteRefusal> {
+        let (connection, newest) = self.newest(finger)?;
+        let hand = connection.hand.status().map_err(refusal)?;
+        let status = connection.hand.finger_status(finger).map_err(refusal)?;
+        let first = connection.first[newest.finger.index()].lock().unwrap_or_else(PoisonError::into_inner).clone();
+        Ok(results::status(&hand, &status, first.as_ref().unwrap_or(&newest), &newest))
+    }
+
+    fn limits(&self, finger: i32) -> Result<sun2xp_limits, RemoteRefusal> {
+        let connection = self.connection()?;
+        let finger = member(&connection.hand, finger)?;
+        Ok(results::limits(&connection.hand.finger_status(finger.get()).map_err(refusal)?))
+    }
+
+    fn fault(&self, finger: i32) -> Result<sun2xp_fault, RemoteRefusal> {
+        let (connection, newest) = self.newest(finger)?;
+        let status = connection.hand.finger_status(finger).map_err(refusal)?;
+        Ok(results::fault(newest.stage, &status))
+    }
+
+    fn stop(&self, finger: i32) -> Result<(), RemoteRefusal> {
+        let connection = self.connection()?;
+        connection.hand.stop(one_or_all(&connection.hand, finger)?).map_err(refusal)
+    }
+
+    fn recover(&self, finger: i32) -> Result<(), RemoteRefusal> {
+        let connection = self.connection()?;
+        let finger = one_or_all(&connection.hand, finger)?;
+        if !connection.hand.is_owner() {
+            return connection.hand.reopen().map_err(refusal);
+        }
+        connection.hand.recover(finger).map_err(refusal)
+    }
+
+    fn calibrate(&self, finger: i32, task: Task) -> Result<(), RemoteRefusal> {
+        let connection = self.connection()?;
+        let finger = member(&connection.hand, finger)?.get();
+        let done = match task {
+            Task::Zero => connection.hand.zero(finger),
+            _ => connection.hand.identify(finger),
+        };
+        done.map_err(refusal)
+    }
+
+    fn wait(&self, finger: i32, until: Until, limit: Duration) -> Result<(), RemoteRefusal> {
+        let begun = Instant::now();
+        let asked = {
+            let connection = self.connection()?;
+            match one_or_all(&connection.hand, finger)? {
+                Some(finger) => vec![finger],
+                None => connection.hand.fingers().iter().map(|finger| finger.number().into()).collect(),
+            }
+        };
+        let sent = *self.sent();
+        let place = |finger: i32| finger as usize - 1;
+        let mut waits: Vec<(i32, FingerWait)> = asked
+            .into_iter()
+            .map(|finger| {
+                let events = &self.configuration.fingers[place(finger)].events;
+                (finger, FingerWait::begin(events, sent[place(finger)], begun))
+            })
+            .collect();
+        loop {
+            let now = Instant::now();
+            let mut missing = None;
+            for (finger, wait) in &mut waits {
+                // Refuses a finger that has stopped, and records that are too old.
+                let (connection, newest) = self.newest(*finger)?;
+                connection.hand.position(*finger).map_err(refusal)?;
+                let there = match until {
+                    Until::Arrived => wait.has_arrived(&newest, now),
+                    _ => wait.has_settled(&newest, now),
+                };
+                if !there {
+                    missing = FingerNumber::new(*finger);
+                }
+            }
+            let Some(missing) = missing else { return Ok(()) };
+            if now.duration_since(begun) >= limit {
+                return Err(HandError::NotThereInTime(missing).into());
+            }
+            sleep(LOOK);
+        }
+    }
+
+    fn next_event(&self) -> Result<Option<sun2xp_event>, RemoteRefusal> {
+        let connection = self.connection()?;
+        let event = connection.events.next();
+        Ok(event.map(|event| results::event(&event, connection.events.lost())))
+    }
+
+    fn wait_for_event(&self, limit: Option<Duration>) -> Result<(), RemoteRefusal> {
+        let begun = Instant::now();
+        loop {
+            let connection = self.connection()?;
+            let left = limit.map(|limit| limit.saturating_sub(begun.elapsed()));
+            let step = left.unwrap_or(EVENT_CHECK).min(EVENT_CHECK);
+            if connection.events.wait_until_ready(Some(step)) || left.is_some_and(|left| left <= step) {
+                return Ok(());
+            }
+        }
+    }
+
+    fn close(&self) {
+        let connection = self.connection.write().unwrap_or_else(PoisonError::into_inner).take();
+        let Some(connection) = connection else { return };
+        match Arc::try_unwrap(connection) {
+            // The fingers go to their end state even if the server does not answer: the owner falls silent.
+            Ok(connection) => drop(connection.hand.close()),
+            // A call in another thread still uses the connection, and gives the hand up when it ends. The fingers go to
+            // their end state now.
+            Err(shared) => drop(shared.hand.stop(None)),
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! Opens a hand on another machine.
+
+use crate::network_hand::NetworkHand;
+use crate::refusals::{refusal, system};
+use std::path::Path;
+use std::sync::Arc;
+use sun2xp::Configuration;
+use sun2xp::capi::{RemoteHand, RemoteRefusal, RemoteSource};
+use sun2xp_remote_client as client;
+
+/// Opens the hand that the table `[remote]` of a configuration names.
+pub(crate) fn open(source: RemoteSource, configuration: &Configuration) -> Result<Arc<dyn RemoteHand>, RemoteRefusal> {
+    let read = match &source {
+        RemoteSource::File(path) => client::RemoteConfiguration::read(path),
+        // A text has no folder of its own: its files are relative to the working directory.
+        RemoteSource::Text(text) => client::RemoteConfiguration::from_text(text, Path::new(".")),
+    };
+    // The caller has found the table already. The file may have been replaced since then.
+    let remote = read.map_err(refusal)?.ok_or_else(|| system("the table [remote] is no longer there: open again"))?;
+    let hand = client::RemoteHand::open(&remote).map_err(refusal)?;
+    Ok(NetworkHand::start(hand, configuration)?)
+}

@@ -1,0 +1,67 @@
+//! Conversion of the client's errors to refusals of the C calls. A reason that a hand of this machine has too gets the
+//! same errno and text as there.
+
+use sun2xp::capi::RemoteRefusal;
+use sun2xp::finger::Action;
+use sun2xp::{Fault, FaultKind, FingerNumber, HandError};
+use sun2xp_remote_client::{RemoteError, RemoteErrorKind as Kind};
+
+/// The numbers of `sun2xp.h`.
+mod number {
+    pub const NO_HAND: i32 = 4;
+    pub const BUSY: i32 = 5;
+    pub const ARGUMENT: i32 = 7;
+    pub const LIMIT: i32 = 8;
+    pub const FAULTED: i32 = 9;
+    pub const CONFIGURATION: i32 = 10;
+    pub const PORT: i32 = 11;
+    pub const SYSTEM: i32 = 12;
+    pub const TIMED_OUT: i32 = 14;
+    pub const NOT_SUPPORTED: i32 = 16;
+}
+
+/// The refusal for an error of the client.
+pub(crate) fn refusal(error: RemoteError) -> RemoteRefusal {
+    let finger = error.finger().and_then(FingerNumber::new);
+    if let (Kind::Faulted, Some(finger)) = (error.kind(), finger)
+        && let Some(kind) = FaultKind::from_number(error.fault().into())
+    {
+        return HandError::Faulted { finger, fault: Fault::new(kind) }.into();
+    }
+    let (number, errno) = numbers(error.kind());
+    let actions = match error.kind() {
+        Kind::Faulted => vec![Action::Recover, Action::Close, Action::Open],
+        Kind::NotOwner | Kind::Closed => vec![Action::Close, Action::Open],
+        _ => Vec::new(),
+    };
+    RemoteRefusal::Other { number, errno, text: error.to_string(), actions }
+}
+
+fn numbers(kind: Kind) -> (i32, i32) {
+    match kind {
+        Kind::NoSuchFinger | Kind::Argument => (number::ARGUMENT, libc::EINVAL),
+        Kind::NotInHand => (number::NOT_SUPPORTED, libc::ENODEV),
+        Kind::OutOfRange | Kind::Refused => (number::LIMIT, libc::ERANGE),
+        Kind::NotASpring => (number::LIMIT, libc::EDOM),
+        // A planner that fell silent has lost the hand, and its fingers have stopped: as after a fault, it opens again.
+        Kind::Faulted | Kind::NotOwner => (number::FAULTED, libc::EIO),
+        Kind::Busy | Kind::Owned => (number::BUSY, libc::EBUSY),
+        Kind::NotConnected => (number::PORT, libc::ENOTCONN),
+        Kind::Stale => (number::TIMED_OUT, libc::ETIMEDOUT),
+        Kind::Closed => (number::PORT, libc::ENOTCONN),
+        Kind::Protocol => (number::PORT, libc::EPROTO),
+        Kind::Configuration => (number::CONFIGURATION, libc::EINVAL),
+        _ => (number::SYSTEM, libc::EIO),
+    }
+}
+
+/// The refusal of a call for a hand that another thread has closed.
+pub(crate) fn closed() -> RemoteRefusal {
+    let text = "the hand was closed meanwhile: open it again".into();
+    RemoteRefusal::Other { number: number::NO_HAND, errno: libc::ENODEV, text, actions: vec![Action::Open] }
+}
+
+/// The refusal of something that the system or this library cannot do.
+pub(crate) fn system(text: &str) -> RemoteRefusal {
+    RemoteRefusal::Other { number: number::SYSTEM, errno: libc::EIO, text: text.into(), actions: Vec::new() }
+}

@@ -1,0 +1,103 @@
+//! Conversion of what the server tells to the structs of `sun2xp.h`. What it does not tell is NaN, or 0 in an integer.
+
+use sun2xp::capi::{sun2xp_event, sun2xp_fault, sun2xp_limits, sun2xp_status, sun2xp_tip};
+use sun2xp_remote_client::{Event, FingerStatus, Record, Stage, Status};
+
+/// SUN2XP_STATE_... of `sun2xp.h`.
+fn state(stage: Stage) -> i32 {
+    match stage {
+        Stage::Running => 1,
+        Stage::Faulted(_) => 2,
+        Stage::Limp => 3,
+        Stage::Calibrating => 4,
+        Stage::Opening => 5,
+        Stage::Closing | Stage::Closed => 6,
+    }
+}
+
+/// SUN2XP_FAULT_..., 0 if there is none.
+fn fault_number(stage: Stage) -> i32 {
+    match stage {
+        Stage::Faulted(fault) => fault.into(),
+        _ => 0,
+    }
+}
+
+/// `first` and `newest` are records of the finger, from which the measured rate follows.
+pub(crate) fn status(hand: &Status, finger: &FingerStatus, first: &Record, newest: &Record) -> sun2xp_status {
+    let seconds = newest.begin.saturating_sub(first.begin) as f64 * 1e-9;
+    let cycles = newest.cycle.saturating_sub(first.cycle) as f64;
+    sun2xp_status {
+        size: 0,
+        state: state(newest.stage),
+        realtime: 0,
+        rate: hand.rate,
+        measured_rate: if seconds > 0.0 { cycles / seconds } else { f64::NAN },
+        wake_up_median: f64::NAN,
+        wake_up_p99: f64::NAN,
+        wake_up_maximum: f64::NAN,
+        torque_scale: f64::NAN,
+        cycles: newest.cycle,
+        skipped_periods: finger.skipped_periods,
+        lost_replies: finger.lost_replies,
+        damaged_replies: finger.corrupt_replies,
+        calibration: finger.calibration,
+        memory_locked: 0,
+        on_core: 0,
+        stiffness_scale: f64::NAN,
+    }
+}
+
+/// The force is that of the tip on what it touches.
+pub(crate) fn tip(record: &Record) -> sun2xp_tip {
+    sun2xp_tip {
+        size: 0,
+        force_directions: 0,
+        position: record.tip,
+        force: record.force,
+        tensions: record.tensions,
+        stiffness: [[f64::NAN; 3]; 3],
+        contact_force: record.force,
+        slide_speed: f64::NAN,
+        touching: record.touching.into(),
+    }
+}
+
+pub(crate) fn limits(finger: &FingerStatus) -> sun2xp_limits {
+    sun2xp_limits {
+        size: 0,
+        joint_minimum: finger.low,
+        joint_maximum: finger.high,
+        tension_minimum: f64::NAN,
+        tension_maximum: f64::NAN,
+        motor_torque: [f64::NAN; 4],
+        stiffness: finger.stiffness_bound,
+    }
+}
+
+pub(crate) fn fault(stage: Stage, finger: &FingerStatus) -> sun2xp_fault {
+    sun2xp_fault {
+        size: 0,
+        number: fault_number(stage),
+        part: 0,
+        warning: 0,
+        warning_part: 0,
+        value: 0.0,
+        warning_value: 0.0,
+        warnings: finger.warnings.into(),
+    }
+}
+
+/// `lost` is the number of events that the planner has not taken in time.
+pub(crate) fn event(event: &Event, lost: u64) -> sun2xp_event {
+    sun2xp_event {
+        size: 0,
+        finger: event.finger.number().into(),
+        kind: event.kind.into(),
+        part: event.part.into(),
+        cycle: event.cycle,
+        lost,
+        time: event.begin as f64 * 1e-9,
+        values: event.values,
+    }
+}

@@ -1,0 +1,149 @@
+//! Planners in the styles of 1990 and later, each run on a simulated hand of this machine and on the same hand behind
+//! a server. They are linked against libsun2xp and know nothing of the network. What they print must be the same:
+//! results, errnos and texts exactly, and numbers with a decimal point, such as poses, within 0.01.
+
+mod rig;
+
+use rig::{Rig, Way};
+use std::process::ExitStatus;
+
+/// Largest difference of two numbers with a decimal point, rad.
+const TOLERANCE: f64 = 0.01;
+
+/// A number with a decimal point, without the punctuation that follows it.
+fn number(word: &str) -> Option<f64> {
+    let trimmed = word.trim_end_matches([',', ':', '.']);
+    trimmed.contains('.').then(|| trimmed.parse().ok()).flatten()
+}
+
+fn same(one: &str, other: &str) -> bool {
+    match (number(one), number(other)) {
+        (Some(one), Some(other)) => (one - other).abs() <= TOLERANCE,
+        _ => one == other,
+    }
+}
+
+fn assert_alike(planner: &str, way: Way, local: &(ExitStatus, String), remote: &(ExitStatus, String)) {
+    let words = |text: &str| -> Vec<String> { text.split_whitespace().map(str::to_owned).collect() };
+    let (here, there) = (words(&local.1), words(&remote.1));
+    let alike = here.len() == there.len() && here.iter().zip(&there).all(|(one, other)| same(one, other));
+    assert!(
+        alike && local.0 == remote.0,
+        "{planner} {way:?}: {} and {}\nhere:\n{}\nthere:\n{}",
+        local.0,
+        remote.0,
+        local.1,
+        remote.1
+    );
+    assert!(!here.is_empty(), "{planner} says something");
+}
+
+/// Runs a planner here, and then in one way there.
+fn alike(planner: &str, flags: &[&str], ways: &[Way]) {
+    let rig = Rig::start();
+    let program = rig.planners.compile(planner, flags);
+    let local = rig.planners.run(&program, Way::Local);
+    for &way in ways {
+        let remote = rig.planners.run(&program, way);
+        assert_alike(planner, way, &local, &remote);
+    }
+}
+
+/// Both ways to the same code are tested by a few planners; the others take the one that needs both libraries.
+const BY_BOTH: &[Way] = &[Way::Configured, Way::Path];
+const BY_CONFIGURATION: &[Way] = &[Way::Configured];
+const BY_PATH: &[Way] = &[Way::Path];
+
+#[test]
+fn the_oldest_planner() {
+    alike("oldest.c", &["-std=gnu89", "-w"], BY_BOTH);
+}
+
+#[test]
+fn one_that_polls() {
+    alike("polls.c", &["-std=c89"], BY_CONFIGURATION);
+}
+
+#[test]
+fn three_fingers() {
+    alike("three.c", &["-std=gnu89", "-w"], BY_PATH);
+}
+
+#[test]
+fn one_that_sends_nonsense_and_looks_at_nothing() {
+    alike("careless.c", &["-std=c99"], BY_CONFIGURATION);
+}
+
+#[test]
+fn every_refusal() {
+    alike("refusals.c", &["-std=c11"], BY_BOTH);
+}
+
+#[test]
+fn one_with_a_timer() {
+    alike("alarms.c", &["-std=gnu99"], BY_CONFIGURATION);
+}
+
+#[test]
+fn one_that_forks() {
+    alike("forks.c", &["-std=gnu99"], BY_BOTH);
+}
+
+#[test]
+fn one_that_jumps() {
+    alike("jumps.c", &["-std=gnu89"], BY_PATH);
+}
+
+#[test]
+fn one_with_threads() {
+    alike("threads.c", &["-std=gnu99"], BY_CONFIGURATION);
+}
+
+#[test]
+fn one_that_leaves_the_hand_open() {
+    alike("leaves.c", &["-std=c99"], BY_BOTH);
+}
+
+#[test]
+fn one_that_opens_again_and_again() {
+    alike("reopens.c", &["-std=c99"], BY_CONFIGURATION);
+}
+
+#[test]
+fn one_that_streams() {
+    alike("streams.c", &["-std=gnu99"], BY_PATH);
+}
+
+#[test]
+fn one_that_changes_the_stiffness() {
+    alike("softens.c", &["-std=gnu89", "-w"], BY_CONFIGURATION);
+}
+
+#[test]
+fn one_that_is_interrupted() {
+    alike("interrupted.c", &["-std=gnu99"], BY_CONFIGURATION);
+}
+
+#[test]
+fn one_with_a_table() {
+    alike("table.c", &["-std=gnu99"], BY_PATH);
+}
+
+#[test]
+fn one_with_both_headers() {
+    alike("both.c", &["-std=gnu11"], BY_BOTH);
+}
+
+#[test]
+fn one_with_events_and_an_emergency_stop() {
+    alike("events.c", &["-std=gnu99"], BY_BOTH);
+}
+
+/// The calls that do not reach the hand are refused with ENOTSUP, and the hand stays open.
+#[test]
+fn calls_that_do_not_reach_the_hand_say_so() {
+    let rig = Rig::start();
+    for &way in BY_BOTH {
+        assert_eq!(rig.planners.said("others.c", way), "open_io -16\nothers 0\n", "{way:?}");
+    }
+}
