@@ -72,12 +72,9 @@ impl Cycles {
         self.caught[index] = report.expired;
         // A finger that has stopped has no records. Its report still has its pose.
         if self.records.is_empty() && matches!(report.stage, Stage::Faulted(_) | Stage::Closed) {
-            let cycle = report.losses.cycles;
-            if cycle > self.last[index] {
-                self.last[index] = cycle - 1;
-                let sent = self.of_report(finger, report, goals);
-                self.add(sent, taken);
-            }
+            self.last[index] = report.losses.cycles.saturating_sub(1);
+            let sent = self.of_report(finger, report, goals);
+            self.add(sent, taken);
         }
     }
 

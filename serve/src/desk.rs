@@ -35,14 +35,14 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// The desk of this hand.
+    /// The desk of this hand, of a server that has started at `start`, ns.
     #[must_use]
-    pub fn new(hand: Arc<Hand>, limits: Limits) -> Self {
+    pub fn new(hand: Arc<Hand>, limits: Limits, start: u64) -> Self {
         Self {
             fingers: Fingers::new(hand.clone(), limits.lead_force),
             hand,
             limits,
-            ownership: Ownership::default(),
+            ownership: Ownership::new(start),
             acceptance: Acceptance::default(),
             silence: None,
             counts: Counts::default(),

@@ -9,19 +9,26 @@ pub struct Owner {
     pub client: ClientName,
     /// The epoch, which only the owner knows. It is not 0.
     pub epoch: u64,
-    /// The number of the epoch since the server's start, from 1.
+    /// The number of the epoch. Later epochs have higher numbers.
     pub number: u64,
 }
 
 /// The ownership of a hand.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Ownership {
     owner: Option<Owner>,
-    /// Number of epochs since the server's start.
-    epochs: u64,
+    /// The number of the newest epoch.
+    newest: u64,
 }
 
 impl Ownership {
+    /// A hand without an owner. `start` is the time at which the server has started, ns. The numbers of epochs are
+    /// higher, so they are higher than those of a server that ran before.
+    #[must_use]
+    pub fn new(start: u64) -> Self {
+        Self { owner: None, newest: start }
+    }
+
     /// Returns the owner; none if nobody owns the hand.
     #[must_use]
     pub fn owner(&self) -> Option<&Owner> {
@@ -52,8 +59,8 @@ impl Ownership {
         {
             return Err(owner.client.clone());
         }
-        self.epochs += 1;
-        Ok(self.owner.insert(Owner { client: client.clone(), epoch, number: self.epochs }))
+        self.newest += 1;
+        Ok(self.owner.insert(Owner { client: client.clone(), epoch, number: self.newest }))
     }
 
     /// Ends the ownership. Returns the owner that there was.
@@ -73,25 +80,25 @@ mod tests {
     #[test]
     fn one_client_owns_the_hand_and_a_take_over_ends_its_epoch() {
         let (alice, bob) = (name("alice"), name("bob"));
-        let mut ownership = Ownership::default();
+        let mut ownership = Ownership::new(40);
         assert!(!ownership.admits(&alice, 0) && ownership.number() == 0);
-        assert_eq!(ownership.acquire(&alice, false, 7).expect("free").number, 1);
+        assert_eq!(ownership.acquire(&alice, false, 7).expect("free").number, 41);
         assert!(ownership.admits(&alice, 7) && !ownership.admits(&alice, 8) && !ownership.admits(&bob, 7));
         assert_eq!(ownership.acquire(&bob, false, 8), Err(alice.clone()));
         assert!(ownership.admits(&alice, 7), "a refusal changes nothing");
-        assert_eq!(ownership.acquire(&bob, true, 8).expect("taken over").number, 2);
+        assert_eq!(ownership.acquire(&bob, true, 8).expect("taken over").number, 42);
         assert!(!ownership.admits(&alice, 7) && ownership.admits(&bob, 8));
     }
 
     #[test]
     fn an_owner_that_acquires_again_fences_its_earlier_self() {
         let alice = name("alice");
-        let mut ownership = Ownership::default();
+        let mut ownership = Ownership::new(40);
         ownership.acquire(&alice, false, 7).expect("free");
-        assert_eq!(ownership.acquire(&alice, false, 9).expect("its own").number, 2);
+        assert_eq!(ownership.acquire(&alice, false, 9).expect("its own").number, 42);
         assert!(!ownership.admits(&alice, 7) && ownership.admits(&alice, 9));
         assert_eq!(ownership.end().map(|owner| owner.epoch), Some(9));
         assert!(!ownership.admits(&alice, 9) && ownership.number() == 0);
-        assert_eq!(ownership.acquire(&alice, false, 3).expect("free").number, 3, "numbers are not used again");
+        assert_eq!(ownership.acquire(&alice, false, 3).expect("free").number, 43, "numbers are not used again");
     }
 }

@@ -118,10 +118,13 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
             let text = "another client has taken the hand over meanwhile".into();
             return desk.answer(Code::Owned, text, 0, time);
         }
-        if recovered.is_err() {
-            desk.abandon();
+        match recovered {
+            Ok(()) => Answer { number, ..desk.answer(Code::Done, String::new(), epoch, time) },
+            Err(error) => {
+                desk.abandon();
+                desk.answer(code_of(&error), error.to_string(), 0, time)
+            }
         }
-        result(&Answer { number, ..desk.answer(Code::Done, String::new(), epoch, time) }, recovered)
     };
     if !request.recover {
         return reply.send(&begin(shared, Ok(())));

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread::JoinHandle;
 use sun2xp::Hand;
+use sun2xp::realtime::now;
 use sun2xp_remote_protocol::HandKeys;
 
 /// What the threads of the server share.
@@ -33,7 +34,7 @@ impl Shared {
     pub fn new(hand: Arc<Hand>, settings: Settings) -> Self {
         Self {
             keys: HandKeys::new(settings.name.clone()),
-            desk: Mutex::new(Desk::new(hand.clone(), settings.limits)),
+            desk: Mutex::new(Desk::new(hand.clone(), settings.limits, now())),
             hand,
             settings,
             busy: AtomicBool::new(false),

@@ -42,8 +42,9 @@ fn falls_silent(fall_silent: impl FnOnce(&mut Child)) {
     let rig = Rig::new("");
     let mut child = start("client", &rig.endpoint);
     wait_for("command", || (rig.set_point() == WANTED).then_some(()));
-    let silent_from = report(&rig).losses.cycles;
     fall_silent(&mut child);
+    // The cycle is read after the signal, because this thread may have to wait before it sends the signal.
+    let silent_from = report(&rig).losses.cycles;
     let caught = wait_for("catch", || Some(report(&rig)).filter(|report| report.expired));
     assert_eq!(caught.set_point.stiffness[(0, 0)], 1.0, "the soft stiffness");
     let (mut records, finger) = (Vec::new(), 1);
