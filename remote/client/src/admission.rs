@@ -81,8 +81,8 @@ pub enum AdmissionError {
         /// Smallest eigenvalue, N/cm.
         smallest: f64,
     },
-    /// A damping ratio is zero or negative.
-    #[error("the damping ratio {ratio} of finger {finger} is not positive: send a positive ratio; 1 is the normal one")]
+    /// A damping ratio is negative.
+    #[error("the damping ratio {ratio} of finger {finger} is negative: send a positive ratio; 1 is the normal one")]
     Damping {
         /// The finger.
         finger: Finger,
@@ -128,7 +128,7 @@ pub fn admit(status: &FingerStatus, finger: Finger, command: &FingerCommand) -> 
     }
     let Some(ratio) = command.damping else { return Ok(()) };
     finite("Damping", finger, &[ratio])?;
-    if ratio > 0.0 { Ok(()) } else { Err(AdmissionError::Damping { finger, ratio }) }
+    if ratio >= 0.0 { Ok(()) } else { Err(AdmissionError::Damping { finger, ratio }) }
 }
 
 fn admit_joints(status: &FingerStatus, finger: Finger, joints: &[f64; 3]) -> Result<(), AdmissionError> {

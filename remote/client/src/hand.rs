@@ -9,8 +9,8 @@ pub use reading::RemoteFingerTip;
 use crate::configuration::RemoteConfiguration;
 use crate::error::RemoteError;
 use crate::link::Link;
-use std::mem::ManuallyDrop;
 use std::process::id;
+use std::sync::Arc;
 use sun2xp_remote_protocol::{Finger, HandName};
 
 /// A hand that `sun2xp serve` offers. A process can have several. All functions may be called from several threads.
@@ -22,7 +22,7 @@ use sun2xp_remote_protocol::{Finger, HandName};
 /// [`RemoteHand::reopen`] acquires the hand again.
 #[must_use = "a hand that is dropped is released"]
 pub struct RemoteHand {
-    pub(crate) link: ManuallyDrop<Link>,
+    pub(crate) link: Arc<Link>,
     /// The process that has the threads. A forked child inherits this value, but not the threads.
     process: u32,
 }
@@ -46,7 +46,7 @@ impl RemoteHand {
     /// # Errors
     /// Returns an error if the configuration or a certificate cannot be used, or if the hand cannot be reached.
     pub fn watch(configuration: &RemoteConfiguration) -> Result<Self, RemoteError> {
-        Ok(Self { link: ManuallyDrop::new(Link::open(configuration)?), process: id() })
+        Ok(Self { link: Arc::new(Link::open(configuration)?), process: id() })
     }
 
     /// Acquires the hand, for example after its ownership was lost. Fingers that have stopped are recovered. Set points
@@ -103,11 +103,11 @@ impl RemoteHand {
 impl Drop for RemoteHand {
     fn drop(&mut self) {
         if self.process != id() {
-            // This is a forked child. The session and the threads belong to its parent.
+            // This is a forked child. The session and the threads belong to its parent, so the link is never dropped.
+            std::mem::forget(self.link.clone());
             return;
         }
         // Without an answer, the hand goes to its end state because no Targets arrive.
         let _ = self.link.release();
-        self.link.end();
     }
 }

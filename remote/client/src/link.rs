@@ -63,7 +63,7 @@ impl Shared {
     }
 }
 
-/// The link to one hand.
+/// The link to one hand. Dropping it ends the thread and the session.
 pub struct Link {
     session: Session,
     pub shared: Arc<Shared>,
@@ -226,9 +226,10 @@ impl Link {
         self.shared.lock().outbox.lose(Loss::Released);
         released.map(drop)
     }
+}
 
-    /// Ends the thread and the session.
-    pub fn end(&mut self) {
+impl Drop for Link {
+    fn drop(&mut self) {
         let mut exchange = self.shared.lock();
         exchange.outbox.lose(Loss::Released);
         self.shared.ended.store(true, Ordering::Relaxed);

@@ -127,7 +127,7 @@ fn wrong_arguments_are_refused_and_change_nothing() {
         (command.stiffness(kx(f64::NAN)), RemoteErrorKind::Argument, "Kx of finger 1 contains NaN"),
         (command.stiffness(diagonal(-0.5)), RemoteErrorKind::NotASpring, "has the negative eigenvalue -5.000e-1"),
         (command.stiffness(diagonal(11.0)), RemoteErrorKind::OutOfRange, "is 11.000 N/cm, above the bound of 10.000"),
-        (command.damping(0.0), RemoteErrorKind::OutOfRange, "the damping ratio 0 of finger 1 is not positive"),
+        (command.damping(-0.5), RemoteErrorKind::OutOfRange, "the damping ratio -0.5 of finger 1 is negative"),
         (command.damping(f64::NAN), RemoteErrorKind::Argument, "Damping of finger 1 contains NaN"),
     ];
     for (command, kind, beginning) in cases {

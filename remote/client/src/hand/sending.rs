@@ -40,7 +40,7 @@ impl RemoteHand {
     /// The hand refuses a ratio that is outside its range; a later call reports this.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger, if the ratio is NaN, infinite or not positive, or if the hand
+    /// Returns an error if there is no such finger, if the ratio is NaN, infinite or negative, or if the hand
     /// cannot be commanded ([`RemoteHand::send_position`]).
     pub fn send_damping(&self, finger: i32, ratio: f64) -> Result<(), RemoteError> {
         self.send_group(&[FingerCommand::new(finger).damping(ratio)])

@@ -118,7 +118,7 @@ impl FakeHand {
     fn acquire(&mut self, client: &ClientName, recover: bool) -> Answer {
         self.owner = Some(client.clone());
         self.epochs += 1;
-        (self.epoch, self.commands) = (self.epoch.wrapping_mul(31) + 0x1234_5678_9abc_def0, [0; 2]);
+        (self.epoch, self.commands) = (self.epoch.wrapping_mul(31).wrapping_add(0x1234_5678_9abc_def0), [0; 2]);
         if recover {
             self.stage = Stage::Running;
         }

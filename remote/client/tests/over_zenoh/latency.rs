@@ -33,5 +33,7 @@ fn time_of_a_call_and_time_until_the_server_has_the_target() {
         std::thread::sleep(Duration::from_millis(1));
     }
     show("call of send_position", calls);
+    let (sent, received) = (hand.statistics().targets, server.hand().lock().targets.len());
+    println!("{sent} Targets sent, {received} received");
     show("until the server has decoded the Target", arrivals);
 }

@@ -3,4 +3,5 @@
 mod calls;
 mod fake_hand;
 mod latency;
+mod leaks;
 mod server;
