@@ -94,7 +94,6 @@ impl Server {
     }
 
     /// Returns the hand, for tests and benchmarks in the same process.
-    #[must_use]
     pub fn hand(&self) -> &Hand {
         &self.shared.hand
     }
