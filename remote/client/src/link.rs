@@ -56,7 +56,7 @@ impl Shared {
         let mut exchange = self.lock();
         match decoded {
             Ok(message) => take(&mut exchange, message),
-            Err(_) => exchange.view.statistics.malformed += 1,
+            Err(error) => exchange.view.drop_malformed(error),
         }
         drop(exchange);
         self.changed.notify_all();
@@ -110,7 +110,7 @@ impl Link {
         })?;
         self.listen(self.keys.events(), |shared, payload| match Event::decode(payload) {
             Ok(event) => shared.events.put(event),
-            Err(_) => shared.lock().view.statistics.malformed += 1,
+            Err(error) => shared.lock().view.drop_malformed(error),
         })
     }
 
@@ -149,13 +149,12 @@ impl Link {
         };
         let waited = self.shared.changed.wait_timeout_while(self.shared.lock(), FIRST, missing);
         let (exchange, waited) = waited.unwrap_or_else(PoisonError::into_inner);
-        let malformed = exchange.view.statistics.malformed;
-        match (waited.timed_out(), malformed) {
+        match (waited.timed_out(), exchange.view.malformed()) {
             (false, _) => Ok(()),
-            (true, 0) => Err(self.not_connected(
+            (true, None) => Err(self.not_connected(
                 "it answers, but its State does not arrive. Check whether the server permits this client to read",
             )),
-            (true, _) => Err(self.protocol(&DecodeError::Short(0))),
+            (true, Some(error)) => Err(self.protocol(error)),
         }
     }
 

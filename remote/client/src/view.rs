@@ -1,7 +1,7 @@
 //! What a client knows of a hand. It has no clock and no thread.
 
 use crate::server_clock::ServerClock;
-use sun2xp_remote_protocol::{FINGERS, Finger, Record, State, Status};
+use sun2xp_remote_protocol::{DecodeError, FINGERS, Finger, Record, State, Status};
 
 /// What a client has received and sent since it has opened the hand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,6 +32,8 @@ pub struct View {
     heard: Option<u64>,
     /// The number and the time of the newest State.
     newest_state: Option<(u64, u64)>,
+    /// Why the newest message that could not be decoded was dropped.
+    malformed: Option<DecodeError>,
     pub statistics: RemoteStatistics,
 }
 
@@ -53,6 +55,17 @@ impl View {
             self.newest[record.finger.index()] = Some(*record);
         }
         continued
+    }
+
+    /// Notes a message that cannot be decoded, and is dropped.
+    pub fn drop_malformed(&mut self, error: DecodeError) {
+        self.statistics.malformed += 1;
+        self.malformed = Some(error);
+    }
+
+    /// Why the newest message that could not be decoded was dropped.
+    pub fn malformed(&self) -> Option<&DecodeError> {
+        self.malformed.as_ref()
     }
 
     pub fn take_status(&mut self, status: Status) {

@@ -5,6 +5,7 @@ use sun2xp_remote_client::{
     Event, Finger, FingerCommand, RemoteError, RemoteErrorKind, RemoteHand, Stage, discover, send_together,
 };
 use sun2xp_remote_protocol::{Action, Place};
+use zenoh::Wait;
 
 const ONE: Finger = Finger::ALL[0];
 const TWO: Finger = Finger::ALL[1];
@@ -125,6 +126,30 @@ fn events_come_in_order() {
     assert_eq!(queue.lost(), 1);
     drop(hand);
     assert!(queue.wait(None).is_none() && queue.is_closed());
+}
+
+#[test]
+fn malformed_messages_are_counted_and_change_nothing() {
+    let port = free_port();
+    let server = FakeServer::start(port, &["left"]);
+    let hand = RemoteHand::open(&configuration(port, "left", "planner")).expect("open");
+    let session = server.hand().lock().session.clone().expect("a session");
+    let mut state = server.hand().lock().state(u64::MAX).encode().expect("a State");
+    state.push(0);
+    let other_version = [2, 2];
+    for (key, payload) in [
+        ("sun2xp/left/state", state.as_slice()),
+        ("sun2xp/left/state", &other_version),
+        ("sun2xp/left/status", &[4, 1, 0]),
+        ("sun2xp/left/events", &[]),
+        ("sun2xp/left/refused/planner", &[6, 1]),
+    ] {
+        session.put(key, payload).wait().expect("put");
+    }
+    until("the count", || hand.statistics().malformed, |&malformed| malformed == 5);
+    assert_eq!(hand.position(1).expect("a position"), [0.25; 3]);
+    hand.send_position(1, [0.5; 3]).expect("sent");
+    until("the position", || hand.position(1).expect("a position"), |joints| *joints == [0.5; 3]);
 }
 
 #[test]
