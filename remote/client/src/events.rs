@@ -38,10 +38,10 @@ impl Queue {
         // A server that was started again counts from 1.
         let lost = state.newest.filter(|&newest| newest < event.number).map_or(0, |newest| event.number - newest - 1);
         state.newest = Some(event.number);
-        state.lost += lost;
+        state.lost = state.lost.saturating_add(lost);
         if state.events.len() == KEPT {
             state.events.pop_front();
-            state.lost += 1;
+            state.lost = state.lost.saturating_add(1);
         }
         state.events.push_back(event);
         drop(state);
@@ -166,6 +166,14 @@ mod tests {
         assert_eq!(queue.lost(), 2, "7 and 8 are lost; 1 is the first event of a new server");
         (2..).take(KEPT).for_each(|number| source.put(event(number)));
         assert_eq!((queue.lost(), queue.next().map(|event| event.number)), (6, Some(2)));
+    }
+
+    #[test]
+    fn numbers_without_sense_do_not_overflow() {
+        let source = EventSource::default();
+        let queue = source.subscribe();
+        [1, u64::MAX, 1, u64::MAX].iter().for_each(|&number| source.put(event(number)));
+        assert_eq!(queue.lost(), u64::MAX);
     }
 
     #[test]

@@ -47,8 +47,9 @@ impl View {
         let lost = self.newest_state.map_or(0, |(number, _)| state.number - number - 1);
         self.newest_state = Some((state.number, state.time));
         self.statistics.states += 1;
-        self.statistics.lost_states += lost;
-        self.statistics.missing_cycles += u64::from(state.missing);
+        let statistics = &mut self.statistics;
+        statistics.lost_states = statistics.lost_states.saturating_add(lost);
+        statistics.missing_cycles += u64::from(state.missing);
         self.clock.heard(state.time, now);
         self.heard = Some(now);
         for record in &state.records {

@@ -260,6 +260,24 @@ fn records_confirm_what_was_sent() {
 }
 
 #[test]
+fn numbers_without_sense_do_not_overflow() {
+    let mut exchange = owner();
+    for number in [u64::MAX, 0, u64::MAX, 1, u64::MAX] {
+        for time in [u64::MAX, 0, 1 << 63] {
+            let mut wild = State { number, time, missing: u32::MAX, ..state(1, 0, Stage::Running) };
+            wild.records[0].begin = u64::MAX - time;
+            exchange.take_state(&wild, 20 * MS);
+            let _ = exchange.moving(1, 21 * MS);
+        }
+    }
+    assert!(exchange.outbox.next(21 * MS).is_none(), "the ownership is lost");
+    exchange.outbox.acquired(&answer());
+    exchange.take_refusal(&Answer { time: u64::MAX, number: u64::MAX, ..answer() });
+    assert!(exchange.outbox.next(22 * MS).is_some());
+    assert!(exchange.view.statistics.lost_states > 0);
+}
+
+#[test]
 fn lost_states_and_missing_cycles_are_counted() {
     let mut exchange = owner();
     exchange.take_state(&State { missing: 3, ..state(5, 11 * MS, Stage::Running) }, 11 * MS);
