@@ -8,6 +8,7 @@ use crate::hand::{self, Configured, Hand, HandError};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+#[allow(clippy::large_enum_variant, reason = "the table keeps it in a box")]
 pub(super) enum OpenedHand {
     Local(Hand),
     Remote(Arc<dyn RemoteHand>),
@@ -49,7 +50,7 @@ impl Source {
     }
 
     /// Where another library finds the same configuration; none if there is no file.
-    fn to_remote(self, found: &Configured) -> Option<RemoteSource> {
+    fn into_remote(self, found: &Configured) -> Option<RemoteSource> {
         match self {
             Self::Text(text) => Some(RemoteSource::Text(text)),
             Self::Found | Self::File(_) => found.file.clone().map(RemoteSource::File),
@@ -73,7 +74,7 @@ pub(super) fn open(from: SourceWithIo, open_remote: RemoteOpener) -> Result<Open
     if io.is_some() {
         return Err(Refusal::NotRemote);
     }
-    let Some(source) = source.to_remote(&configured) else { return Err(Refusal::OnlyRemote) };
+    let Some(source) = source.into_remote(&configured) else { return Err(Refusal::OnlyRemote) };
     Ok(OpenedHand::Remote(opener.unwrap_or(open_remote)(source, &configured.configuration)?))
 }
 

@@ -42,6 +42,8 @@ pub(super) struct Admission {
 }
 
 impl Admission {
+    // SendPos calls this. Without `inline`, the ranges are copied in every call.
+    #[inline]
     fn ranges(&self) -> Ranges {
         let Self { finger, joint_limits, stiffness_bound, out_of_range, .. } = *self;
         Ranges { finger, joint_limits, stiffness_bound, out_of_range }

@@ -112,10 +112,7 @@ impl NetworkHand {
         let connection = self.connection()?;
         let finger = member(&connection.hand, finger)?;
         let record = connection.hand.record(finger.get()).map_err(refusal)?;
-        connection.first[finger.index()]
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .get_or_insert_with(|| record.clone());
+        connection.first[finger.index()].lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(record);
         Ok((connection, record))
     }
 }
@@ -173,7 +170,7 @@ impl RemoteHand for NetworkHand {
         let (connection, newest) = self.newest(finger)?;
         let hand = connection.hand.status().map_err(refusal)?;
         let status = connection.hand.finger_status(finger).map_err(refusal)?;
-        let first = connection.first[newest.finger.index()].lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let first = *connection.first[newest.finger.index()].lock().unwrap_or_else(PoisonError::into_inner);
         Ok(results::status(&hand, &status, first.as_ref().unwrap_or(&newest), &newest))
     }
 

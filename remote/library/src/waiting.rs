@@ -54,7 +54,7 @@ impl FingerWait {
         match &self.anchor {
             Some(anchor) if !moved(anchor) => newest.begin.saturating_sub(anchor.begin) >= self.calm,
             _ => {
-                self.anchor = Some(newest.clone());
+                self.anchor = Some(*newest);
                 false
             }
         }

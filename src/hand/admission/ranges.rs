@@ -23,6 +23,7 @@ impl Ranges {
     ///
     /// # Errors
     /// An angle is not finite, or outside its limits.
+    #[inline]
     pub fn joints(&self, joints: [f64; 3]) -> Result<Vector3<f64>, SetPointError> {
         self.finite("Pos", &joints)?;
         let mut admitted = Vector3::from(joints);
