@@ -10,6 +10,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 use sun2xp::control::Activity;
 use sun2xp::finger::CycleRecord;
+use sun2xp::model::Fingers;
 use sun2xp::realtime::now;
 
 #[derive(Parser)]
@@ -20,6 +21,9 @@ struct Arguments {
     /// Rate of the servos, Hz.
     #[arg(long, default_value_t = 1000.0)]
     rate: f64,
+    /// With three fingers. Their simulated boards need time of the processor that real boards do not need.
+    #[arg(long)]
+    whole_hand: bool,
     /// Without TLS.
     #[arg(long)]
     plain: bool,
@@ -39,7 +43,8 @@ fn main() {
     if let Some(endpoint) = &arguments.client {
         return client(&arguments, endpoint);
     }
-    let offer = Offer::new(!arguments.plain, arguments.rate);
+    let fingers = if arguments.whole_hand { Ok(Fingers::ALL) } else { Fingers::only(1) };
+    let offer = Offer::new(!arguments.plain, arguments.rate, fingers.expect("a finger"));
     let mut command = Command::new(std::env::current_exe().expect("this program"));
     command.args(["--client", &offer.endpoint, "--samples", &arguments.samples.to_string()]);
     if let Some(folder) = offer.folder() {

@@ -1,6 +1,6 @@
 //! Whether clients delay the servos: the wake-up of the servo threads with two writers and ten readers, against the
-//! server alone, in alternating turns. One writer owns the hand; the other one sends with an epoch that is not in force.
-//! The clients are processes of their own. Prints Markdown.
+//! server alone, in alternating turns. One writer owns the hand. The other one sends with an epoch that is not in
+//! force. The clients are processes of their own. Prints Markdown.
 
 mod common;
 
@@ -9,6 +9,7 @@ use common::{Offer, configuration, percentile, pose_of};
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
+use sun2xp::model::Fingers;
 use sun2xp::realtime::CycleStage;
 use sun2xp_remote_client::RemoteHand;
 use sun2xp_remote_protocol::{HandKeys, Part, Place, Target};
@@ -51,7 +52,7 @@ fn main() {
     if let (Some(role), Some(endpoint)) = (&arguments.role, &arguments.endpoint) {
         return client(role, endpoint, arguments.folder.as_deref());
     }
-    let offer = Offer::new(!arguments.plain, 1000.0);
+    let offer = Offer::new(!arguments.plain, 1000.0, Fingers::ALL);
     let (mut alone, mut watched) = (Vec::new(), Vec::new());
     for _ in 0..arguments.turns {
         alone.push(measure(&offer, arguments.seconds));

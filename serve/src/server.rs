@@ -98,8 +98,8 @@ impl Server {
         &self.shared.hand
     }
 
-    /// Takes a payload as if it had arrived now under the key of this client, for tests in the same process. Returns the
-    /// refusal of the hand, if it refuses a Target.
+    /// Takes a payload as if it had arrived now under the key of this client, for tests in the same process. Returns
+    /// the refusal of the hand, if it refuses a Target.
     #[must_use]
     pub fn take_target(&self, client: &ClientName, payload: &[u8]) -> Option<Answer> {
         self.shared.desk.lock().take_target(client, payload, now())

@@ -4,6 +4,7 @@
 
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
+use sun2xp::model::Fingers;
 use sun2xp::{Configuration, Hand, RealTime};
 use sun2xp_remote_client::{RemoteConfiguration, RemoteHand};
 use sun2xp_serve::certificates::{Wanted, make};
@@ -21,8 +22,8 @@ pub struct Offer {
 }
 
 impl Offer {
-    /// Offers the simulated hand at this rate, Hz.
-    pub fn new(tls: bool, rate: f64) -> Self {
+    /// Offers the simulated hand with these fingers at this rate, Hz.
+    pub fn new(tls: bool, rate: f64, fingers: Fingers) -> Self {
         let port = TcpListener::bind("127.0.0.1:0").and_then(|at| at.local_addr()).expect("a free port").port();
         let endpoint = format!("{}/127.0.0.1:{port}", if tls { "tls" } else { "tcp" });
         let certificates = tls.then(|| tempfile::tempdir().expect("a folder"));
@@ -37,7 +38,7 @@ impl Offer {
         let settings = Settings::from_text(&text, &folder.join("sun2xp.toml"), &Overrides::default());
         let settings = settings.unwrap_or_else(|error| panic!("{error}"));
         let mut configuration = Configuration::default();
-        configuration.hand.rate = rate;
+        (configuration.hand.rate, configuration.hand.fingers) = (rate, fingers);
         configuration.hand.real_time = RealTime::Try;
         prepare(&mut configuration, &settings.limits);
         let hand = Hand::open(configuration).expect("the simulated hand");
