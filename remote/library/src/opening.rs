@@ -18,5 +18,5 @@ pub(crate) fn open(source: RemoteSource, configuration: &Configuration) -> Resul
     // The caller has found the table already. The file may have been replaced since then.
     let remote = read.map_err(refusal)?.ok_or_else(|| system("the table [remote] is no longer there: open again"))?;
     let hand = client::RemoteHand::open(&remote).map_err(refusal)?;
-    Ok(NetworkHand::start(hand, configuration)?)
+    NetworkHand::start(hand, configuration)
 }
