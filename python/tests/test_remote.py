@@ -216,8 +216,9 @@ def test_two_hands_get_one_time_stamp():
             sun2xp.remote.send_together({hands["left"]: point, hands["right"]: point})
             for hand in hands.values():
                 hand.wait(1, "applied", timeout=5)
-            first = [next(target for target in server.targets if target[3]) for server in (left, right)]
-            assert first[0][0] == first[1][0]
+            # The line may drop a target, but those that arrive come in pairs.
+            times = [{sent for sent, _, _, parts in server.targets if parts} for server in (left, right)]
+            assert times[0] & times[1]
 
 
 def test_a_closed_hand_is_released_and_refuses_calls(double):

@@ -1,6 +1,7 @@
 //! The tests of the package: python/tests.
 
-use crate::environment::{Environment, run};
+use crate::environment::{Environment, ROOT, run};
+use std::path::PathBuf;
 use std::process::Command;
 
 #[test]
@@ -14,6 +15,18 @@ fn the_wheel_works_in_an_empty_environment() {
     // Cargo builds the C library with the dependencies of this test.
     let here = std::env::current_exe().expect("the path of this test");
     pytest.env("SUN2XP_LIBRARY", here.with_file_name("libsun2xp.so"));
+    pytest.env("SUN2XP_SERVE", server());
     println!("{}", run(&mut pytest));
     environment.delete();
+}
+
+/// Returns the path of `sun2xp-serve`, for the tests of `sun2xp.remote`. Cargo builds it here, with the features of a
+/// build of the whole workspace, because it is the program of another package.
+fn server() -> PathBuf {
+    let mut build = Command::new(env!("CARGO"));
+    build.args(["build", "--quiet", "--offline", "--workspace", "--bin", "sun2xp-serve"]).current_dir(ROOT);
+    run(&mut build);
+    // This test is in the folder deps, beside which programs are.
+    let here = std::env::current_exe().expect("the path of this test");
+    here.ancestors().nth(2).expect("the folder of the profile").join("sun2xp-serve")
 }

@@ -50,7 +50,7 @@ def open(
     tls: Optional[Tls] = None,
     read_only: bool = False,
     take_over: bool = False,
-    recover: bool = False,
+    recover: bool = True,
     stale: float = 0.1,
 ) -> RemoteHand:
     """Opens a hand on another machine, over a connection of its own.
@@ -62,7 +62,7 @@ def open(
         tls: the files of mutual TLS. A server that listens on more than loopback needs them.
         read_only: do not acquire the hand. Then its state can be read, and it can be stopped.
         take_over: acquire it also if another client commands it.
-        recover: recover fingers that have stopped.
+        recover: recover fingers that have stopped, as those of a hand that was released have.
         stale: largest age of the state that `position` and others return, s.
 
     Raises:

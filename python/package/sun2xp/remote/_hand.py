@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import time
 from typing import Iterable, List, Optional, Sequence, Union
 
@@ -15,6 +16,9 @@ from ._messages import STAGES, Answer, Part
 from ._network import ANSWER_TIME, Network
 from ._owner import Owner
 from ._reading import Reading
+
+#: Longest time of a recovery, s.
+_RECOVERY_TIME = 30.0
 
 #: Longest time of a calibration, s.
 _CALIBRATION_TIME = 600.0
@@ -39,13 +43,11 @@ class RemoteHand(Reading):
     def __init__(self, network: Network, name: str, *, stale: float, owns_network: bool = False) -> None:
         super().__init__(network, name, stale=stale)
         self._owns_network = owns_network
-        publisher = network.publisher(f"{self._prefix}target/{network.client}")
-        self._owner = Owner(publisher, self._receiver)
+        self._owner = Owner(functools.partial(network.put, f"{self._prefix}target/{network.client}"), self._receiver)
         self._declared = [
             network.subscriber(f"{self._prefix}state", self._take_state),
             network.subscriber(f"{self._prefix}events", self._receiver.event),
             network.subscriber(f"{self._prefix}refused/{network.client}", self._take_refusal),
-            publisher,
         ]
         network.sender.add(self._owner)
         # The server publishes a State at least every 10 ms.
@@ -72,7 +74,7 @@ class RemoteHand(Reading):
         Raises:
             NotOwner: another client commands the hand.
         """
-        answer = self._request("acquire", 0, take_over=take_over, recover=recover)
+        answer = self._request("acquire", 0, timeout=_RECOVERY_TIME, take_over=take_over, recover=recover)
         with self._network.sender.lock:
             self._owner.begin(answer)
             self._owner.publish(time.monotonic_ns())
@@ -177,14 +179,18 @@ class RemoteHand(Reading):
         self._check(*wanted)
         deadline = None if timeout is None else time.monotonic() + timeout
         while True:
+            left = 0.1 if deadline is None else min(0.1, deadline - time.monotonic())
+            holds = self._receiver.wait_for(
+                lambda: all(self._holds(finger, condition) for finger in wanted), max(left, 0)
+            )
+            self._check()
+            # After a refusal, the set point before it is the last one, and the condition may hold for that one.
             with self._network.sender.lock:
                 self._owner.take_refusal(wanted)
             for finger in wanted:
                 self._check_fault(finger)
-            left = 0.1 if deadline is None else min(0.1, deadline - time.monotonic())
-            if self._receiver.wait_for(lambda: all(self._holds(finger, condition) for finger in wanted), max(left, 0)):
+            if holds:
                 return
-            self._check()
             if left <= 0:
                 raise TimedOut(f"fingers {wanted} are not {condition} after {timeout} s", number=ErrorNumber.TIMED_OUT)
 
@@ -194,7 +200,7 @@ class RemoteHand(Reading):
         Raises:
             Fault: the cause of the fault is still there.
         """
-        self._request("recover", finger, self._owner.epoch)
+        self._request("recover", finger, self._owner.epoch, timeout=_RECOVERY_TIME)
 
     def stop(self, finger: Optional[int] = None) -> None:
         """Brings a finger, or every finger, to its end state at once, whoever commands the hand."""

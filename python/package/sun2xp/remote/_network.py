@@ -22,6 +22,9 @@ LOOPBACK = "tcp/127.0.0.1:7447"
 #: Longest time in which a server answers, s.
 ANSWER_TIME = 2.0
 
+#: Attempts to connect, at first and after a loss of the connection, ms.
+_RETRY = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
+
 _HAND = re.compile(r"[a-z0-9-]{1,32}\Z")
 
 _open_networks: "weakref.WeakSet[Network]" = weakref.WeakSet()
@@ -65,21 +68,19 @@ def configuration(endpoint: str, tls: Optional[Tls]) -> Dict[str, Any]:
     """Returns the configuration of Zenoh for a client that knows one endpoint, and searches for no other."""
     settings: Dict[str, Any] = {
         "mode": "client",
-        "connect": {"endpoints": [endpoint]},
+        "connect": {"endpoints": [endpoint], "timeout_ms": 3000, "retry": _RETRY},
         "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
+        "transport": {"unicast": {"open_timeout": 2000}},
     }
     if tls is not None:
-        settings["transport"] = {
-            "link": {
-                "tls": {
-                    "root_ca_certificate": str(tls.authority),
-                    "connect_certificate": str(tls.certificate),
-                    "connect_private_key": str(tls.key),
-                    "enable_mtls": True,
-                    "verify_name_on_connect": True,
-                }
-            }
+        files = {
+            "root_ca_certificate": str(tls.authority),
+            "connect_certificate": str(tls.certificate),
+            "connect_private_key": str(tls.key),
+            "enable_mtls": True,
+            "verify_name_on_connect": True,
         }
+        settings["transport"]["link"] = {"protocols": ["tls"], "tls": files}
     return settings
 
 
@@ -155,10 +156,15 @@ class Network:
         """Calls a function with every payload under a key, in a thread of Zenoh."""
         return self.session.declare_subscriber(key, lambda sample: take(bytes(sample.payload)))
 
-    def publisher(self, key: str) -> Any:
-        """Returns a publisher for targets: the newest replaces what has not been sent."""
-        return self.session.declare_publisher(
+    def put(self, key: str, payload: bytes) -> None:
+        """Sends a Target. If the line is full, it is dropped: the next one repeats it.
+
+        A declared publisher would send nothing to a server with TLS, because the access control of the server tells no
+        client who has subscribed.
+        """
+        self.session.put(
             key,
+            payload,
             congestion_control=self._zenoh.CongestionControl.DROP,
             priority=self._zenoh.Priority.REAL_TIME,
             express=True,
@@ -170,7 +176,7 @@ class Network:
         *,
         read_only: bool = False,
         take_over: bool = False,
-        recover: bool = False,
+        recover: bool = True,
         stale: float = 0.1,
     ) -> Any:
         """Opens a hand over this connection. Arguments and errors are those of `sun2xp.remote.open`."""

@@ -6,7 +6,7 @@ import collections
 import dataclasses
 import threading
 import time
-from typing import Any, Deque, Dict, Iterable, List, Optional, Tuple
+from typing import Callable, Deque, Dict, Iterable, List, Optional, Tuple
 
 from .._errors import Closed, ErrorNumber, Refused
 from . import _messages
@@ -27,8 +27,8 @@ _LAST_COMMAND = 2**32 - 1
 class Owner:
     """The set points of one hand. The lock of the Sender protects all of it."""
 
-    def __init__(self, publisher: Any, receiver: Receiver) -> None:
-        self._publisher = publisher
+    def __init__(self, put: Callable[[bytes], None], receiver: Receiver) -> None:
+        self._put = put
         self._receiver = receiver
         self._epoch = 0
         self._validity = 0
@@ -137,7 +137,7 @@ class Owner:
         parts = [part for part in map(self._part, (1, 2, 3)) if part is not None]
         target = Target(self._validity, self._epoch, self._sequence, sent, self._receiver.seen, parts)
         self._sent.append((self._sequence, {part.finger: part.command for part in parts}))
-        self._publisher.put(_messages.write_target(target))
+        self._put(_messages.write_target(target))
 
 
 def _fill(part: Part, earlier: Part) -> None:

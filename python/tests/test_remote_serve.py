@@ -1,0 +1,167 @@
+"""`sun2xp.remote` with `sun2xp serve` and simulated hands: without and with certificates, and behind a router."""
+
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import numpy
+import pytest
+
+import sun2xp
+import sun2xp.remote
+
+#: The program. tests/installed names it.
+SERVER = os.environ.get("SUN2XP_SERVE")
+
+pytestmark = pytest.mark.skipif(SERVER is None, reason="SUN2XP_SERVE does not name the program sun2xp-serve")
+
+HOME = [0.0, 0.6, 0.9]
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Server:
+    """A server with a simulated hand, or a router."""
+
+    def __init__(self, folder, text, *arguments):
+        folder.mkdir(exist_ok=True)
+        self.file = folder / "sun2xp.toml"
+        self.file.write_text(text)
+        command = [SERVER, "--config", str(self.file), *arguments]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        last = "router" if "--router" in arguments else "ready"
+        assert any(line.startswith(last) for line in self.process.stdout), "the server has ended"
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.process.terminate()
+        assert self.process.wait(20) == 0
+
+
+def settings(name, clients, *, listen="", connect="", tls=None):
+    text = f'[finger]\nport = "simulated"\n[telemetry]\nname = "py-{os.getpid()}-{name}"\n[serve]\nname = "{name}"\n'
+    text += f'listen = ["{listen}"]\n' if listen else ""
+    text += f'connect = ["{connect}"]\n' if connect else ""
+    text += "[serve.clients]\n" + "".join(f'{client} = "{may}"\n' for client, may in clients.items())
+    if tls is not None:
+        text += f'[serve.tls]\nauthority = "{tls / "ca.pem"}"\n'
+        text += f'certificate = "{tls / (name + ".pem")}"\nkey = "{tls / (name + ".key")}"\n'
+    return text
+
+
+@pytest.fixture
+def endpoint(tmp_path):
+    where = f"tcp/127.0.0.1:{free_port()}"
+    with Server(tmp_path / "hand", settings("hand", {"planner": "command", "screen": "read"}, listen=where)):
+        yield where
+
+
+def test_a_finger_is_moved_held_and_read(endpoint):
+    with sun2xp.remote.open("hand", endpoint) as hand:
+        assert list(sun2xp.remote.discover(endpoint)) == ["hand"]
+        hand.send_group([sun2xp.SetPoint(finger, position=HOME) for finger in hand.fingers])
+        hand.send_stiffness(1, numpy.diag([2.0, 2.0, 1.0]))
+        hand.wait(timeout=30)
+        for finger in hand.fingers:
+            assert abs(hand.position(finger) - HOME).max() < 0.05
+        hand.send_path(1, [0.5, 1.0], [[0.0, 0.7, 0.9], HOME])
+        hand.send_damping(1, 1.2)
+        hand.wait(1, timeout=30)
+        assert abs(hand.position(1) - HOME).max() < 0.05
+        with pytest.raises(sun2xp.Refused):
+            hand.send_tip(2, [100.0, 0.0, 0.0])
+            hand.wait(2, timeout=10)
+        with sun2xp.remote.open("hand", endpoint, client="screen", read_only=True) as screen:
+            assert abs(screen.position(1) - HOME).max() < 0.05
+            with pytest.raises(sun2xp.remote.NotOwner):
+                screen.acquire(take_over=True)
+            screen.stop(3)
+        with pytest.raises(sun2xp.Fault):
+            hand.wait(3, timeout=10)
+        hand.recover(3)
+        assert hand.status().owner == "planner" and hand.status().counts.malformed == 0
+        hand.send_position(3, HOME)
+        hand.wait(3, timeout=30)
+
+
+def test_a_planner_that_is_stopped_loses_the_hand(endpoint):
+    program = (
+        "import sun2xp.remote, sys, time\n"
+        "hand = sun2xp.remote.open('hand', sys.argv[1])\n"
+        f"hand.send_position(1, {HOME})\n"
+        "hand.wait(1, timeout=30)\n"
+        "print('holds', flush=True)\n"
+        "time.sleep(60)\n"
+    )
+    command = [sys.executable, "-c", program, endpoint]
+    planner = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    try:
+        assert planner.stdout.readline() == "holds\n"
+        with sun2xp.remote.open("hand", endpoint, client="screen", read_only=True) as screen:
+            assert screen.status().owner == "planner"
+            planner.send_signal(signal.SIGSTOP)
+            end = time.monotonic() + 5
+            seen = set()
+            while screen.state(1).stage == "running" and time.monotonic() < end:
+                seen.add(screen.state(1).caught)
+            assert seen == {False, True} and screen.state(1).stage == "faulted"
+            assert screen.status().owner is None and screen.status().counts.ended == 1
+    finally:
+        planner.kill()
+        planner.wait()
+    with sun2xp.remote.open("hand", endpoint) as hand:
+        hand.send_position(1, HOME)
+        hand.wait(1, timeout=30)
+
+
+def test_certificates_name_the_client(tmp_path):
+    folder = tmp_path / "certificates"
+    names = ["--server", "hand", "--address", "127.0.0.1", "--client", "planner", "--client", "stranger"]
+    subprocess.run([SERVER, "--make-certificates", folder, *names], check=True, stdout=subprocess.DEVNULL)
+    endpoint = f"tls/127.0.0.1:{free_port()}"
+
+    def tls(client):
+        return sun2xp.remote.Tls(folder / "ca.pem", folder / f"{client}.pem", folder / f"{client}.key")
+
+    with Server(tmp_path / "hand", settings("hand", {"planner": "command"}, listen=endpoint, tls=folder)):
+        with sun2xp.remote.open("hand", endpoint, tls=tls("planner")) as hand:
+            assert hand.status().owner == "planner"
+            hand.send_position(1, HOME)
+            hand.wait(1, timeout=30)
+        with pytest.raises(sun2xp.remote.NoAnswer):
+            sun2xp.remote.open("hand", endpoint, tls=tls("stranger"))
+        with pytest.raises(sun2xp.remote.NoAnswer):
+            sun2xp.remote.open("hand", endpoint, tls=tls("planner"), client="stranger")
+        with pytest.raises(sun2xp.remote.NoAnswer):
+            sun2xp.remote.open("hand", endpoint.replace("tls", "tcp"))
+    with pytest.raises(sun2xp.ConfigurationError):
+        sun2xp.remote.open("hand", endpoint, tls=sun2xp.remote.Tls(pathlib.Path("a"), pathlib.Path("b"), "c"))
+
+
+def test_two_hands_behind_a_router_move_together(tmp_path):
+    router = f"tcp/127.0.0.1:{free_port()}"
+    clients = {"planner": "command"}
+    with Server(tmp_path / "router", settings("router", clients, listen=router), "--router"):
+        left = settings("left", clients, connect=router)
+        right = settings("right", clients, connect=router)
+        with Server(tmp_path / "left", left), Server(tmp_path / "right", right):
+            with sun2xp.remote.connect(router) as network:
+                end = time.monotonic() + 10
+                while set(network.hands()) != {"left", "right"}:
+                    assert time.monotonic() < end
+                hands = [network.open(name) for name in ("left", "right")]
+                points = [sun2xp.SetPoint(finger, position=HOME) for finger in (1, 2, 3)]
+                sun2xp.remote.send_together({hand: points for hand in hands})
+                for hand in hands:
+                    hand.wait(timeout=30)
+                    assert abs(hand.position(2) - HOME).max() < 0.05
