@@ -174,11 +174,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Searches the bound of one finger with the default options, N/cm.
+/// Searches the bound of one finger with the default options. Returns it in N/cm, and what limits it.
 ///
 /// # Errors
 /// Returns an error if the finger has no bound.
-pub fn of_finger(configuration: &Configuration, number: FingerNumber) -> Result<f64, Failure> {
+pub fn of_finger(configuration: &Configuration, number: FingerNumber) -> Result<(f64, String), Failure> {
     let arguments = Arguments {
         config: None,
         fingers: Vec::new(),
@@ -194,7 +194,8 @@ pub fn of_finger(configuration: &Configuration, number: FingerNumber) -> Result<
     };
     let searched = Searched { number, finger: &configuration.fingers[number.index()], rate: configuration.hand.rate };
     let progress = Progress::new("bound", set::searches(&arguments) as u64);
-    Ok(set::search(&arguments, &searched, &progress)?.0)
+    let (stiffness, set) = set::search(&arguments, &searched, &progress)?;
+    Ok((stiffness, set.limit()))
 }
 
 fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -> Result<FingerReport, Failure> {

@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 Refused::ByHand(error) => {
                     let rest = fingers.numbers().filter(|&other| other > finger);
                     let instructions = arguments.instructions(finger, &tasks[done..], &rest.collect::<Vec<_>>());
-                    format!("{error}\n{instructions}").into()
+                    format!("{error}. {instructions}").into()
                 }
             })?;
             calibrated.measured.extend(Measured::all(&found));

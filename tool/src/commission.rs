@@ -10,9 +10,13 @@ mod line;
 mod machine;
 mod motors;
 mod new_file;
+mod new_finger;
+mod order;
 mod outcome;
 mod person;
+mod port_search;
 mod progress_file;
+mod session;
 mod spring;
 mod step;
 mod tendons;
@@ -24,42 +28,43 @@ mod wrong;
 mod zeros;
 
 use crate::failure::{ExitStatus, Failure, wrong_usage};
-use crate::monitor::words::utc;
 use desk::Desk;
 use hand_machine::HandMachine;
-use outcome::Outcome;
 use person::GRAVITY;
 use progress_file::{ProgressFile, path_beside};
+use session::Session;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
 use step::Step;
 use sun2xp::hand::Configured;
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::model::{FingerNumber, ShownPath};
-use terminal::{LEFT, Terminal};
+use terminal::Terminal;
 pub use vitals::Vitals;
+
+/// How often `sun2xp health` repeats steps that have failed, without asking, if nobody is there.
+const RETRIES: u32 = 3;
 
 /// Leads through the bring-up of a finger, and writes what it finds into the configuration file.
 ///
-/// The steps are board, encoders, gauges, motors, zeros, tendons, bound, computer and spring. Each step says what it
+/// The steps are board, computer, encoders, gauges, motors, zeros, tendons, bound and spring. Each step says what it
 /// does and what you should see, asks you to act at the finger, and names what is wrong with its remedy. The motors are
 /// off between the steps. Steps that have passed are noted in a file beside the configuration, for example
 /// hand.commission.json, and are skipped when the tool runs again.
 ///
 /// Answer each request with Enter when it is done, with n if it cannot be done, and with q to leave.
 ///
-/// Exit status: 0 if every step has passed, 1 if one has not, 2 for wrong usage.
+/// Exit status: 0 if every step of this run has passed, 1 if one has not, 2 for wrong usage.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file. The tool writes the results into it, with comments. If it does not exist, the tool
-    /// searches for a board and creates it.
+    /// searches for a board and creates it. If it does not have the finger, the tool searches for a board and adds it.
     #[arg(long, value_name = "FILE")]
     config: PathBuf,
     /// The finger.
     #[arg(long, value_name = "N", default_value = "1", value_parser = finger)]
     finger: FingerNumber,
-    /// Search for the board of a new configuration file at these ports. A * in the last part of the path stands for any
+    /// Search for the board of a new file or finger at these ports. A * in the last part of the path stands for any
     /// text. May be repeated. The default is that of hand.search_ports.
     #[arg(long = "port", value_name = "PATH")]
     ports: Vec<String>,
@@ -96,10 +101,13 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
         new_file::create(&arguments.config, arguments.finger, &arguments.ports)?;
     }
     let configured = Configured::read(&arguments.config)?;
-    if !configured.configuration.hand.fingers.contains(arguments.finger) {
-        let reason = format!("hand.fingers has no finger {}: add it to the list", arguments.finger);
-        return Err(wrong_usage(format!("{}: {reason}", ShownPath(&arguments.config))));
-    }
+    let configured = match configured.configuration.hand.fingers.contains(arguments.finger) {
+        true => configured,
+        false => {
+            new_finger::add(&arguments.config, &configured.configuration, arguments.finger, &arguments.ports)?;
+            Configured::read(&arguments.config)?
+        }
+    };
     let finger = configured.configuration.fingers[arguments.finger.index()].clone();
     let mut weights: Vec<f64> = arguments.weights.iter().map(|mass| mass * GRAVITY).collect();
     weights.sort_by(f64::total_cmp);
@@ -112,22 +120,20 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
         )));
     }
     let file = path_beside(&arguments.config);
-    let progress = ProgressFile::read(&file)?;
     let number = arguments.finger.get();
-    let known = progress.fingers.get(&number).cloned().unwrap_or_default();
+    let known = ProgressFile::read(&file)?.fingers.remove(&number).unwrap_or_default();
     let steps = arguments.steps_left(|step| known.steps.contains_key(&step));
     let mut terminal = Terminal::new(arguments.yes, steps.clone());
-    terminal.heading(number, &arguments.config, &known.steps)?;
+    terminal.heading(number, &arguments.config, &known)?;
     let mut machine = HandMachine::new(configured.configuration, arguments.finger);
     let mut desk = Desk { machine: &mut machine, person: &mut terminal, finger, weights, vitals: known.vitals };
-    let mut session = Session { arguments, file, progress };
+    let session = Session { config: &arguments.config, finger: arguments.finger, file };
     for step in steps {
         if !session.carry_out(&mut desk, step)? {
             return Ok(ExitStatus::FAILURE);
         }
     }
-    let text = "The finger is commissioned. At any later time, sun2xp health compares its state with that of today.";
-    writeln!(io::stdout(), "\n{text}")?;
+    writeln!(io::stdout(), "\n{}", session.closing()?)?;
     Ok(ExitStatus::SUCCESS)
 }
 
@@ -149,7 +155,7 @@ pub fn examine(file: &Path, finger: FingerNumber, yes: bool, quiet: bool) -> Res
     let before = configured.configuration.fingers[finger.index()].clone();
     let steps = vec![Step::Zeros, Step::Tendons];
     let mut terminal = Terminal::new(yes, steps.clone());
-    terminal.quiet = quiet;
+    (terminal.quiet, terminal.retries) = (quiet, RETRIES);
     let mut machine = HandMachine::new(configured.configuration, finger);
     let mut desk = Desk {
         machine: &mut machine,
@@ -158,14 +164,20 @@ pub fn examine(file: &Path, finger: FingerNumber, yes: bool, quiet: bool) -> Res
         weights: Vec::new(),
         vitals: Vitals::default(),
     };
-    for step in steps {
-        let outcome = desk.carry_out(step)?;
+    measure(&mut desk, &steps)?;
+    let today = (desk.vitals.clone(), desk.finger.clone());
+    Ok(Examined { before: (vitals, before), today })
+}
+
+/// Does these steps. Each is repeated if it has failed, while the person or the terminal wants it.
+fn measure(desk: &mut Desk, steps: &[Step]) -> Result<(), Failure> {
+    for &step in steps {
+        let outcome = desk.complete(step, |_| Ok(()))?;
         if let Some(wrong) = outcome.wrong.iter().find(|wrong| !wrong.compensated()) {
             return Err(format!("the step {step} stopped: {wrong}").into());
         }
     }
-    let today = (desk.vitals.clone(), desk.finger.clone());
-    Ok(Examined { before: (vitals, before), today })
+    Ok(())
 }
 
 impl Arguments {
@@ -176,56 +188,5 @@ impl Arguments {
             false => self.steps.contains(step),
         };
         Step::ALL.into_iter().filter(wanted).collect()
-    }
-}
-
-/// The date and time, UTC.
-fn now() -> String {
-    // A clock before 1970 is wrong anyway.
-    utc(SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()))
-}
-
-/// The files of a commissioning.
-struct Session<'a> {
-    arguments: &'a Arguments,
-    file: PathBuf,
-    progress: ProgressFile,
-}
-
-impl Session<'_> {
-    /// Completes a step and stores its results. Returns whether it has passed.
-    fn carry_out(&mut self, desk: &mut Desk, step: Step) -> Result<bool, Failure> {
-        let before = desk.finger.clone();
-        let outcome = match desk.complete(step) {
-            Ok(outcome) => outcome,
-            Err(failure) if failure.to_string() == LEFT => {
-                writeln!(io::stdout(), "\nLeft. {}", self.continuation())?;
-                return Ok(false);
-            }
-            Err(failure) => return Err(format!("{failure}\n{}", self.continuation()).into()),
-        };
-        if !outcome.passed() {
-            writeln!(io::stdout(), "\n{}", self.continuation())?;
-            return Ok(false);
-        }
-        self.store(desk, step, &before, &outcome)?;
-        Ok(true)
-    }
-
-    fn store(&mut self, desk: &Desk, step: Step, before: &ConfiguredFinger, outcome: &Outcome) -> Result<(), Failure> {
-        let (number, when) = (self.arguments.finger.get(), now());
-        let comment = format!("{when}, {step}: {}", outcome.found.first().map_or("", String::as_str));
-        configuration_file::store(&self.arguments.config, number, before, &desk.finger, &comment)?;
-        self.progress.note(number, step, outcome, &desk.vitals, when);
-        self.progress.write(&self.file)
-    }
-
-    /// How to go on later.
-    fn continuation(&self) -> String {
-        format!(
-            "The motors are off. To continue: sun2xp commission --config {} --finger {}",
-            ShownPath(&self.arguments.config),
-            self.arguments.finger
-        )
     }
 }

@@ -164,6 +164,21 @@ impl Member {
 }
 
 impl SetBound {
+    /// What limits the bound, in one line.
+    pub fn limit(&self) -> String {
+        let least = &self.plants[self.limited_by];
+        let (plant, place) = (least.plant, place(least.walls));
+        match &least.limit {
+            LimitFound::Unstable(sample) => {
+                format!("{plant}, {place}, which above it is unstable at {}", sample.text())
+            }
+            LimitFound::ScaledBelowHalf { joints_degrees } => format!(
+                "{plant}, {place}; above it the servo would scale Kx down by more than half at {}",
+                pose(joints_degrees)
+            ),
+        }
+    }
+
     pub fn write(&self, out: &mut impl Write, screen: &Screen, searched: &Searched) -> io::Result<()> {
         let Searched { number, rate, .. } = searched;
         writeln!(out, "finger {number}, bounds in N/cm (samples that are unstable at every stiffness):\n")?;

@@ -1,6 +1,7 @@
 //! The steps that need no motion: the board, the bound of the stiffness, and the computer.
 
 use super::desk::Desk;
+use super::machine::Bound;
 use super::outcome::Outcome;
 use super::person::{Act, Answer};
 use super::wrong::Wrong;
@@ -43,14 +44,17 @@ pub fn board(desk: &mut Desk) -> Result<Outcome, Failure> {
 pub fn bound(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     desk.machine.configure(&desk.finger)?;
-    let bound = desk.machine.bound()?;
+    let Bound { stiffness: bound, limit } = desk.machine.bound()?;
     desk.finger.stiffness.bound = Some(bound);
     outcome.found(format!("the finger is stable up to {bound:.2} N/cm"));
+    outcome.found(format!("limited by: {limit}"));
+    outcome.about("stiffness.bound", format!("limited by: {limit}"));
     let initial = desk.finger.initial_stiffness().symmetric_eigenvalues().max();
     if initial > bound {
         // Otherwise the finger could not be opened with its new bound.
         desk.finger.stiffness.initial.as_flattened_mut().iter_mut().for_each(|entry| *entry *= bound / initial);
-        outcome.found(format!("stiffness.initial was {initial:.2} N/cm, and is lowered to the bound"));
+        outcome.about("stiffness.initial", format!("lowered from {initial:.2} N/cm to the bound"));
+        outcome.wrong(Wrong::InitialLowered(initial, bound));
     }
     Ok(outcome)
 }

@@ -9,20 +9,20 @@ use sun2xp::model::configuration::ConfiguredFinger;
 use toml_edit::{Array, DocumentMut, Formatted, Item, Table, Value};
 
 /// Largest configuration file, bytes.
-const LARGEST: u64 = 1 << 20;
+pub const LARGEST: u64 = 1 << 20;
 /// The beginning of every comment of this tool. An older one above the same key is replaced.
 const MARK: &str = "# commission ";
 /// Number of significant digits of a number.
 const DIGITS: usize = 6;
 
 /// Writes the keys of `after` that differ from `before` into the table of the finger, with a comment above each.
-/// Everything else in the file is kept.
+/// `comment` returns the comment of a key, for example of "gauge.zero". Everything else in the file is kept.
 pub fn store(
     path: &Path,
     finger: i32,
     before: &ConfiguredFinger,
     after: &ConfiguredFinger,
-    comment: &str,
+    comment: &dyn Fn(&str) -> String,
 ) -> Result<(), Failure> {
     let (before, after) = (toml_edit::ser::to_document(before)?, toml_edit::ser::to_document(after)?);
     let changed = differences(&before, &after);
@@ -78,11 +78,12 @@ fn rounded(value: &Value) -> Value {
 }
 
 /// Returns the text with the changed keys.
-fn with(text: &str, finger: i32, changed: &[Changed], comment: &str) -> Result<String, Failure> {
+fn with(text: &str, finger: i32, changed: &[Changed], comment: &dyn Fn(&str) -> String) -> Result<String, Failure> {
     let mut document: DocumentMut = text.parse()?;
     let fingers = table(document.as_table_mut(), "finger")?;
     let own = table(fingers, &finger.to_string())?;
     for Changed { section, key, value } in changed {
+        let comment = comment(&format!("{section}.{key}"));
         let section = table(own, section)?;
         section.set_implicit(false);
         let kept = section.key(key).and_then(|key| key.leaf_decor().prefix()?.as_str().map(without_mark));
@@ -104,7 +105,7 @@ fn without_mark(prefix: &str) -> String {
 }
 
 /// Returns the table with this key, as a table of its own even if it was an inline one.
-fn table<'a>(parent: &'a mut Table, key: &str) -> Result<&'a mut Table, Failure> {
+pub fn table<'a>(parent: &'a mut Table, key: &str) -> Result<&'a mut Table, Failure> {
     let entry = parent.entry(key).or_insert_with(|| {
         let mut new = Table::new();
         new.set_implicit(true);
@@ -129,7 +130,7 @@ mod tests {
         let mut after = before.clone();
         change(&mut after);
         let [before, after] = [&before, &after].map(|finger| toml_edit::ser::to_document(finger).expect("a document"));
-        with(text, 2, &differences(&before, &after), "2026-11-22, motors: signs").expect("written")
+        with(text, 2, &differences(&before, &after), &|key| format!("2026-11-22, motors: {key}")).expect("written")
     }
 
     #[test]
@@ -137,11 +138,22 @@ mod tests {
         let text = "# my hand\n[hand]\nrate = 500 # slow\n\n[finger.2]\nport = \"simulated\"\n";
         let new = changed(|finger| finger.motor.sign[1] = -1, text);
         assert!(new.starts_with(text), "{new}");
-        let rest = "\n[finger.2.motor]\n# commission 2026-11-22, motors: signs\nsign = [1, -1, 1, 1]\n";
+        let rest = "\n[finger.2.motor]\n# commission 2026-11-22, motors: motor.sign\nsign = [1, -1, 1, 1]\n";
         assert!(new.ends_with(rest), "{new}");
         let again = changed(|finger| finger.motor.sign[2] = -1, &new);
         assert_eq!(again.matches(MARK).count(), 1, "{again}");
         assert!(again.contains("sign = [1, 1, -1, 1]"), "{again}");
+    }
+
+    #[test]
+    fn each_key_has_its_own_comment() {
+        let change = |finger: &mut ConfiguredFinger| {
+            (finger.gauge.zero[0], finger.gauge.newton_per_count[0]) = (200.0, 0.03);
+        };
+        let new = changed(change, "");
+        for key in ["zero", "newton_per_count"] {
+            assert!(new.contains(&format!("motors: gauge.{key}\n{key} = [")), "{new}");
+        }
     }
 
     #[test]

@@ -1,13 +1,17 @@
 //! A finger, the person in front of it, and its configuration so far.
 
-use super::machine::Machine;
+use super::machine::{Machine, Reading};
 use super::outcome::Outcome;
-use super::person::Person;
+use super::person::{NoAnswer, Person};
 use super::step::Step;
 use super::vitals::Vitals;
 use super::{computer, encoders, gauges, motors, spring, tendons, zeros};
 use crate::failure::Failure;
+use std::io;
 use sun2xp::model::configuration::ConfiguredFinger;
+
+/// How often the sensors are read before the person is asked.
+const READINGS: usize = 4;
 
 /// What every step works with.
 pub struct Desk<'a> {
@@ -46,12 +50,49 @@ impl Desk<'_> {
         Ok(outcome)
     }
 
-    /// Does one step until it passes, or until the person gives up.
-    pub fn complete(&mut self, step: Step) -> Result<Outcome, Failure> {
+    /// Reads the sensors with the motors off. A reading without replies is repeated, so that a busy computer or a loose
+    /// plug does not end a step whose earlier readings are good.
+    pub fn read(&mut self, seconds: f64) -> Result<Reading, Failure> {
+        let mut attempt = 1;
         loop {
-            let outcome = self.carry_out(step)?;
-            if outcome.passed() || !self.person.again(step)? {
-                return Ok(outcome);
+            let failure = match self.machine.read(seconds) {
+                Ok(reading) => return Ok(reading),
+                Err(failure) => failure,
+            };
+            // A finger that has lost its replies is faulted. The next reading opens it again.
+            self.machine.off();
+            if attempt % READINGS == 0 {
+                let remedy = "Check the cable and the power of the board, and what else this computer runs. Then \
+                              read again";
+                if !self.person.again(&format!("{failure}. {remedy}."))? {
+                    return Err(NoAnswer::GivenUp(failure.to_string()).into());
+                }
+            } else {
+                self.person.show(&format!("{failure}: reading again"));
+            }
+            attempt += 1;
+        }
+    }
+
+    /// Does one step until it passes, or until the person gives up. `failed` is called each time that it has not
+    /// passed.
+    pub fn complete(
+        &mut self,
+        step: Step,
+        mut failed: impl FnMut(&Outcome) -> Result<(), Failure>,
+    ) -> Result<Outcome, Failure> {
+        let question = format!("Remove the cause, then do the step {step} again.");
+        loop {
+            let done = self.carry_out(step);
+            match &done {
+                Ok(outcome) if outcome.passed() => return done,
+                Ok(outcome) => failed(outcome)?,
+                // Nobody is there to ask.
+                Err(failure) if failure.is::<NoAnswer>() || failure.is::<io::Error>() => return done,
+                Err(failure) => self.person.show(&format!("the step has stopped: {failure}")),
+            }
+            if !self.person.again(&question)? {
+                return done;
             }
         }
     }

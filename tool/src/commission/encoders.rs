@@ -2,6 +2,7 @@
 
 use super::desk::Desk;
 use super::machine::Refused;
+use super::order::{is_exchange, repeats};
 use super::outcome::Outcome;
 use super::person::{Act, Answer};
 use super::wrong::Wrong;
@@ -42,25 +43,36 @@ pub fn encoders(desk: &mut Desk) -> Result<Outcome, Failure> {
             }
         }
     }
-    if order.contains(&0) {
-        name_the_missing(&mut outcome, &mut order);
-    }
-    if order != [1, 2, 3, 4] && !order.contains(&0) {
+    let seen = order;
+    name_the_missing(&mut outcome, &mut order);
+    let unclear = outcome.wrong.iter().any(|wrong| matches!(wrong, Wrong::EncoderUnclear(..)));
+    if repeats(seen) || (is_exchange(order) && unclear) {
+        // The person may have turned another motor, or two of them.
+        outcome.wrong.retain(|wrong| matches!(wrong, Wrong::MotorBlocked(_)));
+        outcome.wrong(Wrong::EncodersUnclear(seen));
+    } else if is_exchange(order) {
         // The signs and scales belong to encoders that are not at their motors yet.
         outcome.wrong.retain(|wrong| !wrong.compensated());
         outcome.wrong(exchanged(desk, order)?);
     }
+    if (1..=4).all(|encoder| outcome.wrong.contains(&Wrong::EncoderReversed(encoder)))
+        && desk.person.ask(Act::ConfirmDirection)? == Answer::Cannot
+    {
+        outcome.wrong.retain(|wrong| !matches!(wrong, Wrong::EncoderReversed(_)));
+        outcome.wrong(Wrong::TurnedWrongWay);
+    }
     if outcome.passed() {
-        let list = |values: &[String]| values.join(" ");
-        let signs = desk.finger.encoder.sign.map(|sign| format!("{sign:+}"));
-        let counts = desk.finger.encoder.counts_per_revolution.map(|counts| counts.to_string());
-        outcome.found(format!(
-            "each encoder counts with its motor; signs {}, counts per turn {}",
-            list(&signs),
-            list(&counts)
-        ));
+        report(desk, &mut outcome);
     }
     Ok(outcome)
+}
+
+fn report(desk: &Desk, outcome: &mut Outcome) {
+    let signs = desk.finger.encoder.sign.map(|sign| format!("{sign:+}")).join(" ");
+    let counts = desk.finger.encoder.counts_per_revolution.map(|counts| counts.to_string()).join(" ");
+    outcome.found(format!("each encoder counts with its motor; signs {signs}, counts per turn {counts}"));
+    outcome.about("encoder.sign", "motors turned by hand so that their tendons came loose");
+    outcome.about("encoder.counts_per_revolution", "counts of one turn by hand, to the nearest usual ratio");
 }
 
 /// A motor whose encoder does not count, beside an encoder that counts for no other motor: the order is complete if
@@ -81,11 +93,11 @@ fn name_the_missing(outcome: &mut Outcome, order: &mut [usize; 4]) {
 
 /// Asks for one turn of a motor, and reads which encoder followed.
 fn turn(desk: &mut Desk, motor: usize) -> Result<Result<Turn, Wrong>, Failure> {
-    let before = desk.machine.read(READING)?.encoders;
+    let before = desk.read(READING)?.encoders;
     if desk.person.ask(Act::TurnMotor(motor))? == Answer::Cannot {
         return Ok(Err(Wrong::MotorBlocked(motor)));
     }
-    let out = desk.machine.read(READING)?.encoders;
+    let out = desk.read(READING)?.encoders;
     desk.person.ask(Act::TurnMotorBack(motor))?;
     let counts = desk.finger.encoder.counts_per_revolution;
     let turns: [f64; 4] = std::array::from_fn(|encoder| (out[encoder] - before[encoder]) / f64::from(counts[encoder]));

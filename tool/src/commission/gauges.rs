@@ -2,6 +2,8 @@
 
 use super::desk::Desk;
 use super::line::Line;
+use super::machine::Reading;
+use super::order::{is_exchange, repeats};
 use super::outcome::Outcome;
 use super::person::{Act, Answer};
 use super::wrong::Wrong;
@@ -20,6 +22,13 @@ const SCALE: f64 = 0.05;
 /// A zero that differs by more than this is reported, N.
 const ZERO: f64 = 5.0;
 
+/// A mean count that is nearer than this to an end of the converter's range is at this end, counts.
+const AT_END: f64 = 0.5;
+/// A gauge at the upper end of the range has less noise than this, counts rms.
+const QUIET: f64 = 0.01;
+/// The usual resolutions of converters, bits.
+const BITS: std::ops::RangeInclusive<u32> = 8..=16;
+
 /// What the gauges show with one tendon under its weights.
 struct Weighed {
     /// Index of the gauge that shows the weights.
@@ -27,14 +36,20 @@ struct Weighed {
     line: Line,
 }
 
+/// Whether a count is at an end of the converter's range, so that the true one may be beyond it.
+fn at_end(count: f64, noise: f64) -> bool {
+    let full = |bits: u32| f64::from((1 << bits) - 1);
+    count < AT_END || (noise < QUIET && BITS.into_iter().any(|bits| (count - full(bits)).abs() < QUIET))
+}
+
 /// The step.
 pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     desk.person.ask(Act::Loosen)?;
-    let empty = desk.machine.read(READING)?;
+    let empty = desk.read(READING)?;
     let (mut order, mut lines) = ([0; 4], [None; 4]);
     for tendon in 1..=4 {
-        let Some(Weighed { gauge, line }) = weigh(desk, tendon, &empty.gauges)? else {
+        let Some(Weighed { gauge, line }) = weigh(desk, tendon, &empty)? else {
             outcome.wrong(Wrong::GaugeDead(tendon));
             desk.person.show(&Wrong::GaugeDead(tendon).to_string());
             continue;
@@ -48,20 +63,11 @@ pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
         order[tendon - 1] = gauge + 1;
         lines[gauge] = Some(line);
     }
+    let seen = order;
     name_the_missing(&mut outcome, &mut order);
-    if order != [1, 2, 3, 4] && !order.contains(&0) {
-        outcome.wrong(Wrong::GaugesExchanged(order));
-    }
     for (gauge, line) in lines.iter().enumerate() {
         if let Some(line) = line {
-            judge(desk, &mut outcome, gauge, line, empty.noise[gauge]);
-        }
-    }
-    if outcome.wrong.iter().any(|wrong| matches!(wrong, Wrong::GaugesExchanged(_))) {
-        outcome.wrong.retain(|wrong| !wrong.compensated());
-    }
-    for (gauge, line) in lines.iter().enumerate() {
-        if let Some(line) = line {
+            judge(desk, &mut outcome, gauge, line, &empty);
             outcome.found(format!(
                 "gauge {}: {:.5} N per count, zero at {:.1} counts, residual {:.3} N, noise {:.3} N rms",
                 gauge + 1,
@@ -72,7 +78,24 @@ pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
             ));
         }
     }
+    name_the_order(&mut outcome, seen, order);
+    let weights = desk.weights.iter().map(|newton| format!("{newton:.2}")).collect::<Vec<_>>().join(", ");
+    outcome.about("gauge.newton_per_count", format!("slope of the line through weights of {weights} N"));
+    outcome.about("gauge.zero", format!("count of the line through weights of {weights} N without load"));
     Ok(outcome)
+}
+
+/// Names exchanged gauges, if an exchange explains what was `seen`. `order` has the missing gauge too.
+fn name_the_order(outcome: &mut Outcome, seen: [usize; 4], order: [usize; 4]) {
+    let bent = outcome.wrong.iter().any(|wrong| matches!(wrong, Wrong::GaugeNotLinear(..)));
+    if repeats(seen) || (is_exchange(order) && bent) {
+        // A weight may have hung on another tendon. Then the lines are wrong too.
+        outcome.wrong = vec![Wrong::GaugesUnclear(seen)];
+        outcome.found.clear();
+    } else if is_exchange(order) {
+        outcome.wrong.retain(|wrong| !wrong.compensated());
+        outcome.wrong.insert(0, Wrong::GaugesExchanged(order));
+    }
 }
 
 /// If only one gauge did not answer, it is the one that answered to no other tendon.
@@ -87,33 +110,40 @@ fn name_the_missing(outcome: &mut Outcome, order: &mut [usize; 4]) {
 }
 
 /// Hangs every weight on one tendon. Returns `None` if no gauge shows it.
-fn weigh(desk: &mut Desk, tendon: usize, empty: &[f64; 4]) -> Result<Option<Weighed>, Failure> {
+fn weigh(desk: &mut Desk, tendon: usize, empty: &Reading) -> Result<Option<Weighed>, Failure> {
     let mut readings = vec![(0.0, *empty)];
     for newton in desk.weights.clone() {
         if desk.person.ask(Act::Hang(tendon, newton))? == Answer::Cannot {
             break;
         }
-        readings.push((newton, desk.machine.read(READING)?.gauges));
+        readings.push((newton, desk.read(READING)?));
     }
     desk.person.ask(Act::Unhang(tendon))?;
     let Some(&(heaviest, last)) = readings.last() else { return Ok(None) };
     let scale = desk.finger.gauge.newton_per_count;
-    let shown: [f64; 4] = std::array::from_fn(|gauge| ((last[gauge] - empty[gauge]) * scale[gauge]).abs());
+    let shown: [f64; 4] =
+        std::array::from_fn(|gauge| ((last.gauges[gauge] - empty.gauges[gauge]) * scale[gauge]).abs());
     let gauge = (0..4).max_by(|&one, &other| shown[one].total_cmp(&shown[other])).unwrap_or(0);
     if heaviest == 0.0 || shown[gauge] < LIVES * heaviest {
         return Ok(None);
     }
-    let points: Vec<(f64, f64)> = readings.iter().map(|&(newton, counts)| (counts[gauge], newton)).collect();
-    Ok(Line::through(&points).map(|line| Weighed { gauge, line }))
+    let point = |&(newton, reading): &(f64, Reading)| (reading.gauges[gauge], newton);
+    // A count at the end of the range is not on the line. Two others are enough for one.
+    let inside = |&&(_, reading): &&(f64, Reading)| !at_end(reading.gauges[gauge], reading.noise[gauge]);
+    let points: Vec<(f64, f64)> = readings.iter().filter(inside).map(point).collect();
+    let all = || Line::through(&readings.iter().map(point).collect::<Vec<_>>());
+    Ok(Line::through(&points).or_else(all).map(|line| Weighed { gauge, line }))
 }
 
-/// Takes scale and zero of a gauge from its line. `noise` is in counts.
-fn judge(desk: &mut Desk, outcome: &mut Outcome, gauge: usize, line: &Line, noise: f64) {
+/// Takes scale and zero of a gauge from its line. `empty` is the reading without load.
+fn judge(desk: &mut Desk, outcome: &mut Outcome, gauge: usize, line: &Line, empty: &Reading) {
     let number = gauge + 1;
     let configured = &mut desk.finger.gauge;
     let heaviest = desk.weights.last().copied().unwrap_or_default();
-    let noise = noise * line.slope.abs();
-    if noise > NOISE {
+    let noise = empty.noise[gauge] * line.slope.abs();
+    if at_end(empty.gauges[gauge], empty.noise[gauge]) {
+        outcome.wrong(Wrong::GaugeAtEnd(number, empty.gauges[gauge], line.zero));
+    } else if noise > NOISE {
         outcome.wrong(Wrong::GaugeNoise(number, noise));
     } else if line.residual > RESIDUAL * heaviest {
         outcome.wrong(Wrong::GaugeNotLinear(number, line.residual));

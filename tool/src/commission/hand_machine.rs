@@ -1,6 +1,6 @@
 //! A finger at its port.
 
-use super::machine::{AtRest, BoardSeen, Machine, Reading, Refused};
+use super::machine::{AtRest, BoardSeen, Bound, Machine, Reading, Refused};
 use crate::calibrate::with_progress;
 use crate::failure::Failure;
 use crate::{bound, doctor};
@@ -171,8 +171,9 @@ impl Machine for HandMachine {
         self.hand = None;
     }
 
-    fn bound(&mut self) -> Result<f64, Failure> {
-        bound::of_finger(&self.configuration, self.finger)
+    fn bound(&mut self) -> Result<Bound, Failure> {
+        let (stiffness, limit) = bound::of_finger(&self.configuration, self.finger)?;
+        Ok(Bound { stiffness, limit })
     }
 
     fn computer(&mut self) -> Result<Vec<String>, Failure> {

@@ -41,6 +41,15 @@ pub struct BoardSeen {
     pub supply_fault: bool,
 }
 
+/// The largest stiffness at which a finger is stable.
+#[derive(Clone, Debug)]
+pub struct Bound {
+    /// N/cm.
+    pub stiffness: f64,
+    /// What prevents a larger one.
+    pub limit: String,
+}
+
 /// Why a routine gave no findings.
 #[derive(Debug)]
 pub enum Refused {
@@ -88,8 +97,8 @@ pub trait Machine {
     /// Takes the torque off the motors.
     fn off(&mut self);
 
-    /// The largest stiffness at which the finger is stable, N/cm.
-    fn bound(&mut self) -> Result<f64, Failure>;
+    /// The largest stiffness at which the finger is stable.
+    fn bound(&mut self) -> Result<Bound, Failure>;
 
     /// What keeps this computer from running the finger in time.
     fn computer(&mut self) -> Result<Vec<String>, Failure>;

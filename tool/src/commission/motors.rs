@@ -45,6 +45,7 @@ fn adopt(desk: &mut Desk, outcome: &mut Outcome, found: &Findings) {
     }
     found.apply(&mut desk.finger);
     let list = |signs: [i8; 4]| signs.map(|sign| format!("{sign:+}")).join(" ");
+    outcome.about("motor.sign", "direction in which each motor pulls its tendon");
     outcome.found(format!("each motor turns its own encoder and pulls its own tendon; signs {}", list(signs.motor)));
 }
 

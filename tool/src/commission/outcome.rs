@@ -1,5 +1,6 @@
 //! The result of a step.
 
+use super::step::Step;
 use super::wrong::Wrong;
 
 /// What a step has found.
@@ -9,12 +10,27 @@ pub struct Outcome {
     pub found: Vec<String>,
     /// What is wrong or unexpected.
     pub wrong: Vec<Wrong>,
+    /// Results for the comments above the keys, each with its section and key, for example "gauge.zero".
+    pub keys: Vec<(&'static str, String)>,
 }
 
 impl Outcome {
     /// Adds a measurement.
     pub fn found(&mut self, line: impl Into<String>) {
         self.found.push(line.into());
+    }
+
+    /// Adds the result behind a key of the configuration, for the comment above it.
+    pub fn about(&mut self, key: &'static str, text: impl Into<String>) {
+        self.keys.push((key, text.into()));
+    }
+
+    /// The comment above a key. A key without a result of its own has the name of its step.
+    pub fn comment(&self, key: &str, step: Step, when: &str) -> String {
+        match self.keys.iter().find(|(other, _)| *other == key) {
+            Some((_, text)) => format!("{when}, {step}: {text}"),
+            None => format!("{when}, {step}"),
+        }
     }
 
     /// Adds something that is wrong, once.

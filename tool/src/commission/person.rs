@@ -3,6 +3,8 @@
 use super::outcome::Outcome;
 use super::step::Step;
 use crate::failure::Failure;
+use std::error::Error;
+use std::fmt::{self, Display, Formatter};
 use sun2xp::model::configuration::ConfiguredFinger;
 
 /// What a person does at the finger. Parts have the numbers 1 to 4.
@@ -14,6 +16,8 @@ pub enum Act {
     TurnMotor(usize),
     /// Turns the motor back.
     TurnMotorBack(usize),
+    /// Says whether every tendon came loose when its motor was turned.
+    ConfirmDirection,
     /// Loosens every tendon.
     Loosen,
     /// Hangs this weight, N, on a tendon.
@@ -45,6 +49,9 @@ impl Act {
                 "Turn motor {motor} by hand by one full turn, in the direction that pays its tendon out. Keep it there."
             ),
             Self::TurnMotorBack(motor) => format!("Turn motor {motor} back by the same turn."),
+            Self::ConfirmDirection => {
+                "All four encoders count backwards. Did each tendon come loose when you turned its motor?".into()
+            }
             Self::Loosen => {
                 "Loosen all four tendons: turn each motor by hand until its tendon hangs loose. Hang nothing on \
                  them."
@@ -83,6 +90,32 @@ pub enum Answer {
     Cannot,
 }
 
+/// Why a commissioning ends although no step and no part of the system has failed at that moment.
+#[derive(Debug)]
+pub enum NoAnswer {
+    /// The person leaves.
+    Left,
+    /// Nobody answers.
+    InputEnded,
+    /// The person does not want to try again after this failure.
+    GivenUp(String),
+}
+
+impl Display for NoAnswer {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Left => "left at your request",
+            Self::InputEnded => {
+                "standard input ended at a question: run the tool in a terminal, or with --yes if everything is done \
+                 by a jig"
+            }
+            Self::GivenUp(failure) => failure,
+        })
+    }
+}
+
+impl Error for NoAnswer {}
+
 /// The person, or the terminal in front of the person.
 pub trait Person {
     /// A step begins.
@@ -97,6 +130,6 @@ pub trait Person {
     /// Shows the result of a step.
     fn conclude(&mut self, outcome: &Outcome);
 
-    /// After a step that has failed: whether the person has removed the cause, so that the step is done again.
-    fn again(&mut self, step: Step) -> Result<bool, Failure>;
+    /// After something has failed: asks the person to remove the cause, and returns whether to try again.
+    fn again(&mut self, question: &str) -> Result<bool, Failure>;
 }

@@ -6,15 +6,16 @@ use super::vitals::Vitals;
 use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::io::ErrorKind;
+use std::fs::OpenOptions;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
-use sun2xp::files::{read_regular_file, replace_file};
+use sun2xp::files::{UpdateError, read_regular_file, update_file};
 use sun2xp::model::ShownPath;
 
 /// Largest file that is read, bytes.
 const LARGEST: u64 = 1 << 20;
 
-/// A step that has passed.
+/// A step that has passed, or has not.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Done {
     /// Date and time, UTC.
@@ -27,7 +28,10 @@ pub struct Done {
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[serde(default)]
 pub struct CommissionedFinger {
+    /// The steps that have passed.
     pub steps: BTreeMap<Step, Done>,
+    /// The steps that have not passed when they were done last, with what was wrong.
+    pub failed: BTreeMap<Step, Done>,
     pub vitals: Vitals,
 }
 
@@ -51,28 +55,127 @@ impl ProgressFile {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Self::default()),
             Err(error) => return Err(format!("{}: {error}", ShownPath(path)).into()),
         };
-        serde_json::from_str(&text).map_err(|error| {
+        Self::parse(&text, path)
+    }
+
+    fn parse(text: &str, path: &Path) -> Result<Self, Failure> {
+        // Another process has created the file, and has not written it yet.
+        if text.is_empty() {
+            return Ok(Self::default());
+        }
+        serde_json::from_str(text).map_err(|error| {
             format!("{} is not a file of sun2xp commission ({error}): move it away to begin anew", ShownPath(path))
                 .into()
         })
     }
 
+    /// Reads, changes and replaces the file under a lock, so that several processes can commission fingers of one hand
+    /// at the same time.
+    pub fn update(path: &Path, mut change: impl FnMut(&mut Self)) -> Result<(), Failure> {
+        let file = |error: io::Error| Failure::from(format!("cannot write {}: {error}", ShownPath(path)));
+        match OpenOptions::new().write(true).create_new(true).open(path) {
+            Err(error) if error.kind() != ErrorKind::AlreadyExists => return Err(file(error)),
+            _ => {}
+        }
+        let changed = |text: &str| {
+            let mut progress = Self::parse(text, path)?;
+            change(&mut progress);
+            Ok(Some(serde_json::to_string_pretty(&progress)? + "\n"))
+        };
+        update_file(path, LARGEST, changed).map_err(|error| match error {
+            UpdateError::File(error) => file(error),
+            UpdateError::Change(failure) => failure,
+        })
+    }
+
+    /// The steps of a finger that have not passed yet.
+    pub fn left(&self, finger: i32) -> Vec<Step> {
+        let passed = |step: &Step| self.fingers.get(&finger).is_some_and(|finger| finger.steps.contains_key(step));
+        Step::ALL.into_iter().filter(|step| !passed(step)).collect()
+    }
+}
+
+impl CommissionedFinger {
     /// Adds a step that has passed. The steps after it belong to the finger as it was, and count no longer.
-    pub fn note(&mut self, finger: i32, step: Step, outcome: &Outcome, vitals: &Vitals, when: String) {
-        let finger = self.fingers.entry(finger).or_default();
+    pub fn pass(&mut self, step: Step, outcome: &Outcome, vitals: &Vitals, when: &str) {
         if matches!(step, Step::Encoders | Step::Gauges | Step::Motors) {
-            finger.steps.retain(|&other, _| other <= step || matches!(other, Step::Board | Step::Computer));
+            self.steps.retain(|&other, _| other <= step);
         }
         let mut found = outcome.found.clone();
         found.extend(outcome.wrong.iter().map(ToString::to_string));
-        finger.steps.insert(step, Done { when, found });
-        finger.vitals = vitals.clone();
+        self.steps.insert(step, Done { when: when.into(), found });
+        self.failed.remove(&step);
+        self.vitals = vitals.clone();
     }
 
-    /// Replaces the file.
-    pub fn write(&self, path: &Path) -> Result<(), Failure> {
-        let text = serde_json::to_string_pretty(self)? + "\n";
-        replace_file(path, |file| file.write_all(text.as_bytes()))
-            .map_err(|error| format!("cannot write {}: {error}", ShownPath(path)).into())
+    /// Adds a step that has not passed. It counts no longer as passed, even if it had before.
+    pub fn fail(&mut self, step: Step, outcome: &Outcome, when: &str) {
+        let wrong = outcome.wrong.iter().filter(|wrong| !wrong.compensated());
+        let text = wrong.map(|wrong| format!("{wrong}. {}", wrong.remedy()).trim_end_matches([' ', '.']).to_owned());
+        self.steps.remove(&step);
+        self.failed.insert(step, Done { when: when.into(), found: text.collect() });
+    }
+
+    /// Why a step must not be done: it moves the finger, and an earlier step has found a fault that is still open.
+    pub fn open_fault(&self, step: Step) -> Option<String> {
+        let (open, fault) = self.failed.iter().find(|&(&open, _)| step.moves() && open < step)?;
+        Some(format!(
+            "the step {step} moves the finger, and the step {open} of {} has not passed: {}. Remove the cause and do \
+             the step {open} again",
+            fault.when,
+            fault.found.join("; ")
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::commission::wrong::Wrong;
+    use std::thread;
+
+    /// Each process has its own copy of the whole file, and notes the steps of its own finger.
+    #[test]
+    fn sessions_for_different_fingers_keep_the_notes_of_each_other() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("hand.commission.json");
+        let session = |finger: i32| {
+            for step in Step::ALL {
+                let pass = |file: &mut ProgressFile| {
+                    let finger = file.fingers.entry(finger).or_default();
+                    finger.pass(step, &Outcome::default(), &Vitals::default(), "today");
+                };
+                ProgressFile::update(&path, pass).expect("written");
+            }
+        };
+        thread::scope(|scope| (1..=3).for_each(|finger| drop(scope.spawn(move || session(finger)))));
+        let file = ProgressFile::read(&path).expect("read");
+        for finger in 1..=3 {
+            assert_eq!(file.left(finger), [], "finger {finger}: {file:?}");
+        }
+    }
+
+    #[test]
+    fn an_open_fault_blocks_later_steps_that_move_the_finger() {
+        let mut finger = CommissionedFinger::default();
+        let (good, vitals) = (Outcome::default(), Vitals::default());
+        for step in [Step::Board, Step::Motors] {
+            finger.pass(step, &good, &vitals, "yesterday");
+        }
+        let mut bad = Outcome::default();
+        bad.wrong(Wrong::MotorsExchanged(1, 2));
+        bad.wrong(Wrong::MotorReversed(3));
+        finger.fail(Step::Motors, &bad, "today");
+        assert!(!finger.steps.contains_key(&Step::Motors));
+        for step in [Step::Zeros, Step::Tendons, Step::Spring] {
+            let fault = finger.open_fault(step).expect("refused");
+            let named = fault.contains("the step motors of today has not passed: motors 1 and 2 are swapped. Swap");
+            assert!(named && !fault.contains("backwards"), "{fault}");
+        }
+        for step in [Step::Board, Step::Encoders, Step::Gauges, Step::Motors, Step::Bound] {
+            assert_eq!(finger.open_fault(step), None, "{step}");
+        }
+        finger.pass(Step::Motors, &good, &vitals, "today");
+        assert_eq!(finger.open_fault(Step::Zeros), None);
     }
 }

@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "lowercase")]
 pub enum Step {
     Board,
+    Computer,
     Encoders,
     Gauges,
     Motors,
     Zeros,
     Tendons,
     Bound,
-    Computer,
     Spring,
 }
 
@@ -21,15 +21,25 @@ impl Step {
     /// Every step.
     pub const ALL: [Self; 9] = [
         Self::Board,
+        Self::Computer,
         Self::Encoders,
         Self::Gauges,
         Self::Motors,
         Self::Zeros,
         Self::Tendons,
         Self::Bound,
-        Self::Computer,
         Self::Spring,
     ];
+
+    /// Number of the step in a whole commissioning, from 1.
+    pub fn number(self) -> usize {
+        self as usize + 1
+    }
+
+    /// Whether the step always moves the finger by its motors.
+    pub fn moves(self) -> bool {
+        matches!(self, Self::Motors | Self::Zeros | Self::Tendons | Self::Spring)
+    }
 
     /// The name for the command line and the files.
     pub fn name(self) -> &'static str {
@@ -77,7 +87,9 @@ impl Step {
             Self::Motors => "Each motor turns back and forth by less than 10 mm of tendon. The finger hardly moves.",
             Self::Zeros => "The tendons come loose and tight again. Then the finger holds its pose.",
             Self::Tendons => "Slow motions of all joints, then each joint from stop to stop.",
-            Self::Bound => "Nothing moves. The stiffness is near the one that sun2xp size gives.",
+            Self::Bound => {
+                "Nothing moves. The bound can be far below the stiffness of sun2xp size: the tool says what limits it."
+            }
             Self::Computer => "Nothing moves.",
             Self::Spring => "The tip gives way under your hand, and returns.",
         }

@@ -39,8 +39,9 @@ pub fn tendons(desk: &mut Desk) -> Result<Outcome, Failure> {
     vitals.motor_ratio = Some(found.motor_ratio.into());
     vitals.newton_per_count = Some(desk.finger.gauge.newton_per_count);
     vitals.residual = Some(found.travel_residual);
-    // The stretch of the tendons is known only now, and the zeros depend on it.
-    zero(desk, &mut outcome)?;
+    // The person has let go already. At a pose, the finger must be held again.
+    desk.person.show("The zeros depend on the stretch of the tendons, which is known now: the finger is zeroed again.");
+    zero(desk, &mut outcome, false)?;
     Ok(outcome)
 }
 
@@ -53,6 +54,15 @@ fn report(outcome: &mut Outcome, found: &Identified) {
         list(found.tendon_stiffness.as_slice(), 0),
         found.travel_residual * 1e4
     ));
+    let residual = found.travel_residual * 1e4;
+    outcome.about("tendon.stiffness", format!("by identification, residual of the travel {residual:.1} um rms"));
+    outcome.about(
+        "gauge.newton_per_count",
+        format!("gains relative to the weights {}", list(found.gauge_gain.as_slice(), 3)),
+    );
+    for key in ["friction.motor_coulomb", "friction.conduit", "friction.pulley", "friction.joint_coulomb"] {
+        outcome.about(key, "by identification, in both directions of motion");
+    }
     outcome.found(format!("friction of the motors {} N cm", list(found.motor_coulomb.as_slice(), 3)));
     outcome.found(format!(
         "friction of conduits {}, of pulleys {}, of joints {} N cm",

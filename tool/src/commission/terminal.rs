@@ -1,13 +1,12 @@
 //! The person in front of a terminal, or a script at standard input.
 
 use super::outcome::Outcome;
-use super::person::{Act, Answer, Person};
-use super::progress_file::Done;
+use super::person::{Act, Answer, NoAnswer, Person};
+use super::progress_file::{CommissionedFinger, Done};
 use super::step::Step;
 use crate::failure::Failure;
 use crate::monitor::words::wrap;
 use crate::print::{Look, Screen, painted};
-use std::collections::BTreeMap;
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::Path;
 use sun2xp::model::ShownPath;
@@ -16,9 +15,6 @@ use sun2xp::model::configuration::ConfiguredFinger;
 /// Width of the text where the output is not a terminal, columns.
 const WIDTH: usize = 100;
 
-/// Why a commissioning ends early without an error of the hand.
-pub const LEFT: &str = "left at your request";
-
 /// Prompts on standard output, and answers on standard input.
 pub struct Terminal {
     screen: Screen,
@@ -26,7 +22,9 @@ pub struct Terminal {
     yes: bool,
     /// Nothing is printed, because standard output is for other programs.
     pub quiet: bool,
-    /// The steps of this session, for the numbers in the headings.
+    /// How often something that has failed is tried again without a question, if `yes` is set.
+    pub retries: u32,
+    /// The steps of this session.
     steps: Vec<Step>,
 }
 
@@ -38,14 +36,17 @@ enum Reply {
 
 impl Terminal {
     pub fn new(yes: bool, steps: Vec<Step>) -> Self {
-        Self { screen: Screen::stdout(), yes, quiet: false, steps }
+        Self { screen: Screen::stdout(), yes, quiet: false, retries: 0, steps }
     }
 
     /// Prints what is done already, and what is left.
-    pub fn heading(&self, finger: i32, file: &Path, done: &BTreeMap<Step, Done>) -> Result<(), Failure> {
+    pub fn heading(&self, finger: i32, file: &Path, known: &CommissionedFinger) -> Result<(), Failure> {
         self.line(Look::Title, &format!("Commissioning finger {finger} of {}", ShownPath(file)));
-        for (step, Done { when, .. }) in done.iter().filter(|(step, _)| !self.steps.contains(step)) {
+        for (step, Done { when, .. }) in known.steps.iter().filter(|(step, _)| !self.steps.contains(step)) {
             self.line(Look::Dim, &format!("  done   {step}, {when}"));
+        }
+        for (step, Done { when, found }) in &known.failed {
+            self.paragraph(Look::Warning, "  open   ", &format!("{step}, {when}: {}", found.join("; ")));
         }
         if self.steps.is_empty() {
             self.line(Look::Plain, "  Every step has passed. --step STEP does one of them again, --again all of them.");
@@ -71,7 +72,7 @@ impl Terminal {
     }
 
     /// Prints a question, and reads a line.
-    fn reply(&self, question: &str, no: &str) -> Result<Reply, Failure> {
+    fn reply(&self, question: &str, done: &str, no: &str) -> Result<Reply, Failure> {
         if self.quiet && self.yes {
             return Ok(Reply::Enter);
         }
@@ -81,7 +82,7 @@ impl Terminal {
             Some((text, table)) => wrap(text, width).into_iter().chain(table.lines().map(String::from)).collect(),
             None => wrap(question, width),
         };
-        let keys = format!("[Enter: done; n: {no}; q: leave]");
+        let keys = format!("[Enter: {done}; n: {no}; q: leave]");
         let mut output = io::stdout().lock();
         write!(output, "  > {}\n    {} ", lines.join("\n    "), painted(&self.screen, Look::Dim, &keys))?;
         if self.yes {
@@ -97,14 +98,12 @@ impl Terminal {
         loop {
             let mut line = String::new();
             if io::stdin().lock().read_line(&mut line)? == 0 {
-                return Err("standard input ended at a question: run the tool in a terminal, or with --yes if \
-                            everything is done by a jig"
-                    .into());
+                return Err(NoAnswer::InputEnded.into());
             }
             match line.trim() {
                 "" | "y" | "yes" => return Ok(Reply::Enter),
                 "n" | "no" => return Ok(Reply::No),
-                "q" | "quit" => return Err(LEFT.into()),
+                "q" | "quit" => return Err(NoAnswer::Left.into()),
                 _ => self.line(Look::Dim, "    Enter, n or q"),
             }
         }
@@ -113,20 +112,20 @@ impl Terminal {
 
 impl Person for Terminal {
     fn begin(&mut self, step: Step, _: &ConfiguredFinger) -> Result<(), Failure> {
-        let number = self.steps.iter().position(|&other| other == step).map_or(0, |place| place + 1);
-        self.line(Look::Title, &format!("\nStep {number} of {}: {step}", self.steps.len()));
+        self.line(Look::Title, &format!("\nStep {} of {}: {step}", step.number(), Step::ALL.len()));
         self.paragraph(Look::Plain, "  does   ", step.does());
         self.paragraph(Look::Plain, "  expect ", step.expect());
         Ok(())
     }
 
     fn ask(&mut self, act: Act) -> Result<Answer, Failure> {
-        let no = match act {
-            Act::PressEmergencyStop => "there is none",
-            Act::TurnMotor(_) => "it does not turn",
-            _ => "I cannot",
+        let (done, no) = match act {
+            Act::PressEmergencyStop => ("done", "there is none"),
+            Act::TurnMotor(_) => ("done", "it does not turn"),
+            Act::ConfirmDirection => ("yes", "no"),
+            _ => ("done", "I cannot"),
         };
-        match self.reply(act.text().trim_end(), no)? {
+        match self.reply(act.text().trim_end(), done, no)? {
             Reply::Enter => Ok(Answer::Done),
             Reply::No => Ok(Answer::Cannot),
         }
@@ -141,7 +140,11 @@ impl Person for Terminal {
             self.paragraph(Look::Plain, "  found  ", line);
         }
         for wrong in &outcome.wrong {
-            let (look, word) = if wrong.compensated() { (Look::Warning, "note ") } else { (Look::Bad, "WRONG") };
+            let (look, word) = match (wrong.compensated(), wrong.suspect()) {
+                (true, false) => (Look::Warning, "note "),
+                (true, true) => (Look::Warning, "CHECK"),
+                (false, _) => (Look::Bad, "WRONG"),
+            };
             self.paragraph(look, &format!("  {word:<6} "), &wrong.to_string());
             let remedy = wrong.remedy();
             if !remedy.is_empty() {
@@ -154,11 +157,27 @@ impl Person for Terminal {
         }
     }
 
-    fn again(&mut self, step: Step) -> Result<bool, Failure> {
+    fn again(&mut self, question: &str) -> Result<bool, Failure> {
         if self.yes {
-            return Ok(false);
+            let retries = self.retries;
+            self.retries = retries.saturating_sub(1);
+            return Ok(retries > 0);
         }
-        let question = format!("Remove the cause, then do the step {step} again.");
-        Ok(matches!(self.reply(&question, "end here")?, Reply::Enter))
+        Ok(matches!(self.reply(question, "done", "end here")?, Reply::Enter))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_a_person_something_is_tried_again_only_so_often() {
+        let mut terminal = Terminal::new(true, vec![Step::Zeros]);
+        terminal.quiet = true;
+        assert!(!terminal.again("Do it again.").expect("answered"));
+        terminal.retries = 2;
+        let answers = [(); 3].map(|()| terminal.again("Do it again.").expect("answered"));
+        assert_eq!(answers, [true, true, false]);
     }
 }

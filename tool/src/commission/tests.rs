@@ -4,4 +4,5 @@ mod ageing;
 mod bench;
 mod finger;
 mod kinds;
+mod mistakes;
 mod sessions;

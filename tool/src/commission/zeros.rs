@@ -6,7 +6,7 @@ use super::outcome::Outcome;
 use super::person::Act;
 use super::wrong::Wrong;
 use crate::failure::Failure;
-use sun2xp::calibration::{Findings, Task, Zeros};
+use sun2xp::calibration::{Findings, Obstacle, Task, Zeros};
 use sun2xp::model::configuration::ZeroingMethod;
 
 /// Permitted tension at rest as a part of the intended one.
@@ -15,28 +15,38 @@ const TAUT: (f64, f64) = (0.75, 1.3);
 /// The step.
 pub fn zeros(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
-    if zero(desk, &mut outcome)? {
+    if zero(desk, &mut outcome, true)? {
         tautness(desk, &mut outcome)?;
     }
     Ok(outcome)
 }
 
-/// Zeros the finger by its method. Returns whether it was done.
-pub fn zero(desk: &mut Desk, outcome: &mut Outcome) -> Result<bool, Failure> {
+/// Zeros the finger by its method. Returns whether it was done. `held` says whether the person may still hold the finger.
+pub fn zero(desk: &mut Desk, outcome: &mut Outcome, held: bool) -> Result<bool, Failure> {
     let at_pose = desk.finger.zeroing_method() == ZeroingMethod::Pose;
-    desk.person.ask(if at_pose { Act::HoldPose(desk.finger.zeroing.pose_degrees) } else { Act::LetGo })?;
+    if at_pose {
+        desk.person.ask(Act::HoldPose(desk.finger.zeroing.pose_degrees))?;
+    } else if held {
+        desk.person.ask(Act::LetGo)?;
+    }
     desk.machine.configure(&desk.finger)?;
     let zeros = match desk.machine.carry_out(Task::Zero) {
         Ok(Findings::Zeros(zeros)) => zeros,
         Ok(other) => return Err(format!("the zeroing returned {other:?}").into()),
         Err(Refused::Obstacle(obstacle)) => {
-            outcome.wrong(Wrong::Refused(obstacle.to_string()));
+            outcome.wrong(match obstacle {
+                Obstacle::Moved { .. } | Obstacle::NotHeld { .. } => Wrong::PoseRefused(obstacle.to_string()),
+                _ => Wrong::Refused(obstacle.to_string()),
+            });
             return Ok(false);
         }
         Err(Refused::Failure(failure)) => return Err(failure),
     };
     note(desk, outcome, &zeros);
+    let place = if at_pose { "in its pose" } else { "at its stops" };
+    outcome.about("encoder.zero", format!("zeroed {place}"));
     if at_pose {
+        desk.person.show("The finger is zeroed and is a spring now.");
         desk.person.ask(Act::LetGo)?;
     }
     Ok(true)
@@ -50,6 +60,7 @@ fn note(desk: &mut Desk, outcome: &mut Outcome, zeros: &Zeros) {
     let list = |values: &[f64], digits: usize| {
         values.iter().map(|value| format!("{value:+.digits$}")).collect::<Vec<_>>().join(" ")
     };
+    outcome.about("gauge.zero", format!("without tension, {} N from the last ones", list(&drift, 2)));
     outcome.found(format!("encoder zeros {:?}", zeros.encoder));
     outcome.found(format!("gauge zeros, change since the last ones: {} N", list(&drift, 2)));
     if let Some(range) = zeros.range_error {

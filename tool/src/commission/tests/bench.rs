@@ -65,6 +65,10 @@ pub struct World {
     pub report: Report,
     frozen: Option<i32>,
     random: u64,
+    /// The stiffness that the search for the bound finds, N/cm.
+    pub bound: f64,
+    /// How many of the next readings and routines fail.
+    pub lost: (usize, usize),
     /// Largest true tension, N.
     pub largest_tension: f64,
     /// Largest angle of a joint beyond its stops, rad.
@@ -97,10 +101,24 @@ impl World {
             report: Report::default(),
             frozen: None,
             random: truth.simulation.seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1,
+            bound: 6.0,
+            lost: (0, 0),
             largest_tension: 0.0,
             beyond_stops: f64::NEG_INFINITY,
             largest_torque: 0.0,
         }))
+    }
+
+    /// Begins a routine or a reading, which may lose its replies.
+    pub fn begin(&mut self, routine: bool) -> Result<(), String> {
+        let lost = if routine { &mut self.lost.1 } else { &mut self.lost.0 };
+        match *lost {
+            0 => Ok(()),
+            _ => {
+                *lost -= 1;
+                Err("the board has sent no measurement".into())
+            }
+        }
     }
 
     /// A number between -1 and 1.

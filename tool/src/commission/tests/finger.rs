@@ -1,7 +1,7 @@
 //! The finger in memory as the tool sees it, and the person in front of it.
 
 use super::bench::{RATE, Wiring, World};
-use crate::commission::machine::{AtRest, BoardSeen, Machine, Reading, Refused};
+use crate::commission::machine::{AtRest, BoardSeen, Bound, Machine, Reading, Refused};
 use crate::commission::outcome::Outcome;
 use crate::commission::person::{Act, Answer, Person};
 use crate::commission::step::Step;
@@ -34,6 +34,7 @@ impl Machine for Bench {
 
     fn read(&mut self, seconds: f64) -> Result<Reading, Failure> {
         let mut world = self.0.borrow_mut();
+        world.begin(false)?;
         let readings: Vec<Feedback> = (0..(seconds * RATE) as usize)
             .map(|_| {
                 world.motors_off(1.0 / RATE);
@@ -53,6 +54,7 @@ impl Machine for Bench {
 
     fn carry_out(&mut self, task: Task) -> Result<Findings, Refused> {
         let mut world = self.0.borrow_mut();
+        world.begin(true)?;
         let found = world.calibrate(task)?;
         if task != Task::Signs {
             world.become_spring();
@@ -98,8 +100,9 @@ impl Machine for Bench {
         self.0.borrow_mut().motors_off(0.2);
     }
 
-    fn bound(&mut self) -> Result<f64, Failure> {
-        Ok(6.0)
+    fn bound(&mut self) -> Result<Bound, Failure> {
+        let stiffness = self.0.borrow().bound;
+        Ok(Bound { stiffness, limit: "a soft tendon, against walls".into() })
     }
 
     fn computer(&mut self) -> Result<Vec<String>, Failure> {
@@ -115,12 +118,36 @@ pub struct Helper {
     pub step: Step,
     /// Whether the person repairs what a step has found.
     pub repairs: bool,
+    /// A part that the person takes for another one, and the part that the person turns or loads instead.
+    pub instead: Option<(usize, usize)>,
+    /// Whether the person holds the finger in its pose when asked.
+    pub holds: bool,
+    /// How often the person wants to try again.
+    pub patience: usize,
+    /// Whether the person says that the motors were turned the right way.
+    pub right_way: bool,
+    /// What the person was asked after failures.
+    pub questions: Vec<String>,
+    /// What the person was asked to do.
+    pub acts: Vec<Act>,
     turned: f64,
 }
 
 impl Helper {
     pub fn new(world: &Rc<RefCell<World>>) -> Self {
-        Self { world: world.clone(), outcomes: Vec::new(), step: Step::Board, repairs: false, turned: 0.0 }
+        Self {
+            world: world.clone(),
+            outcomes: Vec::new(),
+            step: Step::Board,
+            repairs: false,
+            instead: None,
+            holds: true,
+            patience: 0,
+            right_way: true,
+            questions: Vec::new(),
+            acts: Vec::new(),
+            turned: 0.0,
+        }
     }
 }
 
@@ -131,28 +158,39 @@ impl Person for Helper {
     }
 
     fn ask(&mut self, act: Act) -> Result<Answer, Failure> {
+        self.acts.push(act);
         let mut world = self.world.borrow_mut();
+        let instead = self.instead;
+        let mistaken = |part: usize| match instead {
+            Some((asked, taken)) if asked == part => taken,
+            _ => part,
+        };
         match act {
             Act::PressEmergencyStop => world.wiring.emergency_stop = true,
             Act::ReleaseEmergencyStop => world.wiring.emergency_stop = false,
+            Act::ConfirmDirection if !self.right_way => return Ok(Answer::Cannot),
+            Act::ConfirmDirection => {}
             Act::TurnMotor(motor) if world.wiring.blocked_motor == Some(motor - 1) => return Ok(Answer::Cannot),
             Act::TurnMotor(motor) => {
+                let motor = mistaken(motor);
                 self.turned = std::f64::consts::TAU * (1.0 + 0.06 * world.chance());
                 let tendon = world.wiring.tendon_at[motor - 1];
                 world.plant.turn_motor(tendon, -self.turned);
             }
             Act::TurnMotorBack(motor) => {
+                let motor = mistaken(motor);
                 let tendon = world.wiring.tendon_at[motor - 1];
                 world.plant.turn_motor(tendon, self.turned);
             }
             Act::Loosen => (0..4).for_each(|motor| world.plant.turn_motor(motor, -3.0)),
-            Act::Hang(tendon, newton) => world.plant.hang(tendon - 1, newton),
-            Act::Unhang(tendon) => world.plant.hang(tendon - 1, 0.0),
+            Act::Hang(tendon, newton) => world.plant.hang(mistaken(tendon) - 1, newton),
+            Act::Unhang(tendon) => world.plant.hang(mistaken(tendon) - 1, 0.0),
             Act::HoldStill => {
                 world.plant.take_up_by_hand();
                 let joints = world.plant.joints();
                 world.plant.hold(joints);
             }
+            Act::HoldPose(_) if !self.holds => {}
             Act::HoldPose(degrees) => {
                 // A person moves the finger slowly.
                 let (from, to) = (world.plant.joints(), Vector3::from(degrees.map(f64::to_radians)));
@@ -175,10 +213,13 @@ impl Person for Helper {
         self.outcomes.push((self.step, outcome.clone()));
     }
 
-    fn again(&mut self, _: Step) -> Result<bool, Failure> {
+    fn again(&mut self, question: &str) -> Result<bool, Failure> {
+        self.questions.push(question.into());
         if self.repairs {
             self.world.borrow_mut().wiring = Wiring::default();
         }
-        Ok(std::mem::take(&mut self.repairs))
+        let patient = self.patience > 0;
+        self.patience = self.patience.saturating_sub(1);
+        Ok(std::mem::take(&mut self.repairs) || patient)
     }
 }

@@ -73,23 +73,23 @@ pub type Kind = (&'static str, fn(&mut Case, u64));
 
 /// The kinds.
 pub const KINDS: [Kind; 20] = [
-    ("motors exchanged", |case, seed| {
+    ("motors swapped", |case, seed| {
         case.wiring.motor_at = exchanged(pair(seed));
         case.expected = vec![Wrong::MotorsExchanged(pair(seed).0 + 1, pair(seed).1 + 1)];
     }),
-    ("encoders exchanged", |case, seed| {
+    ("encoders swapped", |case, seed| {
         case.wiring.encoder_at = exchanged(pair(seed));
         case.expected = vec![Wrong::EncodersExchanged(found_at(case.wiring.encoder_at))];
     }),
-    ("motors exchanged with their encoders", |case, seed| {
+    ("motors swapped with their encoders", |case, seed| {
         (case.wiring.motor_at, case.wiring.encoder_at) = (exchanged(pair(seed)), exchanged(pair(seed)));
         case.expected = vec![Wrong::MotorsAndEncodersExchanged(found_at(case.wiring.encoder_at))];
     }),
-    ("tendons exchanged", |case, seed| {
+    ("tendons swapped", |case, seed| {
         case.wiring.tendon_at = exchanged(pair(seed));
         case.expected = vec![Wrong::TendonsExchanged(pair(seed).0 + 1, pair(seed).1 + 1)];
     }),
-    ("gauges exchanged", |case, seed| {
+    ("gauges swapped", |case, seed| {
         case.wiring.gauge_at = exchanged(pair(seed));
         case.expected = vec![Wrong::GaugesExchanged(found_at(case.wiring.gauge_at))];
     }),

@@ -1,0 +1,67 @@
+//! A further finger in a configuration file: searches for its board.
+
+use super::configuration_file::{LARGEST, table};
+use super::port_search::{Answer, search};
+use crate::failure::{Failure, wrong_usage};
+use std::io::{self, Write};
+use std::path::Path;
+use sun2xp::files::{UpdateError, update_file};
+use sun2xp::hand::parse_configuration;
+use sun2xp::model::configuration::{BoardNumber, Configuration};
+use sun2xp::model::{FingerNumber, ShownPath};
+use toml_edit::{Array, DocumentMut, value};
+
+/// Searches these ports, or those of `hand.search_ports`, and adds the finger with its board to the file.
+pub fn add(file: &Path, hand: &Configuration, finger: FingerNumber, ports: &[String]) -> Result<(), Failure> {
+    let patterns = if ports.is_empty() { &hand.hand.search_ports } else { ports };
+    let others = hand.hand.fingers.members();
+    let taken: Vec<BoardNumber> = others.filter_map(|other| hand.fingers[other.index()].board).collect();
+    let chosen = search(patterns, hand.fingers[finger.index()].baud, finger, &taken)
+        .map_err(|reason| wrong_usage(format!("{} has no finger {finger}, and {reason}", ShownPath(file))))?;
+    let change = |text: &str| with(text, hand, finger, &chosen.answer, ports).map(Some);
+    update_file(file, LARGEST, change).map_err(|error| match error {
+        UpdateError::File(error) => format!("cannot write {}: {error}", ShownPath(file)).into(),
+        UpdateError::Change(error) => error,
+    })?;
+    writeln!(io::stdout(), "{} Added finger {finger} to {}.", chosen.text(), ShownPath(file))?;
+    Ok(())
+}
+
+/// Returns the text with the finger.
+fn with(
+    text: &str,
+    configuration: &Configuration,
+    finger: FingerNumber,
+    answer: &Answer,
+    ports: &[String],
+) -> Result<String, Failure> {
+    let mut document: DocumentMut = text.parse()?;
+    let hand = table(document.as_table_mut(), "hand")?;
+    let numbers = configuration.hand.fingers.with(finger).numbers();
+    set(hand, "fingers", value(numbers.map(i64::from).collect::<Array>()));
+    let known = &configuration.hand.search_ports;
+    if ports.iter().any(|port| !known.contains(port)) {
+        let new = ports.iter().filter(|port| !known.contains(port));
+        set(hand, "search_ports", value(known.iter().chain(new).map(String::as_str).collect::<Array>()));
+    }
+    let own = table(table(document.as_table_mut(), "finger")?, &finger.to_string())?;
+    own.set_implicit(false);
+    set(own, "board", value(answer.number().to_string()));
+    set(own, "address", value(i64::from(answer.found.address)));
+    if let Some(counts) = answer.counts_per_revolution() {
+        let encoder = table(own, "encoder")?;
+        encoder.set_implicit(false);
+        set(encoder, "counts_per_revolution", value([i64::from(counts); 4].into_iter().collect::<Array>()));
+    }
+    let text = document.to_string();
+    parse_configuration(&text).map_err(|error| format!("the finger does not fit the configuration file: {error}"))?;
+    Ok(text)
+}
+
+/// Sets a key, and keeps the comments at it.
+fn set(table: &mut toml_edit::Table, key: &str, item: toml_edit::Item) {
+    match table.get_mut(key) {
+        Some(old) => *old = item,
+        None => drop(table.insert(key, item)),
+    }
+}

@@ -1,0 +1,159 @@
+//! Mistakes of the person, lost replies, and parts that are out of their range.
+
+use super::bench::{Wiring, World};
+use super::finger::{Bench, Helper};
+use super::kinds::right;
+use crate::commission::desk::Desk;
+use crate::commission::measure;
+use crate::commission::outcome::Outcome;
+use crate::commission::person::{Act, GRAVITY};
+use crate::commission::step::Step;
+use crate::commission::vitals::Vitals;
+use crate::commission::wrong::Wrong;
+use std::cell::RefCell;
+use std::rc::Rc;
+use sun2xp::model::configuration::{ConfiguredFinger, ZeroingMethod};
+
+type Shared = Rc<RefCell<World>>;
+
+/// A finger without mistakes, after a change of the truth.
+fn world(change: impl Fn(&mut ConfiguredFinger)) -> (Shared, ConfiguredFinger) {
+    let mut case = right(0);
+    change(&mut case.truth);
+    (World::new(&case.truth, &case.belief, Wiring::default()), case.belief)
+}
+
+/// Does one step.
+fn step(step: Step, world: &Shared, person: &mut Helper, belief: &ConfiguredFinger) -> (Outcome, ConfiguredFinger) {
+    let mut machine = Bench(world.clone());
+    let (weights, vitals) = (vec![0.5 * GRAVITY, GRAVITY], Vitals::default());
+    let mut desk = Desk { machine: &mut machine, person, finger: belief.clone(), weights, vitals };
+    let outcome = desk.complete(step, |_| Ok(())).expect("carried out");
+    (outcome, desk.finger.clone())
+}
+
+/// The bench reads the zero of the gauge through the converter, which has no counts below 0.
+#[test]
+fn a_gauge_below_the_range_of_its_converter_is_named_and_left_out_of_the_line() {
+    let (world, belief) = world(|truth| truth.gauge.zero[1] = -18.0);
+    let (outcome, _) = step(Step::Gauges, &world, &mut Helper::new(&world), &belief);
+    let named = outcome.wrong.iter().find(|wrong| !wrong.compensated()).expect("wrong");
+    let Wrong::GaugeAtEnd(2, count, zero) = *named else { panic!("{outcome:?}") };
+    assert!(count < 0.5 && (zero + 18.0).abs() < 4.0, "{count}, {zero}");
+    assert!(named.remedy().starts_with("Shift the offset of amplifier 2 up by"), "{}", named.remedy());
+    assert!(!outcome.wrong.iter().any(|wrong| matches!(wrong, Wrong::GaugeNotLinear(..))), "{outcome:?}");
+}
+
+#[test]
+fn lost_replies_are_read_again_and_the_weighed_tendons_are_kept() {
+    let (world, belief) = world(|_| ());
+    let mut person = Helper::new(&world);
+    // Three readings in a row are repeated without a question.
+    world.borrow_mut().lost.0 = 3;
+    assert!(step(Step::Gauges, &world, &mut person, &belief).0.passed());
+    assert!(person.questions.is_empty(), "{:?}", person.questions);
+    // Then the person is asked, and the step goes on where it was.
+    (world.borrow_mut().lost.0, person.patience) = (7, 1);
+    person.acts.clear();
+    assert!(step(Step::Gauges, &world, &mut person, &belief).0.passed());
+    assert!(person.questions[0].starts_with("the board has sent no measurement"), "{:?}", person.questions);
+    let hung = person.acts.iter().filter(|act| matches!(act, Act::Hang(..))).count();
+    assert_eq!((person.questions.len(), hung), (1, 8));
+}
+
+#[test]
+fn a_step_whose_routine_has_failed_is_offered_again() {
+    let (world, belief) = world(|_| ());
+    let mut person = Helper::new(&world);
+    (world.borrow_mut().lost.1, person.patience) = (1, 1);
+    assert!(step(Step::Motors, &world, &mut person, &belief).0.passed());
+    assert_eq!(person.questions, ["Remove the cause, then do the step motors again."]);
+}
+
+/// `sun2xp health` continues with the step that has failed.
+#[test]
+fn health_repeats_only_what_has_failed() {
+    let truth = right(0).truth;
+    let mut belief = truth.clone();
+    belief.zeroing.method = Some(ZeroingMethod::Stops);
+    let world = World::new(&truth, &belief, Wiring::default());
+    let (mut machine, mut person) = (Bench(world.clone()), Helper::new(&world));
+    (world.borrow_mut().lost.1, person.patience) = (1, 1);
+    let (weights, vitals) = (Vec::new(), Vitals::default());
+    let mut desk = Desk { machine: &mut machine, person: &mut person, finger: belief, weights, vitals };
+    measure(&mut desk, &[Step::Zeros]).expect("measured");
+    assert!(desk.vitals.tensions.is_some());
+    assert_eq!(person.questions.len(), 1);
+}
+
+/// The person turns motor 2 twice, or hangs a weight on tendon 2 twice.
+#[test]
+fn a_part_that_answers_twice_is_no_exchange() {
+    let (world, belief) = world(|_| ());
+    let mut person = Helper::new(&world);
+    person.instead = Some((1, 2));
+    let (outcome, finger) = step(Step::Encoders, &world, &mut person, &belief);
+    assert_eq!(outcome.wrong, [Wrong::EncodersUnclear([2, 2, 3, 4])]);
+    let (weighed, _) = step(Step::Gauges, &world, &mut person, &belief);
+    assert_eq!(weighed.wrong, [Wrong::GaugesUnclear([2, 2, 3, 4])]);
+    assert_eq!(finger, belief);
+}
+
+#[test]
+fn four_motors_turned_the_wrong_way_are_asked_about() {
+    let (world, belief) = world(|truth| truth.encoder.sign = [-1; 4]);
+    let mut person = Helper::new(&world);
+    person.right_way = false;
+    let (outcome, finger) = step(Step::Encoders, &world, &mut person, &belief);
+    assert_eq!((outcome.wrong, finger), (vec![Wrong::TurnedWrongWay], belief.clone()));
+    person.right_way = true;
+    let (outcome, finger) = step(Step::Encoders, &world, &mut person, &belief);
+    assert!(outcome.passed() && finger.encoder.sign == [-1; 4], "{outcome:?}");
+}
+
+#[test]
+fn a_lowered_stiffness_and_its_limit_are_reported() {
+    let (world, belief) = world(|_| ());
+    world.borrow_mut().bound = 0.4;
+    let (outcome, finger) = step(Step::Bound, &world, &mut Helper::new(&world), &belief);
+    assert!(matches!(outcome.wrong[..], [Wrong::InitialLowered(initial, 0.4)] if initial > 0.4), "{outcome:?}");
+    assert!(outcome.found.contains(&"limited by: a soft tendon, against walls".into()), "{outcome:?}");
+    assert!(
+        outcome.comment("stiffness.bound", Step::Bound, "now").ends_with("limited by: a soft tendon, against walls")
+    );
+    assert!(finger.initial_stiffness().symmetric_eigenvalues().max() <= 0.4 + 1e-9);
+}
+
+/// The finger trembles, or nobody holds it: the likely cause and the way out are in the message.
+#[test]
+fn a_refused_pose_says_how_to_zero_at_the_stops() {
+    let (world, mut belief) = world(|_| ());
+    belief.zeroing.method = Some(ZeroingMethod::Pose);
+    let mut person = Helper::new(&world);
+    person.holds = false;
+    let (outcome, _) = step(Step::Zeros, &world, &mut person, &belief);
+    let [wrong @ Wrong::PoseRefused(_)] = &outcome.wrong[..] else { panic!("{outcome:?}") };
+    for part in ["gauges probably lag", "leave with q", "start the tool again"] {
+        assert!(wrong.remedy().contains(part), "{}", wrong.remedy());
+    }
+}
+
+#[test]
+fn the_person_lets_go_once_before_a_finger_is_identified_and_zeroed_at_its_stops() {
+    let truth = right(0).truth;
+    let mut belief = truth.clone();
+    belief.zeroing.method = Some(ZeroingMethod::Stops);
+    let world = World::new(&truth, &belief, Wiring::default());
+    let mut person = Helper::new(&world);
+    let (outcome, _) = step(Step::Tendons, &world, &mut person, &belief);
+    assert!(outcome.passed(), "{outcome:?}");
+    assert_eq!(person.acts, [Act::LetGo]);
+}
+
+/// The computer is tried before the motors move, and its faults are not harmless notes.
+#[test]
+fn the_computer_is_tried_before_the_motors() {
+    assert!(Step::Computer < Step::Encoders && Step::Computer.number() == 2);
+    let slow = Wrong::Computer("72 of 1500 replies lost".into());
+    assert!(slow.compensated() && slow.suspect());
+}

@@ -1,0 +1,141 @@
+//! What to do about something that is wrong.
+
+use super::Wrong;
+
+/// Distance of a gauge zero from the end of the converter's range that is enough for drift and noise, counts.
+const MARGIN: f64 = 100.0;
+
+impl Wrong {
+    /// What to do, or what the tool has done.
+    pub fn remedy(&self) -> String {
+        match self {
+            Self::EmergencyStop => "Release it, and reset the safety relay".into(),
+            Self::EmergencyStopUnseen => {
+                "The contact of the stop is not wired to the board, or its input is inverted. Without it the library \
+                 does not know that the motors have no power"
+                    .into()
+            }
+            Self::Supply => "Switch the supply on, and check the wire of its DC-OK output".into(),
+            Self::EncodersExchanged(order) => format!("Swap the encoder cables: {}", moves("encoder", order)),
+            Self::MotorsAndEncodersExchanged(order) => {
+                format!("Swap motor and encoder cables together: {}", moves("motor", order))
+            }
+            Self::MotorsExchanged(one, other) => {
+                format!("Swap the cables of motors {one} and {other} at their drivers. The encoders are right")
+            }
+            Self::TendonsExchanged(one, other) => format!(
+                "Put tendon {one} on the drum of motor {one}, and tendon {other} on the drum of motor {other}. Cables \
+                 of motors, encoders and gauges are right"
+            ),
+            Self::GaugesExchanged(order) => format!("Swap the gauge cables: {}", moves("gauge", order)),
+            Self::EncoderReversed(encoder) => {
+                format!("Nothing: encoder.sign compensates it. Or swap the channels A and B of encoder {encoder}")
+            }
+            Self::EncoderDead(encoder) => format!(
+                "Check the cable and the supply of encoder {encoder}, and that its disc turns with the shaft. One \
+                 missing channel looks the same"
+            ),
+            Self::EncoderScale(..) => "Nothing: encoder.counts_per_revolution is corrected".into(),
+            Self::EncoderUnclear(motor, _) => {
+                format!("Turn motor {motor} by exactly one turn; a mark on its shaft helps")
+            }
+            Self::MotorReversed(motor) => {
+                format!("Nothing: motor.sign compensates it. Or swap the two wires of motor {motor}")
+            }
+            Self::MotorBlocked(motor) => format!("Free motor {motor}: its drum, brake, bearing or tendon blocks it"),
+            Self::MotorDead(motor) => format!(
+                "Check the wires of motor {motor}, and that its driver is enabled, has its supply and shows no fault"
+            ),
+            Self::MotorTorque(motor, _) => format!(
+                "The hand works. Check motor.torque_constant of motor {motor}, and the scale of its driver's reference"
+            ),
+            Self::EncodersUnclear(_) => {
+                "Do the step again. Turn only the motor that the tool names, by one full turn. If the same encoder \
+                 counts for two motors again, check the cables of the encoders"
+                    .into()
+            }
+            Self::TurnedWrongWay => {
+                "Do the step again. Turn each motor in the direction that makes its tendon loose".into()
+            }
+            _ => self.remedy_of_gauges(),
+        }
+    }
+
+    /// The remedies of gauges.
+    fn remedy_of_gauges(&self) -> String {
+        match self {
+            Self::GaugeReversed(gauge) => format!(
+                "Nothing: the sign of gauge.newton_per_count compensates it. Or swap the two signal wires of \
+                 gauge {gauge}"
+            ),
+            Self::GaugeDead(gauge) => {
+                format!("Check the cable, the supply and the amplifier of gauge {gauge}, and that the weight bends it")
+            }
+            Self::GaugeScale(gauge, _) if self.suspect() => format!(
+                "gauge.newton_per_count is corrected. But the tolerance of parts is smaller, so the cause is probably \
+                 the wiring of gauge {gauge} or a wrong mass: check the masses, the supply of its bridge, the gain of \
+                 its amplifier, and for a broken wire of the bridge. After a repair do the step gauges again"
+            ),
+            Self::GaugeScale(..) => "Nothing: gauge.newton_per_count is corrected".into(),
+            Self::GaugeZero(..) => "Nothing: gauge.zero is corrected".into(),
+            Self::GaugeNoise(gauge, _) => {
+                format!("Check the shield and the ground of gauge {gauge}, and keep motor wires away from its cable")
+            }
+            Self::GaugeNotLinear(gauge, _) => format!(
+                "Check the masses of the weights, that they hang freely, and that nothing rubs on tendon {gauge}"
+            ),
+            Self::GaugeAtEnd(gauge, count, zero) => {
+                let direction = if zero < count { "up" } else { "down" };
+                format!(
+                    "Shift the offset of amplifier {gauge} {direction} by at least {:.0} counts, so that the count \
+                     without load is inside the range. Then do the step again",
+                    (zero - count).abs() + MARGIN
+                )
+            }
+            Self::GaugesUnclear(_) => {
+                "Do the step again. Hang the weight only on the tendon that the tool names, and let it hang freely. \
+                 If the same gauge shows two weights again, check the cables of the gauges"
+                    .into()
+            }
+            _ => self.remedy_of_tendons(),
+        }
+    }
+
+    /// The remedies of tendons, the spring and the routines.
+    fn remedy_of_tendons(&self) -> String {
+        match self {
+            Self::TendonLoose(tendon) => {
+                format!("Check tendon {tendon}: it is off its drum or a pulley, broken, or looser than 10 mm")
+            }
+            Self::TendonTension(tendon, part) if *part < 1.0 => {
+                format!("Shorten tendon {tendon}, or look for friction in its path")
+            }
+            Self::TendonTension(tendon, _) => format!("Look for friction in the path of tendon {tendon}"),
+            Self::SpringStiffness(..) => "Do the step tendons again, and push along one direction only".into(),
+            Self::SpringReturn(_) => "That is friction. docs/tuning.md says how to live with it".into(),
+            Self::InitialLowered(..) => {
+                "stiffness.initial is lowered to the bound. sun2xp bound shows the bound of each plant, and what \
+                 limits it"
+                    .into()
+            }
+            Self::PoseRefused(_) => {
+                "If a jig held the finger still, its gauges probably lag, so that the finger trembles at the pose: \
+                 zero it at its stops. For that, leave with q, set zeroing.method = \"stops\" for this finger in the \
+                 configuration file, and start the tool again. The tool reads the file only when it starts"
+                    .into()
+            }
+            Self::Computer(_) => {
+                "Until that is removed, later steps may stop with lost replies, and readings may be missing".into()
+            }
+            Self::NotPushed => "Push the tip before you press Enter".into(),
+            _ => String::new(),
+        }
+    }
+}
+
+/// Says which plug belongs where. `order[n]` is the part that is found at number n + 1.
+fn moves(part: &str, order: &[usize; 4]) -> String {
+    let wrong = order.iter().enumerate().filter(|&(place, &found)| place + 1 != found);
+    let text = |(place, found): (usize, &usize)| format!("the plug at {part} {found} belongs to {part} {}", place + 1);
+    wrong.map(text).collect::<Vec<_>>().join(", ")
+}
