@@ -64,8 +64,10 @@ faults! {
         "Move more slowly, or raise finger.tendon.minimum", [];
     13 LostReplies "LOST_REPLIES" Fault Finger Time "lost replies",
         "the board has sent no valid reply for this time",
-        "the cable is unplugged, the board has no power, the line is too noisy, or the board sends without end",
-        "Check the cable, the power and the firmware of the board, then recover the finger", [Recover];
+        "the cable is unplugged, the board has no power, the line is too noisy, the board sends without end, or this \
+         computer is too busy to receive in time",
+        "Check the cable, the power and the firmware of the board, and the load of this computer (run sun2xp doctor); \
+         then recover the finger", [Recover];
     14 DamagedReplies "DAMAGED_REPLIES" Fault Finger Share "damaged replies",
         "too many replies have a wrong checksum",
         "interference, a bad ground connection, or a cable that is too long for the baud rate",

@@ -1,13 +1,13 @@
 //! A further finger in a configuration file: searches for its board.
 
 use super::configuration_file::{LARGEST, table};
-use super::port_search::{Answer, search};
+use super::port_search::{Answer, Taken, search};
 use crate::failure::{Failure, wrong_usage};
 use std::io::{self, Write};
 use std::path::Path;
 use sun2xp::files::{UpdateError, update_file};
 use sun2xp::hand::parse_configuration;
-use sun2xp::model::configuration::{BoardNumber, Configuration};
+use sun2xp::model::configuration::Configuration;
 use sun2xp::model::{FingerNumber, ShownPath};
 use toml_edit::{Array, DocumentMut, value};
 
@@ -15,7 +15,8 @@ use toml_edit::{Array, DocumentMut, value};
 pub fn add(file: &Path, hand: &Configuration, finger: FingerNumber, ports: &[String]) -> Result<(), Failure> {
     let patterns = if ports.is_empty() { &hand.hand.search_ports } else { ports };
     let others = hand.hand.fingers.members();
-    let taken: Vec<BoardNumber> = others.filter_map(|other| hand.fingers[other.index()].board).collect();
+    let taken: Vec<Taken> =
+        others.filter_map(|other| Some((hand.fingers[other.index()].board?, hand.address(other)))).collect();
     let chosen = search(patterns, hand.fingers[finger.index()].baud, finger, &taken)
         .map_err(|reason| wrong_usage(format!("{} has no finger {finger}, and {reason}", ShownPath(file))))?;
     let change = |text: &str| with(text, hand, finger, &chosen.answer, ports).map(Some);

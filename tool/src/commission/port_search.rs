@@ -40,11 +40,14 @@ impl Chosen {
     }
 }
 
-/// Searches these ports for the board of a finger. `taken` are the boards of other fingers.
+/// A finger of a board: the number of the board and the address. Fingers of one board may share its number.
+pub type Taken = (BoardNumber, u8);
+
+/// Searches these ports for the board of a finger. `taken` belong to other fingers of the hand.
 ///
 /// # Errors
 /// Returns the reason if no board or no single board belongs to the finger.
-pub fn search(patterns: &[String], baud: u32, finger: FingerNumber, taken: &[BoardNumber]) -> Result<Chosen, String> {
+pub fn search(patterns: &[String], baud: u32, finger: FingerNumber, taken: &[Taken]) -> Result<Chosen, String> {
     let searched = search_boards(patterns, &[baud]);
     let answers = searched.iter().flat_map(|port| {
         let found = port.answer.iter().flatten().cloned();
@@ -53,9 +56,9 @@ pub fn search(patterns: &[String], baud: u32, finger: FingerNumber, taken: &[Boa
     choose(answers.collect(), finger, taken).map_err(|reason| format!("{reason} ({})", Shown(&patterns.join(", "))))
 }
 
-fn choose(answers: Vec<Answer>, finger: FingerNumber, taken: &[BoardNumber]) -> Result<Chosen, String> {
+fn choose(answers: Vec<Answer>, finger: FingerNumber, taken: &[Taken]) -> Result<Chosen, String> {
     let (others, free): (Vec<Answer>, Vec<Answer>) =
-        answers.into_iter().partition(|answer| taken.contains(&answer.number()));
+        answers.into_iter().partition(|answer| taken.contains(&(answer.number(), answer.found.address)));
     // A board can have several fingers. One with the address of this finger is the right one.
     let same: Vec<&Answer> = free.iter().filter(|answer| i32::from(answer.found.address) == finger.get()).collect();
     let (answer, reason) = match (&free[..], &same[..]) {
@@ -83,4 +86,60 @@ fn choose(answers: Vec<Answer>, finger: FingerNumber, taken: &[BoardNumber]) -> 
         }
     };
     Ok(Chosen { answer: answer.clone(), reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sun2xp::board::protocol::{Capabilities, FirmwareVersion, Identity};
+
+    fn answer(board: u8, address: u8) -> Answer {
+        let identity = Identity {
+            version: 1,
+            addresses: 0b1110,
+            board_kind: 0,
+            unique_number: [board; 12],
+            firmware: FirmwareVersion([1, 0, 0]),
+            counts_per_revolution: 2000,
+            gauge_bits: 12,
+            torque_unit: 2000,
+            torque_limit: 23_750,
+            shortest_watchdog_ms: 2,
+            capabilities: Capabilities::HOLD,
+        };
+        Answer { port: format!("/dev/board{board}").into(), found: FoundFinger { address, identity } }
+    }
+
+    fn chosen(answers: &[(u8, u8)], taken: &[(u8, u8)]) -> Result<(u8, u8, String), String> {
+        let answers = answers.iter().map(|&(board, address)| answer(board, address)).collect();
+        let taken: Vec<Taken> = taken.iter().map(|&(board, address)| (BoardNumber([board; 12]), address)).collect();
+        let Chosen { answer, reason } = choose(answers, FingerNumber::TWO, &taken)?;
+        Ok((answer.found.identity.unique_number[0], answer.found.address, reason))
+    }
+
+    #[test]
+    fn the_board_that_is_taken_and_the_reason_are_named() {
+        for (answers, taken, expected, reason) in [
+            (&[(5, 1)][..], &[][..], (5, 1), "only one that answers"),
+            (&[(5, 1), (6, 1)], &[(5, 1)], (6, 1), "belong to other fingers of the file"),
+            (&[(5, 1), (5, 2), (5, 3)], &[(5, 1)], (5, 2), "its address is the number of the finger. Not taken: "),
+            (&[(6, 1), (7, 2)], &[], (7, 2), "its address is the number of the finger"),
+        ] {
+            let (board, address, why) = chosen(answers, taken).expect("chosen");
+            assert!((board, address) == expected && why.contains(reason), "{answers:?}: {board}, {address}, {why}");
+        }
+    }
+
+    #[test]
+    fn without_a_single_right_board_the_choice_is_refused() {
+        for (answers, taken, reason) in [
+            (&[][..], &[][..], "no board answers"),
+            (&[(5, 1)], &[(5, 1)], "only boards of other fingers answer"),
+            (&[(5, 1), (6, 1)], &[], "2 fingers answer: "),
+            (&[(5, 2), (6, 2)], &[], "Connect only one"),
+        ] {
+            let refusal = chosen(answers, taken).expect_err("refused");
+            assert!(refusal.contains(reason), "{answers:?}: {refusal}");
+        }
+    }
 }
