@@ -1,7 +1,7 @@
 //! Opens a hand on another machine.
 
 use crate::network_hand::NetworkHand;
-use crate::refusals::{refusal, system};
+use crate::refusals::{forbidden, refusal, system};
 use std::path::Path;
 use std::sync::Arc;
 use sun2xp::Configuration;
@@ -17,6 +17,10 @@ pub(crate) fn open(source: RemoteSource, configuration: &Configuration) -> Resul
     };
     // The caller has found the table already. The file may have been replaced since then.
     let remote = read.map_err(refusal)?.ok_or_else(|| system("the table [remote] is no longer there: open again"))?;
-    let hand = client::RemoteHand::open(&remote).map_err(refusal)?;
+    let hand = client::RemoteHand::open(&remote).map_err(|error| match error.kind() {
+        // The server answers a client that may only read as one that does not own the hand.
+        client::RemoteErrorKind::NotOwner => forbidden(&remote.hand),
+        _ => refusal(error),
+    })?;
     NetworkHand::start(hand, configuration)
 }

@@ -4,7 +4,7 @@
 use sun2xp::capi::RemoteRefusal;
 use sun2xp::finger::Action;
 use sun2xp::{Fault, FaultKind, FingerNumber, HandError};
-use sun2xp_remote_client::{RemoteError, RemoteErrorKind as Kind};
+use sun2xp_remote_client::{HandName, RemoteError, RemoteErrorKind as Kind};
 
 /// The numbers of `sun2xp.h`.
 mod number {
@@ -59,6 +59,15 @@ fn numbers(kind: Kind) -> (i32, i32) {
 pub(crate) fn closed() -> RemoteRefusal {
     let text = "the hand was closed meanwhile: open it again".into();
     RemoteRefusal::Other { number: number::NO_HAND, errno: libc::ENODEV, text, actions: vec![Action::Open] }
+}
+
+/// The refusal to a client that may not command the hand.
+pub(crate) fn forbidden(hand: &HandName) -> RemoteRefusal {
+    let text = format!(
+        "the server does not let this client command the hand {hand}: set the client's name to \"command\" in \
+         [serve.clients] of the server, and start the server again"
+    );
+    RemoteRefusal::Other { number: number::SYSTEM, errno: libc::EACCES, text, actions: Vec::new() }
 }
 
 /// The refusal of something that the system or this library cannot do.

@@ -139,6 +139,19 @@ fn one_with_events_and_an_emergency_stop() {
     alike("events.c", &["-std=gnu99"], BY_BOTH);
 }
 
+/// Nobody may command a hand whose server does not list him, and the text names the key.
+#[test]
+fn one_that_may_not_command() {
+    let rig = Rig::start();
+    let stranger = rig::remote(&rig.endpoint).replace("planner", "stranger");
+    std::fs::write(rig.planners.place("remote.toml"), stranger).expect("a file");
+    for &way in BY_BOTH {
+        let said = rig.planners.said("opens.c", way);
+        assert!(said.starts_with(&format!("-1 {} OpenHand: ", libc::EACCES)), "{way:?} {said}");
+        assert!(said.contains("[serve.clients]"), "{way:?} {said}");
+    }
+}
+
 /// The calls that do not reach the hand are refused with ENOTSUP, and the hand stays open.
 #[test]
 fn calls_that_do_not_reach_the_hand_say_so() {

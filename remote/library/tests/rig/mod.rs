@@ -115,6 +115,8 @@ impl Loading {
 /// their boards need the machine to themselves.
 pub struct Rig {
     pub planners: Loading,
+    /// Where the server listens.
+    pub endpoint: String,
     server: Child,
     _turn: MutexGuard<'static, ()>,
 }
@@ -131,7 +133,7 @@ impl Rig {
             format!("[serve]\nname = \"{NAME}\"\nlisten = [\"{endpoint}\"]\n[serve.clients]\nplanner = \"command\"\n");
         fs::write(planners.place("server.toml"), format!("{serve}{HAND}")).expect("a file");
         let server = serve_until_ready(&planners.place("server.toml"));
-        Self { planners, server, _turn: turn }
+        Self { planners, endpoint, server, _turn: turn }
     }
 }
 
