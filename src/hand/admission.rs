@@ -42,7 +42,7 @@ pub(super) struct Admission {
 }
 
 impl Admission {
-    // SendPos calls this. Without `inline`, the ranges are copied in every call.
+    // Without `inline`, the ranges are copied for every set point.
     #[inline]
     fn ranges(&self) -> Ranges {
         let Self { finger, joint_limits, stiffness_bound, out_of_range, .. } = *self;
