@@ -21,7 +21,8 @@ pub fn zeros(desk: &mut Desk) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// Zeros the finger by its method. Returns whether it was done. `held` says whether the person may still hold the finger.
+/// Zeros the finger by its method. Returns whether it was done. `held` says whether the person may still hold the
+/// finger.
 pub fn zero(desk: &mut Desk, outcome: &mut Outcome, held: bool) -> Result<bool, Failure> {
     let at_pose = desk.finger.zeroing_method() == ZeroingMethod::Pose;
     if at_pose {
