@@ -13,13 +13,14 @@ import sun2xp
 PYTHON = pathlib.Path(__file__).parent.parent
 ROOT = PYTHON.parent
 
-#: The pages with snippets in Python. Those of docs/ros.md need ROS, and ros/tests runs them.
+#: The pages with snippets in Python. Those of docs/ros.md need ROS, and ros/tests runs them. Those of docs/remote.md
+#: need a server, and test_remote_serve.py runs them.
 PAGES = [ROOT / "README.md", PYTHON / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 SNIPPETS = [
     pytest.param(snippet, id=f"{page.relative_to(ROOT)}-{number}")
     for page in PAGES
     for number, snippet in enumerate(re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL))
-    if page.name != "ros.md"
+    if page.name not in ("ros.md", "remote.md")
 ]
 
 

@@ -1,6 +1,8 @@
 """The client of `sun2xp.remote` against a server without a hand."""
 
 import socket
+import subprocess
+import sys
 import time
 
 import numpy
@@ -201,6 +203,14 @@ def test_the_status_and_the_cycles_are_read(double, hand):
     eventually(lambda: hand._receiver._states)
     cycles = hand.cycles()
     assert set(cycles["finger"]) == {1, 2, 3} and hand.missing == (0, 0)
+
+
+def test_the_module_lists_the_hands(double):
+    command = [sys.executable, "-m", "sun2xp.remote"]
+    found = subprocess.run([*command, double.endpoint], capture_output=True, text=True, timeout=60)
+    assert found.stdout == "hand: finger 1 running, finger 2 running, finger 3 running; owner: planner\n", found
+    nobody = subprocess.run([*command, free_endpoint()], capture_output=True, text=True, timeout=60)
+    assert nobody.returncode == 1 and "no connection" in nobody.stderr
 
 
 def test_two_hands_get_one_time_stamp():

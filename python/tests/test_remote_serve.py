@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import signal
 import socket
 import subprocess
@@ -81,7 +82,7 @@ def test_a_finger_is_moved_held_and_read(endpoint):
         with pytest.raises(sun2xp.Refused):
             hand.send_tip(2, [100.0, 0.0, 0.0])
             hand.wait(2, timeout=10)
-        with sun2xp.remote.open("hand", endpoint, client="screen", read_only=True) as screen:
+        with sun2xp.remote.open("hand", endpoint, client="screen", read_only=True, stale=1.0) as screen:
             assert abs(screen.position(1) - HOME).max() < 0.05
             with pytest.raises(sun2xp.remote.NotOwner):
                 screen.acquire(take_over=True)
@@ -107,7 +108,7 @@ def test_a_planner_that_is_stopped_loses_the_hand(endpoint):
     planner = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:
         assert planner.stdout.readline() == "holds\n"
-        with sun2xp.remote.open("hand", endpoint, client="screen", read_only=True) as screen:
+        with sun2xp.remote.open("hand", endpoint, client="screen", read_only=True, stale=1.0) as screen:
             assert screen.status().owner == "planner"
             planner.send_signal(signal.SIGSTOP)
             end = time.monotonic() + 5
@@ -165,3 +166,18 @@ def test_two_hands_behind_a_router_move_together(tmp_path):
                 for hand in hands:
                     hand.wait(timeout=30)
                     assert abs(hand.position(2) - HOME).max() < 0.05
+
+
+def snippets():
+    page = (pathlib.Path(__file__).parents[2] / "docs/remote.md").read_text()
+    return re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_snippet_of_the_page_runs(number, endpoint, tmp_path):
+    assert len(snippets()) == 2
+    snippet = snippets()[number]
+    assert snippet.count("tcp/127.0.0.1:7447") == 1
+    program = snippet.replace("tcp/127.0.0.1:7447", endpoint)
+    run = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=100)
+    assert run.returncode == 0, run.stderr

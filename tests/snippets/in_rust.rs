@@ -43,7 +43,8 @@ fn every_snippet_in_rust_is_in_this_file() {
     let pages = pages();
     let blocks = in_language(&pages, "rust");
     assert!(blocks.len() >= 2, "{} snippets were found", blocks.len());
-    for block in blocks {
+    // serve/tests/network has the snippet of docs/remote.md, because this package does not know that client.
+    for block in blocks.iter().filter(|block| block.page != "docs/remote.md") {
         let indented: String = block.text.lines().map(|line| format!("    {line}\n").replace("    \n", "\n")).collect();
         assert!(THIS_FILE.contains(&indented), "{}: copy this snippet into a test here:\n{indented}", block.page);
     }

@@ -17,6 +17,9 @@ from ._network import ANSWER_TIME, Network
 from ._owner import Owner
 from ._reading import Reading
 
+#: Longest time without a State that does not end a wait, s.
+_PAUSE = 1.0
+
 #: Longest time of a recovery, s.
 _RECOVERY_TIME = 30.0
 
@@ -226,7 +229,8 @@ class RemoteHand(Reading):
         return condition == "applied" or self._receiver.latest(finger, _CONDITIONS[condition]) >= cycle
 
     def _check_fault(self, finger: int) -> None:
-        record = self._record(finger)
+        # A wait goes on during a short pause of the line.
+        record = self._receiver.newest(finger, max(self._stale, _PAUSE))
         if STAGES[record["stage"]] == "faulted":
             number = int(record["fault"])
             text = self._ask_status().fingers[finger].fault_text or f"finger {finger} has fault {number}"

@@ -1,0 +1,26 @@
+"""`python3 -m sun2xp.remote [ENDPOINT]` prints the hands that can be reached without TLS."""
+
+from __future__ import annotations
+
+import sys
+
+from .._errors import Error
+from . import discover
+from ._network import LOOPBACK
+
+
+def main() -> int:
+    """Prints one line for each hand. Returns the exit status."""
+    try:
+        hands = discover(sys.argv[1] if len(sys.argv) > 1 else LOOPBACK)
+    except Error as error:
+        print(error, file=sys.stderr)
+        return 1
+    for name, status in sorted(hands.items()):
+        stages = ", ".join(f"finger {finger} {one.stage}" for finger, one in status.fingers.items())
+        print(f"{name}: {stages}; owner: {status.owner or 'none'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
