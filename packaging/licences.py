@@ -35,7 +35,8 @@ def contained(metadata, owners):
     command = ["cargo", "tree", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}"]
     command += [argument for owner in owners for argument in ("--package", owner)] + ["--target", TARGET]
     lines = subprocess.check_output(command, cwd=ROOT, text=True).splitlines()
-    linked = {tuple(line.split()[:2]) for line in lines if line and "(/" not in line}
+    # The packages of the workspace are not third-party. A crate that the workspace replaces by its own copy is.
+    linked = {tuple(line.split()[:2]) for line in lines if line and not line.startswith("sun2xp")}
     found = [package for package in metadata["packages"] if (package["name"], "v" + package["version"]) in linked]
     return sorted(found, key=lambda package: (package["name"], package["version"]))
 

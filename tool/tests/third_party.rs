@@ -17,9 +17,10 @@ fn linked(packages: &[&str]) -> BTreeSet<String> {
     let tree = tree.output().expect("cargo runs");
     assert!(tree.status.success(), "{tree:?}");
     let tree = String::from_utf8(tree.stdout).expect("names");
-    // A line is a name and a version such as v1.0.0, and sometimes remarks. A package of the workspace has its path.
+    // A line is a name and a version such as v1.0.0, and sometimes remarks. The packages of the workspace are not
+    // third-party. A crate that the workspace replaces by its own copy is.
     tree.lines()
-        .filter(|line| !line.contains("(/"))
+        .filter(|line| !line.starts_with("sun2xp"))
         .filter_map(|line| {
             let mut words = line.split_whitespace();
             Some(format!("{} {}", words.next()?, words.next()?.strip_prefix('v')?))
