@@ -77,6 +77,7 @@ impl Line {
         self.set(Direction::Left, conditions)
     }
 
+    #[allow(dead_code, reason = "a benchmark does not count packets")]
     /// Returns how many packets were sent in a direction, and how many of them were lost.
     pub fn counts(&self, direction: Direction) -> (u64, u64) {
         lock(&self.shapers[direction as usize]).counts()

@@ -1,10 +1,23 @@
 //! The service over lines that fail: two network namespaces with a line between them that loses and delays packets,
 //! or is cut. Tests that need a namespace are left out where this process may not make one.
 
+mod bad_line;
 mod line;
 mod line_tests;
 mod namespace;
+mod noise;
+mod noise_tests;
+mod observer;
+mod outage;
+mod outage_tests;
+mod planner;
+mod process;
+mod raw;
+mod security;
+mod served;
+mod several;
 mod shaper;
+mod snippets;
 #[allow(dead_code)]
 #[path = "../../../tests/common/tools.rs"]
 mod tools;

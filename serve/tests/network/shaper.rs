@@ -90,16 +90,26 @@ impl Shaper {
     }
 }
 
-/// The generator SplitMix64: enough for losses, and the same on every machine.
-struct Random(u64);
+/// The generator SplitMix64: enough for losses and noise, and the same on every machine.
+pub struct Random(pub u64);
 
 impl Random {
     /// Returns a number from 0 to 1, without 1.
-    fn fraction(&mut self) -> f64 {
+    pub fn fraction(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Returns a number from 0 to `count` - 1.
+    pub fn below(&mut self, count: usize) -> usize {
+        (self.fraction() * count as f64) as usize
+    }
+
+    /// Returns 64 random bits.
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut mixed = self.0;
         mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        mixed ^ (mixed >> 31)
     }
 }

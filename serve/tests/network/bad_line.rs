@@ -1,0 +1,134 @@
+//! Lines that lose packets or delay them: no wrong set point is applied, none out of order, and motion stays smooth.
+
+use super::line::{Direction, Line};
+use super::observer::has_stiffness;
+use super::outage::{CATCH_MS, Rig};
+use super::permitted_line;
+use super::planner::{INTERVAL, Motion, RAMP_BEGIN, RAMP_STEP, RAMP_STEPS, STIFF};
+use super::shaper::Conditions;
+use std::collections::VecDeque;
+use std::time::Duration;
+use sun2xp::Stage;
+use sun2xp::telemetry::Sample;
+
+/// Longest time of a ramp. The planner needs 7 s on a good line.
+const RAMP_TIME: Duration = Duration::from_secs(30);
+
+/// Longest time until the finger is at the beginning of the ramp.
+const BEGINS: Duration = Duration::from_secs(10);
+
+/// Largest velocity of a finger, rad/s. The ramp has 0.1 rad/s. After a pause of the line of at most 1 s, which is when
+/// the hand goes to its end state, the next set point is at most 0.1 rad ahead of the finger, and the finger catches up
+/// as after any step of a local planner: with less than 30/s times the step.
+const LARGEST_VELOCITY: f64 = 3.1;
+
+/// Time over which a velocity is measured, ns. That of a single cycle is mostly the resolution of the encoders.
+const WINDOW: u64 = 20_000_000;
+
+/// What the board saw of finger 1.
+#[derive(Debug, Default)]
+struct Seen {
+    /// The set points while it followed the planner, one for each cycle, rad.
+    set_points: Vec<f64>,
+    /// Largest velocity over a window before the end state, rad/s, and the joint angles in the window with their times.
+    velocity: f64,
+    recent: VecDeque<(u64, [f64; 3])>,
+    /// How often it was caught.
+    caught: usize,
+    /// Whether it has reached the last set point, and whether it went to its end state.
+    arrived: bool,
+    ended: bool,
+    follows: bool,
+}
+
+impl Seen {
+    /// Notes a cycle. Returns whether the ramp is over.
+    fn note(&mut self, sample: &Sample) -> bool {
+        self.ended = sample.stage != Stage::Running;
+        if !self.ended {
+            self.recent.push_back((sample.began, sample.joints));
+        }
+        while let Some((began, joints)) = self.recent.front().filter(|one| sample.began - one.0 >= WINDOW) {
+            let time = (sample.began - began) as f64 * 1e-9;
+            let moved = (0..3).map(|joint| (sample.joints[joint] - joints[joint]).abs()).fold(0.0, f64::max);
+            self.velocity = self.velocity.max(moved / time);
+            self.recent.pop_front();
+        }
+        let follows = has_stiffness(sample, STIFF);
+        self.caught += usize::from(self.follows && !follows);
+        self.follows = follows;
+        if let (true, Some(set_point)) = (follows, sample.joint_set_point) {
+            self.set_points.push(set_point[1]);
+            let last = RAMP_BEGIN + RAMP_STEP * f64::from(RAMP_STEPS);
+            self.arrived = (set_point[1] - last).abs() < 1e-9;
+        }
+        self.arrived || self.ended
+    }
+}
+
+/// Lets the planner close finger 1 in equal steps over a line that `spoil` has spoiled, and returns what the board saw.
+fn ramp(line: Line, name: &str, catch_ms: u32, spoil: impl FnOnce(&Line)) -> Seen {
+    let mut rig = Rig::new(line, name, catch_ms);
+    let planner = rig.planner(Motion::Ramp);
+    let begun = rig.observer.until(BEGINS, |sample| {
+        let near = sample.finger.index() == 0 && (sample.joints[1] - RAMP_BEGIN).abs() < 0.02;
+        (near && sample.joint_rates.iter().all(|rate| rate.abs() < 0.1)).then_some(())
+    });
+    assert!(begun.is_some(), "{name}: the finger is not at the beginning of the ramp");
+    spoil(&rig.line);
+    let mut seen = Seen::default();
+    rig.observer.until(RAMP_TIME, |sample| (sample.finger.index() == 0 && seen.note(sample)).then_some(()));
+    drop(planner);
+    let Seen { set_points, velocity, caught, arrived, ended, .. } = &seen;
+    println!(
+        "{name}: {} cycles, caught {caught} times, arrived {arrived}, ended {ended}, at most {velocity:.3} rad/s",
+        set_points.len()
+    );
+    seen
+}
+
+/// Every set point that was reached is one that the planner has sent, and none is before an earlier one. The finger
+/// moves smoothly.
+fn assert_ordered(seen: &Seen, name: &str) {
+    for pair in seen.set_points.windows(2) {
+        assert!(pair[1] >= pair[0], "{name}: {} follows {}", pair[1], pair[0]);
+    }
+    for set_point in &seen.set_points {
+        let steps = (set_point - RAMP_BEGIN) / RAMP_STEP;
+        assert!((steps - steps.round()).abs() < 1e-6, "{name}: {set_point} rad was not sent");
+        assert!((0.0..=f64::from(RAMP_STEPS)).contains(&steps.round()), "{name}: {set_point} rad was not sent");
+    }
+    assert!(seen.velocity < LARGEST_VELOCITY, "{name}: {} rad/s", seen.velocity);
+    assert!(seen.arrived || seen.ended, "{name}: neither arrived nor ended");
+}
+
+#[test]
+fn a_line_that_loses_packets_applies_no_wrong_set_point() {
+    for (name, loss) in [("loss-1", 0.01), ("loss-5", 0.05), ("loss-20", 0.2)] {
+        let Some(line) = permitted_line(21) else { return };
+        let seen = ramp(line, name, CATCH_MS, |line| _ = line.set_both(Conditions::losing(loss)));
+        // TCP may pause for longer than a second on such a line. Then the hand goes to its end state.
+        assert_ordered(&seen, name);
+    }
+}
+
+#[test]
+fn a_line_that_delays_packets_applies_no_wrong_set_point() {
+    let jitter = Duration::from_millis(50);
+    for (name, reorders) in [("jitter", false), ("reordering", true)] {
+        let Some(line) = permitted_line(22) else { return };
+        let conditions = Conditions::jittering(jitter, reorders);
+        let seen = ramp(line, name, CATCH_MS, |line| _ = line.set(Direction::Left, conditions));
+        assert_ordered(&seen, name);
+        // In both directions together, 100 ms pass before a target is there. Then the hand needs more patience.
+        let Some(line) = permitted_line(23) else { return };
+        let seen = ramp(line, name, 4 * CATCH_MS, |line| _ = line.set_both(conditions));
+        assert_ordered(&seen, name);
+        assert!(reorders || seen.arrived, "{name}: the last set point has not arrived");
+    }
+}
+
+#[test]
+fn the_planner_moves_as_slowly_as_the_bound_assumes() {
+    assert!((RAMP_STEP / INTERVAL.as_secs_f64() - 0.1).abs() < 1e-12);
+}

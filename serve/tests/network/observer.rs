@@ -1,0 +1,68 @@
+//! What a hand does, cycle by cycle, as its telemetry shows it: at the board, and independent of the network.
+
+use std::time::{Duration, Instant};
+use sun2xp::Stage;
+use sun2xp::telemetry::{Message, Reader, Sample, View};
+
+/// Longest time in which a hand that was started can be attached to.
+const APPEARS: Duration = Duration::from_secs(20);
+
+/// A reader of the telemetry of a hand.
+pub struct Observer {
+    reader: Reader,
+    view: View,
+    messages: Vec<Message>,
+}
+
+impl Observer {
+    /// Attaches to the hand with this name of telemetry. The thread must be in the network namespace of the hand.
+    pub fn attach(name: &str) -> Self {
+        let deadline = Instant::now() + APPEARS;
+        loop {
+            match Reader::attach(Some(name)) {
+                Ok(reader) => {
+                    let view = View::new(&reader.description().configuration);
+                    return Self { reader, view, messages: Vec::new() };
+                }
+                Err(error) => assert!(Instant::now() < deadline, "{error}"),
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Returns the cycles that have arrived, after waiting for some for at most `timeout`. The hand must be open.
+    pub fn samples(&mut self, timeout: Duration) -> Vec<Sample> {
+        self.messages.clear();
+        self.reader.read(timeout, &mut self.messages).unwrap_or_else(|ended| panic!("{ended}"));
+        self.messages.iter().filter_map(|message| self.view.take(message)).collect()
+    }
+
+    /// Returns the number of cycles of all fingers that telemetry has lost since this observer was attached.
+    pub fn lost(&self) -> u64 {
+        self.reader.lost().iter().sum()
+    }
+
+    /// Drops everything that has arrived.
+    pub fn skip(&mut self) {
+        while !self.samples(Duration::ZERO).is_empty() {}
+    }
+
+    /// Reads until a cycle shows something, for at most `timeout`.
+    pub fn until<Found>(&mut self, timeout: Duration, mut find: impl FnMut(&Sample) -> Option<Found>) -> Option<Found> {
+        let deadline = Instant::now() + timeout;
+        while Instant::now() < deadline {
+            let found = self.samples(Duration::from_millis(20)).iter().find_map(&mut find);
+            if found.is_some() {
+                return found;
+            }
+        }
+        None
+    }
+}
+
+/// Returns whether a finger is a spring with this Kx times the unit matrix, N/cm.
+pub fn has_stiffness(sample: &Sample, stiffness: f64) -> bool {
+    let wanted = |row: usize, column: usize| if row == column { stiffness } else { 0.0 };
+    sample.stage == Stage::Running
+        && sample.kx.is_some_and(|kx| (0..9).all(|at| (kx[at / 3][at % 3] - wanted(at / 3, at % 3)).abs() < 1e-9))
+}

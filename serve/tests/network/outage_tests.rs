@@ -1,0 +1,53 @@
+//! The planner or the line fails: the fingers are caught, end, and obey the next planner. `cargo bench --bench outage`
+//! repeats each failure a hundred times.
+
+use super::outage::{CATCH_GOAL, CATCH_MS, END_GOAL, Failure, Rig};
+use super::permitted_line;
+use super::process::Resources;
+use std::time::{Duration, Instant};
+
+/// Repetitions of each failure.
+const REPETITIONS: usize = 3;
+
+/// Longest time in which the server notices that the connection of a lost client is over.
+const LEASE: Duration = Duration::from_secs(14);
+
+#[test]
+fn every_failure_is_caught_and_the_next_planner_gets_the_hand() {
+    let Some(line) = permitted_line(10) else { return };
+    let mut rig = Rig::new(line, "outage", CATCH_MS);
+    // The first planners make the server's threads and buffers.
+    for failure in Failure::ALL {
+        rig.fail(failure);
+    }
+    let before = settled(&rig, None);
+    for failure in Failure::ALL {
+        for repetition in 0..REPETITIONS {
+            let outcome = rig.fail(failure);
+            let (pause, lost) = (outcome.pause, outcome.lost);
+            println!("{failure:?} {repetition}: {outcome:?}; a pause of {pause:.0} ms, {lost} cycles are missing");
+            assert!(outcome.caught <= CATCH_GOAL, "{failure:?}, repetition {repetition}: {outcome:?}");
+            assert!(outcome.ended <= END_GOAL, "{failure:?}, repetition {repetition}: {outcome:?}");
+            assert!(outcome.distance < 0.01, "the finger is not held where it is: {outcome:?}");
+        }
+    }
+    let after = settled(&rig, Some(before));
+    assert!(after.threads <= before.threads, "threads are left: {before:?}, {after:?}");
+    assert!(after.descriptors <= before.descriptors, "descriptors are left: {before:?}, {after:?}");
+}
+
+/// Waits until the connections of the lost clients are over, and returns what the server uses.
+fn settled(rig: &Rig, expected: Option<Resources>) -> Resources {
+    let (mut found, mut since) = (Resources::of(rig.served.process()), Instant::now());
+    loop {
+        let now = Resources::of(rig.served.process());
+        if (now.threads, now.descriptors) != (found.threads, found.descriptors) {
+            (found, since) = (now, Instant::now());
+        }
+        let below = |expected: Resources| now.threads <= expected.threads && now.descriptors <= expected.descriptors;
+        if expected.is_some_and(below) || since.elapsed() > LEASE {
+            return now;
+        }
+        std::thread::sleep(Duration::from_millis(200));
+    }
+}
