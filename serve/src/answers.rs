@@ -1,45 +1,111 @@
-//! Sends Answers in a thread of their own. A client that has stopped to read can hold up a reply for seconds, and the
-//! threads of zenoh that receive Targets must not wait for it.
+//! Sends Answers in threads of their own. A client that has stopped to read can hold up a reply, and the threads of
+//! zenoh that receive Targets must not wait for it. Replies have the congestion control of their query, which the
+//! client chooses: zenoh 1.10 ignores that of the reply.
+//!
+//! Zenoh sends the end of a query where the query is dropped, and this can wait too. So callbacks give every query to
+//! one of these threads, also a query that has no answer.
 
+use crate::places::{Place, Places};
 use crate::shared::Shared;
+use crate::status::status;
 use std::sync::atomic::Ordering;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::Duration;
+use sun2xp::realtime::now;
 use sun2xp_remote_protocol::ClientName;
+use zenoh::bytes::ZBytes;
 use zenoh::key_expr::KeyExpr;
 use zenoh::query::Query;
 use zenoh::{Session, Wait};
 
-/// Most Answers that wait. Further ones are dropped, and their clients ask again.
+/// Most Answers to Requests that wait. Further ones are dropped, and their clients ask again.
 const WAITING: usize = 256;
 
-/// Interval at which the thread looks whether the server ends.
+/// Most other queries that wait, some hundred bytes each.
+const OTHERS: usize = 16_384;
+
+/// Interval at which a thread looks whether the server ends.
 const INTERVAL: Duration = Duration::from_millis(50);
 
 /// A message that is to be sent.
 pub enum Outgoing {
-    /// The reply to a query, under this key.
-    Reply(Query, KeyExpr<'static>, Vec<u8>),
+    /// The reply to a Request, under this key.
+    Reply(Query, KeyExpr<'static>, Vec<u8>, Place),
     /// The refusal of a Target of this client.
     Refusal(ClientName, Vec<u8>),
+    /// The Status.
+    Status(Query, Place),
+    /// The end of a query that has no answer.
+    End(Query),
 }
 
 /// Where callbacks put what is to be sent.
 #[derive(Clone)]
-pub struct Answers(SyncSender<Outgoing>);
+pub struct Answers {
+    requests: SyncSender<Outgoing>,
+    others: SyncSender<Outgoing>,
+    places: Places,
+}
+
+/// The ends of the queues, each for a thread that calls [`send`].
+pub struct Queues {
+    /// Answers to Requests, and refusals of Targets.
+    pub requests: Receiver<Outgoing>,
+    /// Everything else. It cannot hold up an answer to a Request.
+    pub others: Receiver<Outgoing>,
+}
 
 impl Answers {
-    /// Returns a queue, and its end for [`send`].
+    /// Returns the queues, and their ends.
     #[must_use]
-    pub fn new() -> (Self, Receiver<Outgoing>) {
-        let (sender, receiver) = sync_channel(WAITING);
-        (Self(sender), receiver)
+    pub fn new() -> (Self, Queues) {
+        let (requests, of_requests) = sync_channel(WAITING);
+        let (others, of_others) = sync_channel(OTHERS);
+        let answers = Self { requests, others, places: Places::default() };
+        (answers, Queues { requests: of_requests, others: of_others })
     }
 
-    /// Puts a message into the queue, and never waits.
-    pub fn put(&self, outgoing: Outgoing) {
-        // A message for which there is no room is dropped.
-        let _ = self.0.try_send(outgoing);
+    /// Returns a place for a Request of this client; none if too many of its Requests wait.
+    #[must_use]
+    pub fn place(&self, client: &ClientName) -> Option<Place> {
+        self.places.take(Some(client.clone()))
+    }
+
+    /// Replies to a Request.
+    pub fn reply(&self, query: Query, key: KeyExpr<'static>, bytes: Vec<u8>, place: Place) {
+        if let Err(TrySendError::Full(Outgoing::Reply(query, ..))) =
+            self.requests.try_send(Outgoing::Reply(query, key, bytes, place))
+        {
+            self.end(query);
+        }
+    }
+
+    /// Sends the refusal of a Target. A refusal for which there is no room is dropped.
+    pub fn refuse(&self, client: ClientName, bytes: Vec<u8>) {
+        let _ = self.requests.try_send(Outgoing::Refusal(client, bytes));
+    }
+
+    /// Replies with the Status. If too many gets of it wait, the query has no answer.
+    pub fn status(&self, query: Query) {
+        match self.places.take(None) {
+            Some(place) => self.put_other(Outgoing::Status(query, place)),
+            None => self.end(query),
+        }
+    }
+
+    /// Ends a query without an answer.
+    pub fn end(&self, mut query: Query) {
+        // The query may wait, and what it carries is not needed any more.
+        if let Some(payload) = query.payload_mut() {
+            *payload = ZBytes::new();
+        }
+        self.put_other(Outgoing::End(query));
+    }
+
+    fn put_other(&self, outgoing: Outgoing) {
+        // Only a client that asks for long faster than the server can refuse it fills this queue. Its further queries
+        // end here, in the thread that receives them, because the memory of the server is limited.
+        let _ = self.others.try_send(outgoing);
     }
 }
 
@@ -47,10 +113,30 @@ impl Answers {
 pub fn send(shared: &Shared, session: &Session, queue: &Receiver<Outgoing>) {
     while !shared.ending.load(Ordering::Acquire) {
         // A client that has gone needs no answer, and the session is closed only when the server ends.
-        let _ = match queue.recv_timeout(INTERVAL) {
-            Ok(Outgoing::Reply(query, key, bytes)) => query.reply(key, bytes).wait(),
-            Ok(Outgoing::Refusal(client, bytes)) => session.put(shared.keys.refused(&client), bytes).wait(),
-            Err(_) => Ok(()),
-        };
+        match queue.recv_timeout(INTERVAL) {
+            Ok(Outgoing::Reply(query, key, bytes, place)) => {
+                let _ = query.reply(key, bytes).wait();
+                // The place is that of the end of the query too.
+                drop(query);
+                drop(place);
+            }
+            Ok(Outgoing::Refusal(client, bytes)) => {
+                let _ = session.put(shared.keys.refused(&client), bytes).wait();
+            }
+            Ok(Outgoing::Status(query, place)) => {
+                reply_status(shared, &query);
+                drop(query);
+                drop(place);
+            }
+            Ok(Outgoing::End(query)) => drop(query),
+            Err(_) => {}
+        }
+    }
+}
+
+fn reply_status(shared: &Shared, query: &Query) {
+    let encoded = status(&shared.hand, &shared.settings.limits, &shared.desk.lock(), now()).encode();
+    if let Ok(bytes) = encoded {
+        let _ = query.reply(shared.keys.status(), bytes).wait();
     }
 }

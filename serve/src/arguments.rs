@@ -2,19 +2,23 @@
 
 use crate::ServeError;
 use crate::certificates::{self, Wanted};
+use crate::output::say;
+use crate::process::ignores;
 use crate::router::Router;
 use crate::server::{Server, prepare};
-use crate::settings::{Overrides, Permission, Settings};
+use crate::settings::{Overrides, Permission, Settings, client_name};
 use clap::Parser;
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use std::path::PathBuf;
 use sun2xp::hand::find_configuration;
+use sun2xp::model::Shown;
 use sun2xp::{Configured, Hand};
 use sun2xp_remote_protocol::ClientName;
 
 /// Offers the hand to planners on other machines. The table [serve] of the configuration file says where the server
-/// listens and who may command the hand. The server ends at SIGINT or SIGTERM: the fingers go to their end state.
+/// listens and who may command the hand. The server ends at SIGINT, SIGTERM or SIGHUP: the fingers go to their
+/// end state. With nohup it ignores SIGHUP.
 ///
 /// Without [serve.clients] nobody may command the hand. The server listens at tcp/127.0.0.1:7447 if it is not
 /// configured otherwise, and listens for other machines only with TLS.
@@ -42,13 +46,13 @@ pub struct Arguments {
     make_certificates: Option<PathBuf>,
     /// Make the certificate of a server, a hand or a router with this name, which is also the name of its machine.
     #[arg(long, value_name = "NAME", requires = "make_certificates")]
-    server: Vec<ClientName>,
+    server: Vec<String>,
     /// Another name or address by which clients reach the servers.
     #[arg(long, value_name = "HOST", requires = "make_certificates")]
     address: Vec<String>,
     /// Make the certificate of a client with this name.
     #[arg(long, value_name = "NAME", requires = "make_certificates")]
-    client: Vec<ClientName>,
+    client: Vec<String>,
 }
 
 /// Does what the arguments say. Returns when it is done, or after a signal.
@@ -57,14 +61,14 @@ pub struct Arguments {
 /// Returns the first error.
 pub fn run(arguments: Arguments) -> Result<(), ServeError> {
     if let Some(folder) = arguments.make_certificates {
-        let Arguments { server: servers, address: addresses, client: clients, .. } = arguments;
-        for file in certificates::make(&folder, &Wanted { servers, addresses, clients })? {
-            println!("{}", file.display());
+        let (servers, clients) = (names("--server", &arguments.server)?, names("--client", &arguments.client)?);
+        for file in certificates::make(&folder, &Wanted { servers, addresses: arguments.address, clients })? {
+            say(&file.display().to_string());
         }
         return Ok(());
     }
     // Signals are held from here on, so that a server that is just starting ends in an orderly way too.
-    let signals = Signals::new([SIGINT, SIGTERM]);
+    let signals = Signals::new(ending());
     let signals =
         signals.map_err(|error| ServeError::System { doing: "wait for signals", reason: error.to_string() })?;
     let mut configured = match &arguments.config {
@@ -75,7 +79,7 @@ pub fn run(arguments: Arguments) -> Result<(), ServeError> {
     let settings = Settings::read(configured.file.as_deref(), &overrides)?;
     if arguments.router {
         let router = Router::start(&settings)?;
-        println!("router at {}", listed(&settings));
+        say(&format!("router at {}", listed(&settings)));
         wait(signals);
         router.end();
         return Ok(());
@@ -84,10 +88,24 @@ pub fn run(arguments: Arguments) -> Result<(), ServeError> {
     let hand = Hand::open_as(configured)?;
     announce(&settings);
     let server = Server::start(hand, settings)?;
-    println!("ready");
+    say("ready");
     wait(signals);
     server.end();
     Ok(())
+}
+
+/// The signals that end the server.
+fn ending() -> Vec<i32> {
+    // A terminal that closes sends SIGHUP. A person who starts the program with nohup wants it to stay.
+    [SIGINT, SIGTERM].into_iter().chain((!ignores(SIGHUP)).then_some(SIGHUP)).collect()
+}
+
+/// Reads the names of an option. The messages of clap would show control characters as they are.
+fn names(option: &'static str, texts: &[String]) -> Result<Vec<ClientName>, ServeError> {
+    let name = |text: &String| {
+        client_name(text).map_err(|reason| ServeError::Argument { option, text: Shown(text).to_string(), reason })
+    };
+    texts.iter().map(name).collect()
 }
 
 fn wait(mut signals: Signals) {
@@ -102,12 +120,12 @@ fn listed(settings: &Settings) -> String {
 
 /// Says what is offered, and what is unsafe or useless about it.
 fn announce(settings: &Settings) {
-    println!("hand `{}` at {}", settings.name, listed(settings));
+    say(&format!("hand `{}` at {}", settings.name, listed(settings)));
     let commanders = settings.clients.values().filter(|&&permission| permission == Permission::Command).count();
     if commanders == 0 {
-        println!("nobody may command the hand: list clients in [serve.clients], such as planner = \"command\"");
+        say("nobody may command the hand: list clients in [serve.clients], such as planner = \"command\"");
     }
     if settings.tls.is_none() {
-        println!("without TLS: every program on this machine can read, and a client has the name that it says");
+        say("without TLS: every program on this machine can read, and a client has the name that it says");
     }
 }

@@ -2,11 +2,14 @@
 //! clients. The common name of a certificate is the name of its owner.
 
 use crate::ServeError;
+use crate::authority;
+use crate::process::effective_user;
+use crate::settings::check_client;
 use rcgen::{
     BasicConstraints, Certificate, CertificateParams, DistinguishedName, DnType, ExtendedKeyUsagePurpose, IsCa, Issuer,
     KeyPair, KeyUsagePurpose,
 };
-use std::fs::{DirBuilder, OpenOptions, read_to_string};
+use std::fs::{DirBuilder, OpenOptions, remove_dir, remove_file};
 use std::io::Write;
 use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
@@ -40,36 +43,72 @@ pub struct Wanted {
 /// is overwritten. Returns the files that were made.
 ///
 /// # Errors
-/// Returns an error if one of the files exists already, before anything is written, or if a file cannot be written.
+/// Returns an error if a name cannot be used, if one of the files exists already, if other users can use the authority
+/// or write in the folder, if the files of the authority do not belong together, or if a file cannot be written.
+/// Then no file and no folder has been made.
 pub fn make(folder: &Path, wanted: &Wanted) -> Result<Vec<PathBuf>, ServeError> {
-    let named = || wanted.servers.iter().chain(&wanted.clients);
-    for name in named() {
-        if name.as_str() == AUTHORITY {
-            return Err(failed(folder, "`ca` is the name of the authority: choose another name"));
-        }
-        if named().filter(|other| *other == name).count() > 1 {
-            return Err(failed(folder, format!("{name} is named twice: each certificate has its own name")));
-        }
-        let existing = files(folder, name.as_str()).into_iter().find(|file| file.exists());
-        if let Some(file) = existing {
-            return Err(failed(&file, "exists already: remove it, or choose another name"));
+    check_names(folder, wanted)?;
+    let absent = |folder: &&Path| !folder.as_os_str().is_empty() && folder.symlink_metadata().is_err();
+    let new_folders: Vec<PathBuf> = folder.ancestors().take_while(absent).map(PathBuf::from).collect();
+    let mut made = Vec::new();
+    match make_files(folder, wanted, &mut made) {
+        Ok(()) => Ok(made),
+        Err(error) => {
+            // The error says what is wrong. A folder in which somebody else has put something stays.
+            for file in &made {
+                let _ = remove_file(file);
+            }
+            for folder in &new_folders {
+                let _ = remove_dir(folder);
+            }
+            Err(error)
         }
     }
+}
+
+fn check_names(folder: &Path, wanted: &Wanted) -> Result<(), ServeError> {
+    let named = || wanted.servers.iter().chain(&wanted.clients);
+    for name in named() {
+        check_client(name).map_err(|reason| ServeError::certificate(folder, format!("\"{name}\": {reason}")))?;
+        if name.as_str() == AUTHORITY {
+            return Err(ServeError::certificate(folder, "`ca` is the name of the authority: choose another name"));
+        }
+        if named().filter(|other| *other == name).count() > 1 {
+            let reason = format!("{name} is named twice: each certificate has its own name");
+            return Err(ServeError::certificate(folder, reason));
+        }
+        let existing = files(folder, name.as_str()).into_iter().find(|file| is_there(file));
+        if let Some(file) = existing {
+            return Err(ServeError::certificate(&file, "exists already: remove it, or choose another name"));
+        }
+    }
+    Ok(())
+}
+
+/// Returns whether there is something with this name, also a link that leads nowhere.
+fn is_there(path: &Path) -> bool {
+    path.symlink_metadata().is_ok()
+}
+
+/// Makes the folder and the files. `made` has those that have been made, also after an error.
+fn make_files(folder: &Path, wanted: &Wanted, made: &mut Vec<PathBuf>) -> Result<(), ServeError> {
+    let user = effective_user()?;
     let mut builder = DirBuilder::new();
-    builder.recursive(true).mode(0o700).create(folder).map_err(|error| failed(folder, error))?;
-    let mut made = Vec::new();
-    let issuer = authority(folder, &mut made)?;
+    let created = builder.recursive(true).mode(0o700).create(folder);
+    created.map_err(|error| ServeError::certificate(folder, error))?;
+    authority::check_folder(folder, user)?;
+    let issuer = issuer(folder, user, made)?;
     for name in &wanted.servers {
         let mut addresses = vec![name.to_string(), "localhost".into(), "127.0.0.1".into(), "::1".into()];
         addresses.extend(wanted.addresses.iter().cloned());
         addresses.sort();
         addresses.dedup();
-        leaf(folder, name, addresses, &issuer, &mut made)?;
+        leaf(folder, name, addresses, &issuer, made)?;
     }
     for name in &wanted.clients {
-        leaf(folder, name, Vec::new(), &issuer, &mut made)?;
+        leaf(folder, name, Vec::new(), &issuer, made)?;
     }
-    Ok(made)
+    Ok(())
 }
 
 /// The files of the certificate and of the key with this name.
@@ -78,21 +117,18 @@ fn files(folder: &Path, name: &str) -> [PathBuf; 2] {
 }
 
 /// Returns the authority of the folder, or makes one.
-fn authority(folder: &Path, made: &mut Vec<PathBuf>) -> Result<Issuer<'static, KeyPair>, ServeError> {
+fn issuer(folder: &Path, user: u32, made: &mut Vec<PathBuf>) -> Result<Issuer<'static, KeyPair>, ServeError> {
     let [certificate, key] = files(folder, AUTHORITY);
-    let named = params("sun2xp authority", Vec::new(), AUTHORITY_VALIDITY);
-    let mut params = named.map_err(|error| failed(&certificate, error))?;
+    let named = params(authority::NAME, Vec::new(), AUTHORITY_VALIDITY);
+    let mut params = named.map_err(|error| ServeError::certificate(&certificate, error))?;
     params.is_ca = IsCa::Ca(BasicConstraints::Constrained(0));
     params.key_usages = vec![KeyUsagePurpose::KeyCertSign, KeyUsagePurpose::CrlSign];
-    if certificate.exists() || key.exists() {
+    if is_there(&certificate) || is_there(&key) {
         // Certificates name their authority by its name and its key, so the same parameters are the same authority.
-        read_to_string(&certificate).map_err(|error| failed(&certificate, error))?;
-        let text = read_to_string(&key).map_err(|error| failed(&key, error))?;
-        let pair = KeyPair::from_pem(&text).map_err(|error| failed(&key, error))?;
-        return Ok(Issuer::new(params, pair));
+        return Ok(Issuer::new(params, authority::read(&certificate, &key, user)?));
     }
-    let pair = KeyPair::generate().map_err(|error| failed(&key, error))?;
-    let signed = params.self_signed(&pair).map_err(|error| failed(&certificate, error))?;
+    let pair = KeyPair::generate().map_err(|error| ServeError::certificate(&key, error))?;
+    let signed = params.self_signed(&pair).map_err(|error| ServeError::certificate(&certificate, error))?;
     write(&certificate, &key, &signed, &pair, made)?;
     Ok(Issuer::new(params, pair))
 }
@@ -111,11 +147,12 @@ fn leaf(
     if !addresses.is_empty() {
         uses.push(ExtendedKeyUsagePurpose::ServerAuth);
     }
-    let mut params = params(name.as_str(), addresses, VALIDITY).map_err(|error| failed(&certificate, error))?;
+    let mut params =
+        params(name.as_str(), addresses, VALIDITY).map_err(|error| ServeError::certificate(&certificate, error))?;
     params.key_usages = vec![KeyUsagePurpose::DigitalSignature];
     params.extended_key_usages = uses;
-    let pair = KeyPair::generate().map_err(|error| failed(&key, error))?;
-    let signed = params.signed_by(&pair, issuer).map_err(|error| failed(&certificate, error))?;
+    let pair = KeyPair::generate().map_err(|error| ServeError::certificate(&key, error))?;
+    let signed = params.signed_by(&pair, issuer).map_err(|error| ServeError::certificate(&certificate, error))?;
     write(&certificate, &key, &signed, &pair, made)
 }
 
@@ -138,54 +175,12 @@ fn write(
     // Only the owner of the file may read a key.
     for (path, text, mode) in [(key, pair.serialize_pem(), 0o600), (certificate, signed.pem(), 0o644)] {
         let opened = OpenOptions::new().write(true).create_new(true).mode(mode).open(path);
-        let written = opened.and_then(|mut file| file.write_all(text.as_bytes()));
-        written.map_err(|error| failed(path, error))?;
+        let mut file = opened.map_err(|error| ServeError::certificate(path, error))?;
         made.push(path.into());
+        file.write_all(text.as_bytes()).map_err(|error| ServeError::certificate(path, error))?;
     }
     Ok(())
 }
 
-fn failed(path: &Path, reason: impl ToString) -> ServeError {
-    ServeError::Certificate { path: path.into(), reason: reason.to_string() }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::os::unix::fs::PermissionsExt;
-
-    fn names(texts: &[&str]) -> Vec<ClientName> {
-        texts.iter().map(|text| text.parse().expect("a name")).collect()
-    }
-
-    #[test]
-    fn keys_are_private_and_nothing_is_overwritten() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let addresses = vec!["10.0.0.5".into()];
-        let wanted = Wanted { servers: names(&["cell"]), addresses, clients: names(&["planner"]) };
-        let made = make(folder.path(), &wanted).expect("made");
-        assert_eq!(made.len(), 6, "{made:?}");
-        for file in &made {
-            let mode = std::fs::metadata(file).expect("a file").permissions().mode() & 0o777;
-            let private = file.extension().is_some_and(|extension| extension == "key");
-            assert!(mode & 0o077 == 0 || !private, "{}: {mode:o}", file.display());
-        }
-        let before = std::fs::read(folder.path().join("ca.pem")).expect("the authority");
-        let again = make(folder.path(), &Wanted { clients: names(&["screen", "planner"]), ..Wanted::default() });
-        assert!(again.expect_err("refused").to_string().contains("planner.pem: exists already"));
-        assert!(!folder.path().join("screen.pem").exists(), "a refusal writes nothing");
-        // The authority that is there signs a later certificate.
-        let later = make(folder.path(), &Wanted { clients: names(&["screen"]), ..Wanted::default() });
-        assert_eq!(later.expect("made").len(), 2);
-        assert_eq!(std::fs::read(folder.path().join("ca.pem")).expect("the authority"), before);
-    }
-
-    #[test]
-    fn names_that_would_collide_are_refused() {
-        let folder = tempfile::tempdir().expect("a folder");
-        for clients in [names(&["ca"]), names(&["a", "a"])] {
-            assert!(make(folder.path(), &Wanted { clients, ..Wanted::default() }).is_err());
-        }
-        assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
-    }
-}
+mod tests;

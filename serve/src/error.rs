@@ -1,6 +1,6 @@
 //! The errors of the server, each with its cause and its remedy.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use sun2xp::{ConfigurationError, HandError};
 use thiserror::Error;
 
@@ -50,6 +50,16 @@ pub enum ServeError {
         /// What is wrong, with the remedy.
         reason: String,
     },
+    /// An argument of the command line cannot be used.
+    #[error("{option} \"{text}\": {reason}")]
+    Argument {
+        /// The option.
+        option: &'static str,
+        /// The beginning of what was given, with invisible characters escaped.
+        text: String,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// The system refuses something.
     #[error("cannot {doing}: {reason}")]
     System {
@@ -58,4 +68,11 @@ pub enum ServeError {
         /// The system's reason.
         reason: String,
     },
+}
+
+impl ServeError {
+    /// The error about this file of a certificate.
+    pub(crate) fn certificate(path: &Path, reason: impl ToString) -> Self {
+        Self::Certificate { path: path.into(), reason: reason.to_string() }
+    }
 }

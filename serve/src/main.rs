@@ -4,14 +4,30 @@
 
 use clap::Parser;
 use std::process::ExitCode;
-use sun2xp::model::one_line;
 use sun2xp_serve::arguments::{Arguments, run};
+use sun2xp_serve::output::{complain, complain_lines};
+
+/// Exit status for wrong usage.
+const WRONG_USAGE: u8 = 2;
 
 fn main() -> ExitCode {
-    match run(Arguments::parse()) {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) if error.use_stderr() => {
+            // clap shows wrong arguments with their control characters.
+            complain_lines(&error.render().to_string());
+            return ExitCode::from(WRONG_USAGE);
+        }
+        Err(help) => {
+            // A help text that nobody can read is no error.
+            let _ = help.print();
+            return ExitCode::SUCCESS;
+        }
+    };
+    match run(arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("sun2xp-serve: {}", one_line(&error.to_string()));
+            complain(&error.to_string());
             ExitCode::FAILURE
         }
     }

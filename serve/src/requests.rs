@@ -4,6 +4,7 @@
 use crate::access::permission;
 use crate::desk::code_of;
 use crate::epoch::new_epoch;
+use crate::output::complain;
 use crate::settings::Permission;
 use crate::shared::Shared;
 use std::panic::resume_unwind;
@@ -159,7 +160,7 @@ fn run<R: Reply>(shared: &Arc<Shared>, reply: R, body: impl FnOnce(&Shared, R) +
         }
         Err(error) => {
             shared.busy.store(false, Ordering::Release);
-            eprintln!("sun2xp-serve: cannot start a thread for a request: {error}");
+            complain(&format!("cannot start a thread for a request: {error}. Does the system limit threads?"));
         }
     }
 }

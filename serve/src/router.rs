@@ -16,7 +16,7 @@ impl Router {
     /// # Errors
     /// Returns an error if the network cannot be used.
     pub fn start(settings: &Settings) -> Result<Self, ServeError> {
-        session::open(settings, &at_router(&settings.clients)).map(Self)
+        session::open(settings, &at_router(&settings.clients), session::LARGEST_OF_ROUTER).map(Self)
     }
 
     /// Ends the router.

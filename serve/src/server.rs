@@ -2,9 +2,10 @@
 
 use crate::ServeError;
 use crate::access::at_hand;
-use crate::answers::{Answers, Outgoing, send};
+use crate::answers::{Answers, send};
 use crate::publishing::Publishing;
-use crate::requests::{self, Reply};
+use crate::queries::on_request;
+use crate::requests;
 use crate::session;
 use crate::settings::{Limits, Settings};
 use crate::shared::Shared;
@@ -16,8 +17,6 @@ use sun2xp::motion::ExpiryReaction;
 use sun2xp::realtime::{Clock, MonotonicClock, Priority, now, spawn};
 use sun2xp::{Configuration, Hand};
 use sun2xp_remote_protocol::{Action, Answer, ClientName, Status};
-use zenoh::key_expr::KeyExpr;
-use zenoh::query::Query;
 use zenoh::sample::Sample;
 use zenoh::{Session, Wait};
 
@@ -49,7 +48,7 @@ impl Server {
     /// Returns an error if the network cannot be used.
     pub fn start(hand: Hand, settings: Settings) -> Result<Self, ServeError> {
         let access = at_hand(&settings.name, &settings.clients);
-        let session = session::open(&settings, &access)?;
+        let session = session::open(&settings, &access, session::LARGEST_OF_HAND)?;
         let shared = Arc::new(Shared::new(Arc::new(hand), settings));
         let mut server = Self { shared, session, threads: Vec::new() };
         match server.declare() {
@@ -63,20 +62,21 @@ impl Server {
 
     fn declare(&mut self) -> Result<(), ServeError> {
         let publishing = Publishing::new(&self.shared, &self.session)?;
-        let (answers, queue) = Answers::new();
-        let session = self.session.clone();
+        let (answers, queues) = Answers::new();
+        let (session, of_others) = (self.session.clone(), self.session.clone());
         self.thread("sun2xp states", move |_| publishing.run())?;
         self.thread("sun2xp desk", |shared| look(&shared))?;
-        self.thread("sun2xp answers", move |shared| send(&shared, &session, &queue))?;
+        self.thread("sun2xp answers", move |shared| send(&shared, &session, &queues.requests))?;
+        self.thread("sun2xp others", move |shared| send(&shared, &of_others, &queues.others))?;
         for action in Action::ALL {
             let (shared, answers) = (self.shared.clone(), answers.clone());
             let declared = self.session.declare_queryable(self.shared.keys.every_request(action));
             let declared = declared.callback(move |query| on_request(&shared, &answers, action, query));
             declared.background().wait().map_err(refused(action.name()))?;
         }
-        let (shared, of_status) = (self.shared.clone(), answers.clone());
+        let of_status = answers.clone();
         let declared = self.session.declare_queryable(self.shared.keys.status());
-        let declared = declared.callback(move |query| on_status(&shared, &of_status, query)).background().wait();
+        let declared = declared.callback(move |query| of_status.status(query)).background().wait();
         declared.map_err(refused("status"))?;
         let shared = self.shared.clone();
         let declared = self.session.declare_subscriber(self.shared.keys.every_target());
@@ -149,35 +149,6 @@ fn on_target(shared: &Shared, answers: &Answers, sample: &Sample) {
     let payload = sample.payload().to_bytes();
     let refusal = shared.desk.lock().take_target(&client, &payload, time);
     if let Some(bytes) = refusal.and_then(|answer| answer.encode().ok()) {
-        answers.put(Outgoing::Refusal(client, bytes));
-    }
-}
-
-struct QueryReply {
-    answers: Answers,
-    query: Query,
-    key: KeyExpr<'static>,
-}
-
-impl Reply for QueryReply {
-    fn send(self, answer: &Answer) {
-        if let Ok(bytes) = answer.encode() {
-            self.answers.put(Outgoing::Reply(self.query, self.key, bytes));
-        }
-    }
-}
-
-fn on_request(shared: &Arc<Shared>, answers: &Answers, action: Action, query: Query) {
-    // A key with a wildcard is that of no client.
-    let Some(client) = shared.keys.client_of_request(action, query.key_expr().as_str()) else { return };
-    let payload = query.payload().map(|payload| payload.to_bytes().into_owned()).unwrap_or_default();
-    let key = query.key_expr().clone().into_owned();
-    requests::answer(shared, action, client, &payload, QueryReply { answers: answers.clone(), query, key });
-}
-
-fn on_status(shared: &Shared, answers: &Answers, query: Query) {
-    let encoded = status(&shared.hand, &shared.settings.limits, &shared.desk.lock(), now()).encode();
-    if let (Ok(bytes), Ok(key)) = (encoded, KeyExpr::try_from(shared.keys.status())) {
-        answers.put(Outgoing::Reply(query, key, bytes));
+        answers.refuse(client, bytes);
     }
 }

@@ -11,15 +11,24 @@ use std::path::Path;
 use sun2xp::realtime::{Priority, spawn};
 use zenoh::{Config, Session, Wait};
 
-/// Largest message that the server receives, bytes. The longest Target has less than 4 kB.
-const LARGEST_MESSAGE: usize = 65_536;
+/// Largest message that the server of a hand receives, bytes. The longest Target has about 3500 bytes.
+pub const LARGEST_OF_HAND: u16 = 4_096;
 
-/// Opens a session for these settings, with this access control if there is TLS.
+/// Largest message that a router receives, bytes. The States of hands pass it.
+pub const LARGEST_OF_ROUTER: u16 = u16::MAX;
+
+/// Longest time for which a client that does not read holds up a message, us. The default of zenoh is 5 s, and other
+/// clients would wait as long. It is shorter than the default of catch_ms, so that the others are not caught. Then
+/// zenoh closes the link of the client that does not read.
+const LONGEST_WAIT: &str = "50000";
+
+/// Opens a session for these settings, with this access control if there is TLS. It receives messages of at most
+/// `largest` bytes, [`LARGEST_OF_HAND`] or [`LARGEST_OF_ROUTER`].
 ///
 /// # Errors
 /// Returns an error if a file of TLS is missing, if the server cannot listen, or if a router cannot be reached.
-pub fn open(settings: &Settings, access: &str) -> Result<Session, ServeError> {
-    let config = config(settings, access)?;
+pub fn open(settings: &Settings, access: &str, largest: u16) -> Result<Session, ServeError> {
+    let config = config(settings, access, largest)?;
     let doing = format!(
         "{}{}",
         listed("listen at ", &settings.listen),
@@ -46,12 +55,11 @@ fn listed(what: &str, endpoints: &[Endpoint]) -> String {
 ///
 /// # Errors
 /// Returns an error if a file of TLS is missing.
-fn config(settings: &Settings, access: &str) -> Result<Config, ServeError> {
+fn config(settings: &Settings, access: &str, largest: u16) -> Result<Config, ServeError> {
     let mut config = Config::default();
     // A hand behind a router is its client. Otherwise it is the router of its clients.
     let mode = if settings.listen.is_empty() { "client" } else { "router" };
     let endpoints = |endpoints: &[Endpoint]| strings(endpoints.iter().map(Endpoint::to_string));
-    let largest = LARGEST_MESSAGE.to_string();
     let listen = endpoints(&settings.listen);
     let connect = endpoints(&settings.connect);
     let mut entries = vec![
@@ -64,8 +72,17 @@ fn config(settings: &Settings, access: &str) -> Result<Config, ServeError> {
         ("scouting/delay", "0".into()),
         ("scouting/multicast/enabled", "false".into()),
         ("scouting/gossip/enabled", "false".into()),
-        ("transport/link/rx/max_message_size", largest),
+        // The functions of zenoh for the key of a declaration call themselves once for each part of the key, and access
+        // control comes later. So a long key with many parts exhausts the stack. Both limits hold for a key: of one
+        // batch, which the two sides agree on when they connect, and of a message of several batches.
+        ("transport/link/tx/batch_size", largest.to_string()),
+        ("transport/link/rx/max_message_size", largest.to_string()),
+        ("transport/link/tx/queue/congestion_control/block/wait_before_close", LONGEST_WAIT.into()),
     ];
+    if largest == LARGEST_OF_HAND {
+        // A State can need several of these smaller batches. Then 2 batches, the default, do not hold a State.
+        entries.push(("transport/link/tx/queue/size/data", "16".into()));
+    }
     if let Some(files) = &settings.tls {
         entries.push(("transport/link/protocols", r#"["tls"]"#.into()));
         entries.push(("transport/link/tls", tls(files)?));
@@ -99,4 +116,23 @@ fn tls(files: &TlsFiles) -> Result<String, ServeError> {
             "close_link_on_expiration":true,"listen_certificate":{certificate},"listen_private_key":{key},
             "connect_certificate":{certificate},"connect_private_key":{key}}}"#
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Overrides;
+
+    #[test]
+    fn what_a_client_may_send_and_hold_up_is_limited() {
+        let settings = Settings::from_text("", Path::new("sun2xp.toml"), &Overrides::default()).expect("usable");
+        for (largest, text) in [(LARGEST_OF_HAND, "4096"), (LARGEST_OF_ROUTER, "65535")] {
+            let config = config(&settings, "", largest).expect("a configuration");
+            let value = |key: &str| config.get_json(key).expect("a value");
+            assert_eq!(value("transport/link/tx/batch_size"), text);
+            assert_eq!(value("transport/link/rx/max_message_size"), text);
+            let wait = value("transport/link/tx/queue/congestion_control/block/wait_before_close");
+            assert_eq!(wait, LONGEST_WAIT);
+        }
+    }
 }

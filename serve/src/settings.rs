@@ -174,9 +174,9 @@ impl Settings {
         if listen.is_empty() && connect.is_empty() {
             return Err(refuse("listen", format!("is empty, and so is connect: set listen = [\"{LOOPBACK}\"]")));
         }
-        let clients = table.clients.iter().map(|(client, &permission)| match client.parse() {
+        let clients = table.clients.iter().map(|(client, &permission)| match client_name(client) {
             Ok(name) => Ok((name, permission)),
-            Err(error) => Err(refuse("clients", format!("\"{client}\": {error}"))),
+            Err(reason) => Err(refuse("clients", format!("\"{client}\": {reason}"))),
         });
         let clients = clients.collect::<Result<_, _>>()?;
         let tls = table.tls.as_ref().map(|files| TlsFiles {
@@ -191,6 +191,26 @@ impl Settings {
             })?;
         }
         Ok(Self { name, listen, connect, limits: table.limits(), clients, tls })
+    }
+}
+
+/// Returns the client with this name.
+///
+/// # Errors
+/// Returns the reason if this is not a name, or if [`check_client`] refuses it.
+pub fn client_name(text: &str) -> Result<ClientName, String> {
+    let name = text.parse::<ClientName>().map_err(|error| error.to_string())?;
+    check_client(&name).map(|()| name)
+}
+
+/// Checks that the files of a client with this name are visible.
+///
+/// # Errors
+/// Returns the reason if the name begins with a dot.
+pub fn check_client(name: &ClientName) -> Result<(), String> {
+    match name.as_str().starts_with('.') {
+        true => Err("the name begins with `.`, so the files of its certificate are hidden: choose another name".into()),
+        false => Ok(()),
     }
 }
 

@@ -50,10 +50,14 @@ fn start(folder: &Path, text: &str, prepare: fn() -> std::io::Result<()>) -> (Ru
 }
 
 fn terminate(child: &Child) {
+    send_signal(child, libc::SIGTERM);
+}
+
+fn send_signal(child: &Child, signal: i32) {
     let process = i32::try_from(child.id()).expect("a process number");
     // SAFETY: the process is a child that has not been waited for.
     #[allow(unsafe_code)]
-    let sent = unsafe { libc::kill(process, libc::SIGTERM) };
+    let sent = unsafe { libc::kill(process, signal) };
     assert_eq!(sent, 0);
 }
 
@@ -78,6 +82,74 @@ fn a_hand_is_offered_until_a_signal_comes() {
     terminate(&running.0);
     assert_eq!(running.0.wait().expect("an end").code(), Some(0));
     wait_for("news of the end", || hand.send_position(1, [0.1, 0.5, 0.9]).err());
+}
+
+#[test]
+fn a_terminal_that_closes_ends_the_server_in_an_orderly_way() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut running, _) = start(folder.path(), &table(free_port()), || Ok(()));
+    send_signal(&running.0, libc::SIGHUP);
+    assert_eq!(running.0.wait().expect("an end").code(), Some(0));
+}
+
+#[test]
+fn an_ignored_signal_stays_ignored() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let port = free_port();
+    let (mut running, _) = start(folder.path(), &table(port), || {
+        // SAFETY: the call concerns this process, and SIG_IGN is no function of it.
+        #[allow(unsafe_code)]
+        let earlier = unsafe { libc::signal(libc::SIGHUP, libc::SIG_IGN) };
+        if earlier == libc::SIG_ERR { Err(std::io::Error::last_os_error()) } else { Ok(()) }
+    });
+    send_signal(&running.0, libc::SIGHUP);
+    let client = Client::connect_to(&format!("tcp/127.0.0.1:{port}"), "cell", "alice", None).expect("connected");
+    wait_for("States", || client.state());
+    terminate(&running.0);
+    assert_eq!(running.0.wait().expect("an end").code(), Some(0));
+}
+
+#[test]
+fn an_output_that_is_full_or_closed_does_not_matter() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("sun2xp.toml");
+    let full = || std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a full device");
+    let port = free_port();
+    write(&file, table(port)).expect("a file");
+    let mut command = Command::new(PROGRAM);
+    let child = command.arg("--config").arg(&file).stdout(full()).stderr(full()).spawn().expect("the program");
+    let mut running = Running(child);
+    let connect = || Client::connect_to(&format!("tcp/127.0.0.1:{port}"), "cell", "alice", None).ok();
+    let client = wait_for("the server", connect);
+    wait_for("States", || client.state());
+    terminate(&running.0);
+    assert_eq!(running.0.wait().expect("an end").code(), Some(0));
+    // Nobody reads the error.
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    write(&file, "[serve]\n\nlead = 3\n").expect("a file");
+    let status = Command::new(PROGRAM).arg("--config").arg(&file).stderr(writer).status().expect("the program");
+    assert_eq!(status.code(), Some(1));
+}
+
+#[test]
+fn arguments_cannot_change_the_state_of_a_terminal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path().join("certificates");
+    let folder = folder.to_str().expect("a name");
+    let hostile = "a\u{1b}[31m";
+    for arguments in [
+        &["--make-certificates", folder, "--client", hostile][..],
+        &["--make-certificates", folder, "--server", hostile],
+        &["--name", hostile],
+        &[hostile],
+    ] {
+        let output = run(arguments);
+        assert!(matches!(output.status.code(), Some(1 | 2)), "{output:?}");
+        assert!(!output.stderr.is_empty() && !output.stderr.contains(&0x1b), "{output:?}");
+        assert!(!output.stdout.contains(&0x1b), "{output:?}");
+    }
+    assert!(!Path::new(folder).exists(), "a refusal makes nothing");
 }
 
 #[test]

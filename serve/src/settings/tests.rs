@@ -29,6 +29,7 @@ fn unknown_keys_and_wrong_values_are_named_with_their_line() {
         ("[serve]\nlisten = []\n", 2, "connect"),
         ("[serve]\n[serve.clients]\nplanner = 'write'\n", 3, "command"),
         ("[serve]\n[serve.clients]\n'a b' = 'read'\n", 2, "' '"),
+        ("[serve]\n[serve.clients]\n'.planner' = 'read'\n", 2, "begins with `.`"),
         ("[serve.tls]\nauthority = 'ca.pem'\ncertificate = 'c'\nkey = 'k'\npassword = 'p'\n", 5, "password"),
         ("serve = 3\n", 1, "table"),
     ] {
