@@ -10,13 +10,16 @@ const FUNCTION: usize = 60;
 /// Maximum number of columns of a line.
 const LINE: usize = 120;
 
-/// Returns the Rust and C files below a folder, without build products.
+/// Folders whose files are not the project's: build products, and a crate of Zenoh with its upstream format.
+const FOREIGN: [&str; 3] = ["target", "build", "zenoh-link-tls"];
+
+/// Returns the Rust and C files of the project below a folder.
 pub fn source_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        if path.is_dir() && !name.starts_with('.') && !["target", "build"].contains(&name) {
+        if path.is_dir() && !name.starts_with('.') && !FOREIGN.contains(&name) {
             files.extend(source_files(&path));
         } else if [".rs", ".c", ".h", ".cpp"].iter().any(|ending| name.ends_with(ending)) {
             files.push(path);
