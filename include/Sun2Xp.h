@@ -175,13 +175,10 @@
        [finger.1]
        port = "/dev/ttyUSB0"
 
-   With a table [remote] the hand is one that sun2xp serve offers on another machine (docs/installation.md).
+   With a table [remote], its keys endpoint and hand name a hand that sun2xp serve offers on another
+   machine, such as "tls/cell:7447" and "left" (docs/installation.md).
    OpenHand then needs libsun2xp_remote.so, and EBUSY also means that another planner commands the hand.
    SendPos does not wait for the network. GetPos is refused with ETIMEDOUT if its data are too old.
-
-       [remote]
-       endpoint = "tls/cell:7447"
-       hand = "left"
 
 
    8. THE CALLS: below, each with its manual. The examples are statements of a function that has opened
