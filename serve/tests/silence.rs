@@ -66,6 +66,8 @@ fn falls_silent(fall_silent: impl FnOnce(&mut Child)) {
     let Stage::Faulted(fault) = report(&rig).stage else { panic!("not faulted") };
     assert!(matches!(fault.kind, FaultKind::SetPointExpired | FaultKind::FingerStopCall), "{fault}");
     let mut bob = rig.connect("bob");
+    // The server ends the ownership up to 5 ms after the servo has ended the motion.
+    wait_for("end of the ownership", || bob.status().filter(|status| status.owner.is_none()));
     assert_eq!(bob.acquire().text, "", "the next client acquires");
     let counts = bob.status().expect("a Status").counts;
     assert_eq!((counts.caught, counts.ended), (1, 1));
