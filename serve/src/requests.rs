@@ -7,7 +7,6 @@ use crate::epoch::new_epoch;
 use crate::output::complain;
 use crate::settings::Permission;
 use crate::shared::Shared;
-use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use sun2xp::realtime::{Priority, now, spawn};
@@ -170,18 +169,12 @@ fn in_progress(shared: &Shared, epoch: u64) -> Answer {
     shared.desk.lock().answer(Code::InProgress, text, epoch, now())
 }
 
-/// Recovers this finger, or every finger at the same time if it is none. A recovery can take seconds.
+/// Recovers this finger, or one finger after the other if it is none. A recovery can take seconds.
 fn recover(hand: &Hand, finger: Option<Finger>) -> Result<(), HandError> {
     if let Some(finger) = finger {
         return hand.recover(number(finger));
     }
-    std::thread::scope(|scope| {
-        let fingers = hand.fingers().members();
-        let recovering: Vec<_> = fingers.map(|finger| scope.spawn(move || hand.recover(finger.get()))).collect();
-        // All of them end before the first error is returned.
-        let recovered: Vec<_> = recovering.into_iter().map(|thread| thread.join()).collect();
-        recovered.into_iter().try_for_each(|result| result.unwrap_or_else(|panic| resume_unwind(panic)))
-    })
+    hand.fingers().members().try_for_each(|finger| hand.recover(finger.get()))
 }
 
 type Calibration = fn(&Hand, i32, fn(sun2xp::Progress)) -> Result<sun2xp::Findings, HandError>;
