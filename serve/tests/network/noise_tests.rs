@@ -71,7 +71,7 @@ fn noise_in_process(count: u64) {
         desk.look(now());
         std::thread::sleep(REPEATED);
     }
-    let (before, counted) = (poses(&hand), desk.counts().clone());
+    let (before, counted) = (poses(&hand), *desk.counts());
     let mut noise = Noise::new(31);
     let (mut good, mut newest, mut repeated) = (0, 0, Instant::now());
     for number in 0..count {

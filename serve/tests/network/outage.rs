@@ -137,11 +137,10 @@ impl Rig {
             }
             outcomes.iter().all(|(_, ended)| ended.is_some()).then_some(())
         });
-        let last = |pick: fn(&(Option<f64>, Option<f64>)) -> Option<f64>| {
-            // A finger that was not caught, or did not end, is later than every goal.
-            outcomes.iter().map(|outcome| pick(outcome).unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
-        };
-        let (caught, ended) = (last(|outcome| outcome.0), last(|outcome| outcome.1));
+        // A finger that was not caught, or did not end, is later than every goal.
+        let last = |a: f64, b: Option<f64>| a.max(b.unwrap_or(f64::INFINITY));
+        let caught = outcomes.iter().fold(0.0, |latest, (caught, _)| last(latest, *caught));
+        let ended = outcomes.iter().fold(0.0, |latest, (_, ended)| last(latest, *ended));
         Outcome { caught, ended, distance, pause, lost: self.observer.lost() - lost }
     }
 }
