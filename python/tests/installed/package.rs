@@ -20,11 +20,13 @@ fn the_wheel_works_in_an_empty_environment() {
     environment.delete();
 }
 
-/// Returns the path of `sun2xp-serve`, for the tests of `sun2xp.remote`. Cargo builds it here, with the features of a
-/// build of the whole workspace, because it is the program of another package.
+/// Returns the path of `sun2xp-serve`, for the tests of `sun2xp.remote`. Cargo builds it here, because it is the program
+/// of another package. Cargo selects the features of `cargo test --workspace`, in which Zenoh is compiled already, only
+/// for a build with an example or a test.
 fn server() -> PathBuf {
     let mut build = Command::new(env!("CARGO"));
-    build.args(["build", "--quiet", "--offline", "--workspace", "--bin", "sun2xp-serve"]).current_dir(ROOT);
+    build.args(["build", "--quiet", "--offline", "--workspace", "--bin", "sun2xp-serve", "--example", "spring"]);
+    build.current_dir(ROOT);
     run(&mut build);
     // This test is in the folder deps, beside which programs are.
     let here = std::env::current_exe().expect("the path of this test");

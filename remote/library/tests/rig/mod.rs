@@ -173,14 +173,16 @@ pub fn built(name: &str) -> PathBuf {
     library
 }
 
-/// Builds the program `sun2xp-serve` if it is out of date, and returns its path.
+/// Builds the program `sun2xp-serve` if it is out of date, and returns its path. Cargo selects the features of
+/// `cargo test --workspace`, in which Zenoh is compiled already, only for a build with an example or a test.
 fn program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {
         let deps = deps();
         let folder = deps.parent().expect("the profile's folder");
         let mut cargo = Command::new(env!("CARGO"));
-        cargo.args(["build", "--quiet", "--locked", "--package", "sun2xp-serve", "--manifest-path"]);
+        cargo.args(["build", "--quiet", "--locked", "--workspace", "--bin", "sun2xp-serve"]);
+        cargo.args(["--example", "spring", "--manifest-path"]);
         cargo.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../Cargo.toml"));
         cargo.arg("--target-dir").arg(folder.parent().expect("the target folder"));
         if folder.ends_with("release") {
