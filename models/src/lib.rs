@@ -88,6 +88,7 @@ mod finger {
 
     pub use group_gate::GroupGate;
     pub use sent::Replaced;
+    pub use stop_signal::{StopCounts, stop_calls};
     pub use sun2xp::finger::{Fault, FaultKind, FingerReport, Stage};
     pub use validity::Validity;
 

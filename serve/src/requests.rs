@@ -9,9 +9,14 @@ use crate::settings::Permission;
 use crate::shared::Shared;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::time::Duration;
+use sun2xp::hand::Recovering;
 use sun2xp::realtime::{Priority, now, spawn};
 use sun2xp::{Hand, HandError};
 use sun2xp_remote_protocol::{Action, Answer, ClientName, Code, DecodeError, Finger, Request};
+
+/// Interval at which recoveries are polled.
+const POLLED: Duration = Duration::from_millis(2);
 
 /// Answers a Request. `reply` sends the Answer, at once or later. `client` is the client whose key the Request has.
 pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload: &[u8], reply: impl Reply) {
@@ -169,12 +174,27 @@ fn in_progress(shared: &Shared, epoch: u64) -> Answer {
     shared.desk.lock().answer(Code::InProgress, text, epoch, now())
 }
 
-/// Recovers this finger, or one finger after the other if it is none. A recovery can take seconds.
+/// Recovers this finger, or every finger at the same time if it is none. A recovery can take seconds.
 fn recover(hand: &Hand, finger: Option<Finger>) -> Result<(), HandError> {
     if let Some(finger) = finger {
         return hand.recover(number(finger));
     }
-    hand.fingers().members().try_for_each(|finger| hand.recover(finger.get()))
+    let members = hand.fingers().members();
+    let begun = members.map(|finger| Recovering::begin(hand, finger.get())).collect::<Result<Vec<_>, _>>()?;
+    let reconnected: Vec<_> = begun.iter().map(Recovering::reconnect).collect();
+    let recovered: Vec<_> = begun
+        .iter()
+        .zip(reconnected)
+        .map(|(recovering, reconnected)| {
+            reconnected?;
+            while !recovering.poll(hand)? {
+                std::thread::sleep(POLLED);
+            }
+            Ok(())
+        })
+        .collect();
+    // All of them have ended before the first error is returned.
+    recovered.into_iter().collect()
 }
 
 type Calibration = fn(&Hand, i32, fn(sun2xp::Progress)) -> Result<sun2xp::Findings, HandError>;

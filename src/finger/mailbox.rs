@@ -17,7 +17,7 @@ use crate::finger::group_gate::GroupGate;
 use crate::finger::path_buffer::PathBuffer;
 use crate::finger::sent::SentSetPoint;
 use crate::finger::validity::Renewal;
-use crate::finger::{Adjustable, Fault, FingerReport, Order, Replaced, Stage, Validity};
+use crate::finger::{Adjustable, Fault, FingerReport, Order, Replaced, Stage, Validity, stop_calls};
 use crate::realtime::atomics::{AtomicBool, AtomicU32};
 use crate::realtime::{
     Consumer, Input, LockedMemory, Output, Pages, Producer, SharedPages, ring, triple_buffer, triple_buffer_of,
@@ -36,6 +36,10 @@ struct Requests {
     /// Number of requests to stop. It is a counter and not a flag, so that a finger that has recovered from one stops
     /// at the next.
     stops: AtomicU32,
+    /// Number of requests to stop that were made before the opening or the last recovery began.
+    answered_stops: AtomicU32,
+    /// Number of emergency stop calls that were made before the opening or the last recovery began.
+    answered_calls: AtomicU32,
 }
 
 struct PlannersEnd {
@@ -74,8 +78,6 @@ pub(super) struct ServoEnd {
     orders: Output<Order>,
     reports: Input<FingerReport>,
     requests: SharedPages<Requests>,
-    /// Number of requests to stop that were made before the opening or the last recovery began.
-    stops_seen: u32,
 }
 
 /// Creates a mailbox with `report`, its set point, `adjustable` and `gravity` at both ends. Also returns the memory
@@ -97,7 +99,12 @@ pub(super) fn mailbox(
     let (gravity_in, gravity_out) = shared(gravity, &mut memory);
     let (reports_in, reports_out) = shared(&report, &mut memory);
     let (orders_in, orders_out) = shared(&Order::Nothing, &mut memory);
-    let requests = Requests { closing: AtomicBool::new(false), stops: AtomicU32::new(0) };
+    let requests = Requests {
+        closing: AtomicBool::new(false),
+        stops: AtomicU32::new(0),
+        answered_stops: AtomicU32::new(0),
+        answered_calls: AtomicU32::new(stop_calls()),
+    };
     let requests = SharedPages::from(Pages::new(requests));
     memory.add_shared(&requests);
     let planners = PlannersEnd {
@@ -127,7 +134,6 @@ pub(super) fn mailbox(
         orders: orders_out,
         reports: reports_in,
         requests: requests.clone(),
-        stops_seen: 0,
     };
     (Mailbox { planners: Mutex::new(planners), requests }, servo, memory)
 }

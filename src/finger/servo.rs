@@ -130,6 +130,7 @@ impl FingerServo {
     /// Sets the signal that stops this finger.
     pub fn with(mut self, alarm: StopSignal) -> Self {
         alarm.add_to(&mut self.memory);
+        self.mailbox.forget_stops(alarm.answered());
         self.alarm = alarm;
         self
     }

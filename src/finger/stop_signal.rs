@@ -48,6 +48,11 @@ impl StopSignal {
         Self { calls_seen, together: together.then(|| Pages::new(AtomicU32::new(0)).into()), faults_seen: 0 }
     }
 
+    /// The requests to stop that were made before any motor moved.
+    pub(super) fn answered(&self) -> StopCounts {
+        StopCounts { calls: self.calls_seen, of_finger: 0 }
+    }
+
     /// Adds the pages that the fingers share to `memory`.
     pub(super) fn add_to(&self, memory: &mut LockedMemory) {
         self.together.iter().for_each(|together| memory.add_shared(together));

@@ -6,7 +6,7 @@
 //! tries both before that. If another finger of the port runs, the servo keeps the link and relays the handshake of the
 //! recovering finger.
 
-use crate::finger::{Stage, StopCounts, stop_calls};
+use crate::finger::{FingerReport, Mailbox, Stage, StopCounts, stop_calls};
 use crate::hand::reconnection::RepairablePort;
 use crate::hand::{Hand, HandError, RecoveryError};
 use crate::model::FingerNumber;
@@ -47,10 +47,11 @@ struct Task {
 
 impl Recovering {
     /// Notes the state of finger 1, 2 or 3 and of every other finger on its port. If the finger is not faulted, the
-    /// other steps do nothing.
+    /// other steps do nothing. A finger that was stopped before this call, and whose servo has not faulted it yet, is
+    /// awaited; that takes a cycle.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger.
+    /// Returns an error if there is no such finger, or if its servo does not run.
     pub fn begin(hand: &Hand, finger: i32) -> Result<Self, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let begun = Instant::now();
@@ -70,7 +71,7 @@ impl Recovering {
         for (place, &member) in port.fingers.iter().enumerate() {
             let mailbox = &hand.dispatcher.member(member)?.mailbox;
             task.stops[place].of_finger = mailbox.stops();
-            let report = mailbox.report();
+            let report = report_after_stops(mailbox, begun).ok_or(HandError::NoAnswer(member))?;
             let faulted = matches!(report.stage, Stage::Faulted(_));
             if member == finger {
                 if !faulted {
@@ -167,6 +168,22 @@ impl Recovering {
             }
         }
         Ok(done)
+    }
+}
+
+/// Returns the last report, once the servo has carried out the requests to stop; none if it does not run.
+fn report_after_stops(mailbox: &Mailbox, begun: Instant) -> Option<FingerReport> {
+    loop {
+        // The report that is read after the requests is not older than they are.
+        let stopped = mailbox.is_stopped();
+        let report = mailbox.report();
+        if !stopped || matches!(report.stage, Stage::Faulted(_) | Stage::Closing | Stage::Closed) {
+            return Some(report);
+        }
+        if begun.elapsed() > STALL_LIMIT {
+            return None;
+        }
+        sleep(POLL_INTERVAL);
     }
 }
 

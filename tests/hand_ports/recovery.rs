@@ -153,6 +153,22 @@ fn stopped_fingers_of_one_port_recover_one_by_one_while_the_others_move() {
     close(hand);
 }
 
+/// The servo notices a request to stop at its next cycle, and the recovery begins before.
+#[test]
+fn a_finger_recovers_right_after_it_was_stopped() {
+    let _turn = turn();
+    let (_board, hand) = one_port();
+    for recoveries in 1..=20 {
+        match recoveries % 2 {
+            0 => stop_all(),
+            _ => hand.stop(2).expect("a finger"),
+        }
+        recovers(&hand, 2);
+        assert_eq!(hand.report(2).expect("a report").recoveries, recoveries, "recovery {recoveries} found no fault");
+    }
+    close(hand);
+}
+
 #[test]
 fn a_stopped_finger_stops_the_hand_if_fingers_stop_together() {
     let _turn = turn();

@@ -1,6 +1,7 @@
 //! Requests to stop and to close, which wait for no lock.
 
-use super::{Mailbox, ServoEnd};
+use super::{Mailbox, Requests, ServoEnd};
+use crate::finger::{StopCounts, stop_calls};
 use crate::realtime::atomics::Ordering;
 
 impl Mailbox {
@@ -18,6 +19,13 @@ impl Mailbox {
     pub fn stops(&self) -> u32 {
         self.requests.stops.load(Ordering::Acquire)
     }
+
+    /// Returns whether a request to stop, or an emergency stop call, was made that no recovery has answered. The servo
+    /// faults such a finger at the beginning of its next cycle.
+    pub fn is_stopped(&self) -> bool {
+        let Requests { answered_stops, answered_calls, .. } = &*self.requests;
+        self.stops() != answered_stops.load(Ordering::Acquire) || stop_calls() != answered_calls.load(Ordering::Acquire)
+    }
 }
 
 impl ServoEnd {
@@ -28,11 +36,12 @@ impl ServoEnd {
 
     /// Returns whether a planner has requested to stop the finger.
     pub fn stop_requested(&self) -> bool {
-        self.requests.stops.load(Ordering::Acquire) != self.stops_seen
+        self.requests.stops.load(Ordering::Acquire) != self.requests.answered_stops.load(Ordering::Acquire)
     }
 
-    /// Ignores the first `stops` requests to stop.
-    pub fn forget_stops(&mut self, stops: u32) {
-        self.stops_seen = stops;
+    /// Ignores these first requests to stop.
+    pub fn forget_stops(&mut self, stops: StopCounts) {
+        self.requests.answered_stops.store(stops.of_finger, Ordering::Release);
+        self.requests.answered_calls.store(stops.calls, Ordering::Release);
     }
 }

@@ -99,7 +99,7 @@ impl FingerServo {
     pub(in crate::finger) fn recover(&mut self, restored: &RestoredBoard) {
         let RestoredBoard { configured, stops } = restored;
         self.alarm.forget(stops.calls);
-        self.mailbox.forget_stops(stops.of_finger);
+        self.mailbox.forget_stops(*stops);
         self.feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         self.status = configured.status;
         self.sampled_at = None;
