@@ -148,16 +148,20 @@ fn gravity_turns_while_the_hand_is_open() {
     hand.wait(&[1, 2, 3], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     let at = |hand: &Hand, finger| Vector3::from(hand.position(finger).expect("a position"));
     let before = [1, 2, 3].map(|finger| at(&hand, finger));
-    let unloaded = Vector3::from(hand.joint_torques(1).expect("torques").commanded);
     for step in 0..250 {
         // Once a second.
         let angle = f64::from(step) * 0.002 * std::f64::consts::TAU;
         hand.set_gravity([9.81 * angle.sin(), 0.0, 9.81 * angle.cos()]).expect("a gravity");
         std::thread::sleep(Duration::from_millis(2));
     }
-    hand.set_gravity([0.0, 9.81, 0.0]).expect("a gravity");
-    hand.wait(&[1, 2, 3], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
-    std::thread::sleep(Duration::from_millis(300));
+    // The torques of a finger that holds its pose under this gravity.
+    let torques = |gravity| {
+        hand.set_gravity(gravity).expect("a gravity");
+        hand.wait(&[1, 2, 3], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+        std::thread::sleep(Duration::from_millis(300));
+        [1, 2, 3].map(|finger| Vector3::from(hand.joint_torques(finger).expect("torques").commanded))
+    };
+    let (one, other) = (torques([0.0, 9.81, 0.0]), torques([0.0, -9.81, 0.0]));
     for finger in 1..=3 {
         let moved = (at(&hand, finger) - before[finger as usize - 1]).amax();
         assert!(moved < 0.03, "finger {finger} moved by {moved} rad");
@@ -166,8 +170,9 @@ fn gravity_turns_while_the_hand_is_open() {
         let replayed = recording.replay().expect("replayable");
         assert!(replayed.different == 0 && replayed.cycles > 500, "{replayed:?}");
     }
-    let loaded = Vector3::from(hand.joint_torques(1).expect("torques").commanded);
-    assert!((loaded - unloaded).amax() > 1.0, "the finger carries its weight: {unloaded} {loaded}");
+    // Dry friction carries a part of the weight, which differs from finger to finger.
+    let turned: f64 = one.iter().zip(&other).map(|(one, other)| (one - other).amax()).sum();
+    assert!(turned > 6.0, "the fingers carry their weight: {one:?} {other:?}");
     for gravity in [[f64::NAN, 0.0, 0.0], [0.0, 0.0, 101.0]] {
         assert_eq!(hand.set_gravity(gravity).expect_err("refused").errno(), libc::EINVAL);
     }

@@ -161,7 +161,7 @@ int main(int count, char **arguments)
         check_files();
         check_fingers(all);
         CHECK(all == (takes > 0));
-        CHECK(!all || used < 0.1);
+        CHECK(!all || used < 0.25); /* A thread that does not wait uses 0.5 s. */
         CHECK(CloseHand() == 0);
         check_files();
         close_own();

@@ -25,8 +25,8 @@ fn the_wheel_works_in_an_empty_environment() {
 /// for a build with an example or a test.
 fn server() -> PathBuf {
     let mut build = Command::new(env!("CARGO"));
-    build.args(["build", "--quiet", "--offline", "--workspace", "--bin", "sun2xp-serve", "--example", "spring"]);
-    build.current_dir(ROOT);
+    build.args(["build", "--quiet", "--offline", "--workspace", "--bin", "sun2xp-serve"]);
+    build.args(["--example", "spring"]).current_dir(ROOT);
     run(&mut build);
     // This test is in the folder deps, beside which programs are.
     let here = std::env::current_exe().expect("the path of this test");
