@@ -1,6 +1,9 @@
 //! Whether clients delay the servos: the wake-up of the servo threads with two writers and ten readers, against the
 //! server alone, in alternating turns. One writer owns the hand. The other one sends with an epoch that is not in
 //! force. The clients are processes of their own. Prints Markdown.
+//!
+//! On the hand's machine, real clients take no processor time, and its servos have a core of their own. With two cores:
+//! `taskset --cpu-list 0 cargo bench -p sun2xp-serve --bench wake_up -- --servo-core 1`.
 
 mod common;
 
@@ -32,6 +35,9 @@ struct Arguments {
     /// Number of readers.
     #[arg(long, default_value_t = 10)]
     readers: usize,
+    /// Core of the servos. With none, the kernel selects it.
+    #[arg(long)]
+    servo_core: Option<usize>,
     /// Without TLS.
     #[arg(long)]
     plain: bool,
@@ -52,7 +58,7 @@ fn main() {
     if let (Some(role), Some(endpoint)) = (&arguments.role, &arguments.endpoint) {
         return client(role, endpoint, arguments.folder.as_deref());
     }
-    let offer = Offer::new(!arguments.plain, 1000.0, Fingers::ALL);
+    let offer = Offer::new(!arguments.plain, 1000.0, Fingers::ALL, arguments.servo_core);
     let (mut alone, mut watched) = (Vec::new(), Vec::new());
     for _ in 0..arguments.turns {
         alone.push(measure(&offer, arguments.seconds));

@@ -84,10 +84,19 @@ fn a_hand_is_offered_until_a_signal_comes() {
     wait_for("news of the end", || hand.send_position(1, [0.1, 0.5, 0.9]).err());
 }
 
+/// Sets what this process does when its terminal closes: SIG_DFL or SIG_IGN.
+fn at_hangup(action: libc::sighandler_t) -> std::io::Result<()> {
+    // SAFETY: the call concerns this process, and `action` is no function of it.
+    #[allow(unsafe_code)]
+    let earlier = unsafe { libc::signal(libc::SIGHUP, action) };
+    if earlier == libc::SIG_ERR { Err(std::io::Error::last_os_error()) } else { Ok(()) }
+}
+
 #[test]
 fn a_terminal_that_closes_ends_the_server_in_an_orderly_way() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (mut running, _) = start(folder.path(), &table(free_port()), || Ok(()));
+    // The tests themselves may run with the signal ignored, as under `nohup`.
+    let (mut running, _) = start(folder.path(), &table(free_port()), || at_hangup(libc::SIG_DFL));
     send_signal(&running.0, libc::SIGHUP);
     assert_eq!(running.0.wait().expect("an end").code(), Some(0));
 }
@@ -96,12 +105,7 @@ fn a_terminal_that_closes_ends_the_server_in_an_orderly_way() {
 fn an_ignored_signal_stays_ignored() {
     let folder = tempfile::tempdir().expect("a folder");
     let port = free_port();
-    let (mut running, _) = start(folder.path(), &table(port), || {
-        // SAFETY: the call concerns this process, and SIG_IGN is no function of it.
-        #[allow(unsafe_code)]
-        let earlier = unsafe { libc::signal(libc::SIGHUP, libc::SIG_IGN) };
-        if earlier == libc::SIG_ERR { Err(std::io::Error::last_os_error()) } else { Ok(()) }
-    });
+    let (mut running, _) = start(folder.path(), &table(port), || at_hangup(libc::SIG_IGN));
     send_signal(&running.0, libc::SIGHUP);
     let client = Client::connect_to(&format!("tcp/127.0.0.1:{port}"), "cell", "alice", None).expect("connected");
     wait_for("States", || client.state());

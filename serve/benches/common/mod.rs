@@ -22,8 +22,9 @@ pub struct Offer {
 }
 
 impl Offer {
-    /// Offers the simulated hand with these fingers at this rate, Hz.
-    pub fn new(tls: bool, rate: f64, fingers: Fingers) -> Self {
+    /// Offers the simulated hand with these fingers at this rate, Hz. `core` is the core of the servos; with none, the
+    /// kernel selects it.
+    pub fn new(tls: bool, rate: f64, fingers: Fingers, core: Option<usize>) -> Self {
         let port = TcpListener::bind("127.0.0.1:0").and_then(|at| at.local_addr()).expect("a free port").port();
         let endpoint = format!("{}/127.0.0.1:{port}", if tls { "tls" } else { "tcp" });
         let certificates = tls.then(|| tempfile::tempdir().expect("a folder"));
@@ -40,6 +41,7 @@ impl Offer {
         let mut configuration = Configuration::default();
         (configuration.hand.rate, configuration.hand.fingers) = (rate, fingers);
         configuration.hand.real_time = RealTime::Try;
+        configuration.fingers.iter_mut().for_each(|finger| finger.core = core);
         prepare(&mut configuration, &settings.limits);
         let hand = Hand::open(configuration).expect("the simulated hand");
         let server = Server::start(hand, settings).unwrap_or_else(|error| panic!("{error}"));
