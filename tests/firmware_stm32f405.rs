@@ -1,5 +1,5 @@
-//! The firmware for a board with an STM32F405, which no emulator knows completely: its image runs against models of the
-//! registers, its timing is computed, and its sources are analyzed.
+//! The firmware for a board with an STM32F405. No emulator supports this processor completely, so the image runs on
+//! models of the registers. The tests also compute the timing of the image, and analyze the sources.
 
 #[allow(dead_code)]
 #[path = "common/tools.rs"]

@@ -1,11 +1,11 @@
-//! `struct parameters` of `step.c`, with gains that both sides use.
+//! `struct parameters` of `structures.h`, and the gains that the library and `step.c` both use.
 
 use nalgebra::{Matrix3, Matrix3x4, Vector4};
 use std::error::Error;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
-/// Gains of the scheme at 1000 Hz. They are configured for both sides, because step.c does not have the library's table
-/// of gains.
+/// Gains of the scheme at 1000 Hz. The library and `step.c` both receive these values, because `step.c` does not have
+/// the library's table of gains.
 pub struct Gains {
     tension_gain: f64,
     tension_integral: f64,
@@ -54,7 +54,7 @@ impl Gains {
     }
 }
 
-/// `struct parameters`.
+/// The fields of `struct parameters` in `structures.h`, in the same order.
 #[repr(C)]
 pub struct Parameters {
     period: f64,
@@ -98,7 +98,8 @@ pub struct Parameters {
     encoder_zero: [i32; 4],
 }
 
-/// The largest part of the stiffness of the locked tendons that the spring may have, at 750 Hz and above.
+/// The spring may use at most this fraction of the stiffness with which the tendons hold the joints while the motors
+/// are locked. The value is for 750 Hz and above.
 const SHARE: f64 = 0.95;
 
 impl Parameters {
@@ -173,11 +174,12 @@ fn radians_per_count(finger: &ConfiguredFinger) -> [f64; 4] {
 /// Returns the inverse of the Cholesky factor of the joint stiffness with locked tendons.
 fn inverse_cholesky(finger: &ConfiguredFinger, r: &Matrix3x4<f64>) -> Result<Matrix3<f64>, Box<dyn Error>> {
     let stretched = Matrix3x4::from_fn(|i, j| r[(i, j)] * finger.tendon.stiffness[j]);
-    let cholesky = (stretched * r.transpose()).cholesky().ok_or("R has no rank of 3")?;
-    Ok(cholesky.l().try_inverse().ok_or("R has no rank of 3")?)
+    let cholesky = (stretched * r.transpose()).cholesky().ok_or("the rank of R is below 3")?;
+    Ok(cholesky.l().try_inverse().ok_or("the rank of R is below 3")?)
 }
 
-/// Returns the damping of each joint for links of these lengths, cm, and the rate time of the gains, s.
+/// Returns the constants from which `step.c` computes the damping of the joints. The lengths of the links are in cm,
+/// and `rate_time` is in s.
 fn joint_damping([l0, l1, l2]: [f64; 3], rate_time: f64) -> [f64; 3] {
     let levers = [(l0 + l1) * (l0 + l1), l1 * l1 + l2 * l2, l2 * l2];
     levers.map(|lever| lever * 3.0 * rate_time * rate_time)

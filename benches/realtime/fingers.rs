@@ -1,4 +1,4 @@
-//! Fingers on simulated boards at pseudo-terminals, served with a clock of the caller's choice.
+//! Fingers on simulated boards behind pseudo-terminals. The caller runs their servos with a clock of its choice.
 
 use crate::Failure;
 use sun2xp::board::{Link, Port, Terms};
@@ -16,7 +16,7 @@ pub struct Finger {
     pub schedule: Schedule,
     /// Beginning of the first period, ns.
     pub start: u64,
-    /// The board, which lives as long as this value.
+    /// The board. It runs until this value is dropped.
     pub board: SimulatedPort,
     /// The receivers of the servo's timings and records, which are not read.
     pub uncollected: (Consumer<CycleTiming>, BlackBox),

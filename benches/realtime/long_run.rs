@@ -96,7 +96,11 @@ fn print_fingers(ran: &Ran, period: u64, pauses: &Pauses) -> usize {
         let report = mailbox.report();
         if report.stage != Stage::Running {
             // The servo has continued, so its cycles count.
-            eprintln!("finger {} is {:?} at the end. Other work on the machine disturbs it.", index + 1, report.stage);
+            eprintln!(
+                "finger {} is {:?} at the end. Other work on the machine can cause this.",
+                index + 1,
+                report.stage
+            );
         }
         let causes: Vec<(Cause, LateCycle)> = late.iter().map(|cycle| (cause(cycle, period, pauses), *cycle)).collect();
         let count = |cause| causes.iter().filter(|(found, _)| *found == cause).count();

@@ -46,7 +46,7 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
                     }
                     Err(reason) => {
                         disturbed += 1;
-                        eprintln!("{name}: {reason}. Other work on the machine disturbs it.");
+                        eprintln!("{name}: {reason}. Other work on the machine can cause this.");
                     }
                 }
             }

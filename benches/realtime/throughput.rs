@@ -29,14 +29,14 @@ impl Default for Arguments {
     }
 }
 
-/// Goal for the cycles per second of all fingers, without those that lost their replies.
+/// Goal for the sum of the cycles per second of all fingers. Cycles that lost their replies do not count.
 const GOAL: f64 = 30_000.0;
 
 /// The rate for which the controllers are designed, Hz. It is near the measured rate, so that the fingers stay under
 /// control.
 const CONTROLLER_RATE: f64 = 10_000.0;
 
-/// Period until the fingers are under control, ns. Replies are awaited for most of it.
+/// Period until the fingers are under control, ns. The servo waits for replies during most of the period.
 const PERIOD: u64 = 1_000_000;
 
 /// Priority of the simulated boards, below the servos.
@@ -75,7 +75,7 @@ const OPENING: Duration = Duration::from_secs(30);
 /// A measurement is repeated if a finger was not under control, up to this number of attempts.
 const ATTEMPTS: u32 = 3;
 
-/// A finger is not measured if it stayed under control for a shorter time.
+/// A finger counts as not measured if it stayed under control for less than this time.
 const SHORTEST: Duration = Duration::from_millis(500);
 
 /// The phase of the measurement. Dropping it ends the servo threads, whatever the result.
@@ -87,8 +87,8 @@ impl Drop for Phase {
     }
 }
 
-/// The result of one finger: cycles per second with a reply, lost replies, and what ended the measurement early. An
-/// error contains why nothing was measured.
+/// The result of one finger: cycles per second with a reply, lost replies, and what ended the measurement early. The
+/// error says why nothing was measured.
 type Row = Result<(f64, u64, Option<String>), String>;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -97,7 +97,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         rows = measure(arguments).unwrap_or_else(|failure| vec![Err(failure.to_string()); FINGERS]);
         match rows.iter().find_map(|row| row.as_ref().err()) {
             Some(reason) => {
-                eprintln!("attempt {attempt} of {ATTEMPTS}: {reason}. Other work on the machine disturbs it.")
+                eprintln!("attempt {attempt} of {ATTEMPTS}: {reason}. Other work on the machine can cause this.")
             }
             None => break,
         }
@@ -174,7 +174,7 @@ fn observe(mailboxes: &[Mailbox], phase: &Phase, length: Duration) -> Vec<Row> {
     phase.0.store(MEASURE, Relaxed);
     let begun = Instant::now();
     let before: Vec<_> = mailboxes.iter().map(|mailbox| mailbox.report().losses).collect();
-    // The last counts of each finger under control, and their time.
+    // The last counts that each finger reported while it was under control, and the time of that report.
     let mut last: Vec<_> = before.iter().map(|losses| (*losses, Duration::ZERO)).collect();
     while begun.elapsed() < length {
         std::thread::sleep(Duration::from_millis(50));

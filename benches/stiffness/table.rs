@@ -217,7 +217,7 @@ fn eigenvalue(found: &stability::Stability) -> String {
 }
 
 impl Column {
-    /// Measures the rows whose names contain `only`.
+    /// Measures the rows whose names contain one of the texts in `only`. Semicolons separate these texts.
     pub fn measure(case: &Case, only: &str) -> Self {
         let measured = |row: &'static Row| {
             let begun = Instant::now();

@@ -10,16 +10,16 @@ use std::ffi::c_int;
 /// force is computed from the measured tensions, so it includes friction, weight and inertia of the finger.
 /// It is never NaN. Near singular poses there are directions that the joints cannot measure. Along these,
 /// force and stiffness are zero. contact_force does not contain constant errors of the gauges. It is zero
-/// while the finger is not running. stiffness contains the part of Kx that is in force. The joint limits, a
-/// tip near the axis of joint 0 and the rotational stiffness of a contact add to it. It is zero while the
-/// finger is not running. slide_speed is 0 while touching is 0. While touching is 1, the tip slides on the
-/// object at this speed, or tip and object move together at this speed.
+/// while the finger is not running. stiffness contains the part of Kx that the finger applies at present.
+/// The joint limits, a tip near the axis of joint 0 and the rotational stiffness of a contact add to it.
+/// stiffness is zero while the finger is not running. slide_speed is 0 while touching is 0. While touching
+/// is 1, the tip slides on the object at this speed, or tip and object move together at this speed.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_tip {
     /// sizeof (struct sun2xp_tip), set before the call.
     pub size: usize,
-    /// Directions of force that the joints can measure, 0 to 3.
+    /// Number of force directions that the joints can measure, 0 to 3.
     pub force_directions: c_int,
     /// Position of the tip: x, y, z, cm.
     pub position: [f64; 3],

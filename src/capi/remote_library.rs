@@ -1,5 +1,6 @@
 //! Loads libsun2xp_remote.so, which reaches hands on other machines. Its interface is that of `sun2xp.h`, so this file
-//! knows no network. This library does not depend on it, and loads it only for a configuration with `[remote]`.
+//! contains no network code. libsun2xp is not linked to libsun2xp_remote.so. It loads that library only for a
+//! configuration with a table `[remote]`.
 
 use crate::capi::error_calls::sun2xp_error;
 use crate::capi::error_numbers::SUN2XP_ERROR_SYSTEM;
@@ -36,7 +37,7 @@ macro_rules! functions {
             /// # Safety
             /// `library` is a handle of dlopen, and its functions have the types of `sun2xp.h`.
             unsafe fn find(library: *mut c_void) -> Option<Self> {
-                // SAFETY: the contract of this function. The addresses are those of functions of these types.
+                // SAFETY: by the contract of this function, each address is that of a function with the given type.
                 unsafe {
                     Some(Self {
                         $($name: {
@@ -94,11 +95,12 @@ fn file_name() -> String {
     format!("libsun2xp_remote.so.{SUN2XP_ABI_VERSION}")
 }
 
-/// The folder of the library in the folder of this one. It has the soname of this library, so it must not be where the
-/// system's loader searches.
+/// libsun2xp_remote.so is in this subfolder of the folder of libsun2xp. It has the soname of libsun2xp, so it must not
+/// be in a folder that the system's loader searches.
 const FOLDER: &str = "sun2xp-remote";
 
-/// Loads the library, which stays loaded: from the place where it is installed, or from where the loader searches.
+/// Loads the library from the place where it is installed. If it is not there, the loader searches for it. The library
+/// stays loaded.
 pub(super) fn load() -> Result<&'static RemoteLibrary, RemoteRefusal> {
     static LOADING: Mutex<()> = Mutex::new(());
     let _loading = LOADING.lock();
@@ -129,10 +131,13 @@ pub(super) fn load() -> Result<&'static RemoteLibrary, RemoteRefusal> {
     let Some(library) = found.filter(same) else {
         return Err(refusal(
             libc::ELIBBAD,
-            format!("{} is not of version {VERSION}: install both libraries from one version", place.display()),
+            format!(
+                "{} does not have version {VERSION}: install it and libsun2xp from the same version",
+                place.display()
+            ),
         ));
     };
-    // This library reports the refusals of the other one as its own.
+    // Only warnings are passed on, because libsun2xp itself reports the refusals of the remote library.
     (library.set_log)(Some(pass_on_warning), std::ptr::null_mut());
     Ok(LOADED.get_or_init(|| library))
 }

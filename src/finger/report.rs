@@ -12,16 +12,17 @@ pub struct FingerReport {
     pub stage: Stage,
     /// The set point in force.
     pub set_point: SetPoint,
-    /// Number of the set point in force, which the planners' end of the mailbox has counted.
+    /// Number of the set point in force. The planners' end of the mailbox numbers the set points.
     pub set_point_number: u32,
-    /// Number of the period in which the set point in force took effect. Periods are numbered for the whole hand, from
-    /// the start that its servo threads have in common.
+    /// Number of the period in which the set point in force took effect. All servo threads of the hand number their
+    /// periods from the same start.
     pub set_point_period: u64,
     /// Number of the period of the last cycle.
     pub period: u64,
-    /// Number of times that the finger has become a spring: at open, after a fault, after a calibration, or after its
-    /// set point has expired. The spring first holds the pose that the finger then has. Set points that were sent
-    /// earlier are discarded.
+    /// Number of the spring phase. A new phase begins when the finger becomes a spring: at open, and after a fault or a
+    /// calibration. It also begins when a set point expires, when a reflex reacts and when its inhibition ends. Changes
+    /// that planners send in the new phase start from the set point that the servo holds then. Set points that were
+    /// sent in an earlier phase are discarded, except those of a phase that ended because its set point expired.
     pub springs: u32,
     /// Whether the finger holds its pose because its set point has expired, and has not followed another one since.
     pub expired: bool,
@@ -29,14 +30,14 @@ pub struct FingerReport {
     pub cycle: Report,
     /// The reference of the last cycle.
     pub reference: Reference,
-    /// Number of the newest controller that the servo has taken from planners. The servo computes with it now, or will
-    /// do so after a calibration.
+    /// Number of the newest controller that the servo has received from planners. The servo uses this controller now,
+    /// or will use it after the calibration that is running.
     pub controller: u32,
-    /// Number of orders that the servo has taken.
+    /// Number of orders (`Order`) that the servo has received.
     pub orders: u32,
     /// Verdict of the last calibration, if there was one.
     pub calibration: Option<Verdict>,
-    /// Counts since open.
+    /// Numbers of cycles, and of timing and communication errors, since open.
     pub losses: Losses,
     /// Number of recoveries from a fault.
     pub recoveries: u32,

@@ -29,7 +29,8 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
 /// Returns [`growth`] for a system with directions in which nothing holds it. Displacements in these directions remain,
 /// or change so slowly that their eigenvalues are nearer to 1 than `drift`. They are ignored.
 ///
-/// The changes from one sample to the next contain no constant displacement, so that it does not hide the other modes.
+/// The function evaluates the changes from one sample to the next. They contain no constant displacement, which would
+/// hide the other modes.
 pub(super) fn growth_besides_drift(samples: &[DVector<f64>], drift: f64) -> f64 {
     let changes: Vec<_> = samples.windows(2).map(|pair| &pair[1] - &pair[0]).collect();
     slowest(&changes, drift)
@@ -55,8 +56,8 @@ fn slowest(samples: &[DVector<f64>], drift: f64) -> f64 {
 }
 
 /// Returns whether the samples in `follows` contradict a root. A root that counts contributes at least `LEAST_SHARE` of
-/// the sample before `follows`, which is above `rounding`. It is contradicted if this contribution would have grown
-/// above `rounding` within `follows`, but no sample of `follows` is above it.
+/// the sample before `follows`, which is above `rounding`. If this contribution would have grown above `rounding`
+/// within `follows`, but no sample of `follows` is above `rounding`, the samples contradict the root.
 fn has_decayed(follows: &[DVector<f64>], root: f64, rounding: f64) -> bool {
     root.powi(follows.len() as i32) * LEAST_SHARE > 1.0 && follows.iter().all(|sample| sample.norm() <= rounding)
 }

@@ -36,7 +36,7 @@ fn the_file_is_what_the_codec_makes() {
     }
     assert!(
         fs::read_to_string(&path).is_ok_and(|committed| committed == text()),
-        "protocol/vectors.json is not what the codec makes. A protocol does not change by accident; if it is meant to: \
-         SUN2XP_WRITE_VECTORS=1 cargo test --test board_vectors"
+        "protocol/vectors.json is not what the codec makes. A protocol must not change by accident. If this change is \
+         intended, run: SUN2XP_WRITE_VECTORS=1 cargo test --test board_vectors"
     );
 }

@@ -30,7 +30,10 @@ impl Settling {
                 return Ok(positions);
             }
             if begun.elapsed() > self.patience {
-                return Err(format!("after {:?} at {positions:?} instead of {targets:?}", self.patience));
+                return Err(format!(
+                    "after {:?} the joints are at {positions:?} instead of {targets:?}",
+                    self.patience
+                ));
             }
             std::thread::sleep(Duration::from_millis(2));
         }

@@ -25,7 +25,8 @@ pub const TIP_STEPS: [f64; 6] = [0.01, 0.03, 0.1, 0.3, 0.5, 1.0];
 /// The steps of the push, N.
 pub const PUSH_STEPS: [f64; 6] = [0.05, 0.1, 0.2, 0.5, 1.0, 2.0];
 
-/// Number of steps that a real finger may use: 3 degrees and 0.3 cm are the largest.
+/// A real finger may use only this number of steps, from the smallest one on. Its largest steps are 3 degrees and 0.3
+/// cm.
 const REAL_STEPS: usize = 4;
 
 /// The controls.
@@ -35,7 +36,7 @@ pub struct JogPanel {
     pub finger: i32,
     /// What the arrow keys do.
     pub mode: Mode,
-    /// Index of the step of each mode.
+    /// Index of the step. All modes use the same index.
     pub step: usize,
     /// Whether the hand has a real finger. Then steps are limited.
     pub real: bool,
@@ -86,7 +87,7 @@ pub fn lines(view: &View, palette: &Palette, width: usize) -> Vec<Line<'static>>
     let mut lines = vec![Line::from(spans)];
     let pushed = panel.forces.iter().zip(1..).filter(|(force, _)| **force != [0.0; 3]);
     for ([x, y, z], finger) in pushed {
-        let text = format!(" pushes finger {finger} with {x:.2} {y:.2} {z:.2} N in the palm's frame; 0 ends it");
+        let text = format!(" pushes finger {finger} with {x:.2} {y:.2} {z:.2} N in the palm's frame; key 0 ends it");
         lines.push(Line::styled(text, palette.warning));
     }
     let (text, style) = match &panel.result {

@@ -8,8 +8,8 @@ use super::svg::{Stroke, Svg, text_width};
 /// Width of every figure, pixels. A picture of another width is scaled.
 const WIDTH: f64 = 1200.0;
 
-/// Space at the left for the numbers and labels of y, at the right, at the top for title and legend, and at the bottom
-/// for the numbers and labels of x, pixels.
+/// Margins of the figure, pixels. The left margin holds the numbers and labels of y, the top margin the title and the
+/// legend, and the bottom margin the numbers and labels of x.
 const LEFT: f64 = 86.0;
 const RIGHT: f64 = 30.0;
 const TOP: f64 = 134.0;
@@ -19,7 +19,7 @@ const BOTTOM: f64 = 62.0;
 const BETWEEN_COLUMNS: f64 = 92.0;
 const BETWEEN_ROWS: f64 = 44.0;
 
-/// A sign of the legend.
+/// A symbol in the legend.
 pub enum Sign {
     Line(Stroke),
     Area(Colour),
@@ -55,7 +55,7 @@ impl Figure {
         Self { svg, right: RIGHT }
     }
 
-    /// Keeps more space at the right, for the labels of levels.
+    /// Makes the right margin wider by this number of pixels, for text beside the panels.
     pub fn with_space_at_the_right(mut self, pixels: f64) -> Self {
         self.right = RIGHT + pixels;
         self
@@ -80,7 +80,7 @@ impl Figure {
         panel.draw(&mut self.svg, [LEFT, TOP + top, WIDTH - LEFT - self.right, height]);
     }
 
-    /// The picture, for what is not in a panel, and the first pixel of the panels from left and top.
+    /// Returns the picture, for drawing outside the panels, and the top left corner of the panels, pixels.
     pub fn canvas(&mut self) -> (&mut Svg, [f64; 2]) {
         (&mut self.svg, [LEFT, TOP])
     }
@@ -96,7 +96,7 @@ impl Figure {
     }
 }
 
-/// The line below the title: which finger, rate and recording.
+/// The line below the title. It names the finger, the rate and the recording.
 pub fn subtitle(selection: &Selection, rate: f64, more: &str) -> String {
     let finger = selection.finger.map_or("all fingers".to_owned(), |finger| format!("finger {finger}"));
     let gap = if more.is_empty() { "" } else { "  \u{b7}  " };

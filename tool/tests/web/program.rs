@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sun2xp::{Configuration, Hand, RealTime};
 
-/// A running program that serves the page. It is killed at the end.
+/// A running program that serves the page. It is killed when this value is dropped.
 pub struct Program {
     child: Child,
     /// The printed address of the page.
@@ -28,7 +28,7 @@ impl Program {
         Self::start(&["monitor", name, "--web"])
     }
 
-    /// Returns the port of the page on loopback.
+    /// Returns the loopback address with the port of the page.
     pub fn address(&self) -> SocketAddr {
         let after = self.url.rsplit_once(':').map(|(_, after)| after).expect("a port");
         let port = after.split('/').next().and_then(|port| port.parse().ok()).expect("a port");
@@ -55,7 +55,7 @@ pub fn hand(change: impl FnOnce(&mut Configuration)) -> (Hand, String) {
     let mut configuration = Configuration::default();
     let name = format!("web-{}-{}", std::process::id(), HANDS.fetch_add(1, Ordering::Relaxed));
     configuration.hand.real_time = RealTime::Ignore;
-    // A browser and the other tests may delay the servos for long.
+    // A browser and the other tests may delay the servos for a long time.
     configuration.hand.watchdog_ms = 1000;
     configuration.hand.open_timeout_ms = 60_000;
     configuration.telemetry.enabled = true;

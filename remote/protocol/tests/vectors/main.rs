@@ -35,8 +35,8 @@ fn the_file_is_what_the_codec_makes() {
     }
     assert!(
         fs::read_to_string(path()).is_ok_and(|committed| committed == text()),
-        "remote/vectors.json is not what the codec makes. A protocol does not change by accident; if it is meant to: \
-         SUN2XP_WRITE_VECTORS=1 cargo test -p sun2xp-remote-protocol --test vectors"
+        "remote/vectors.json is not what the codec makes. A protocol must not change by accident. If this change is \
+         intended, run: SUN2XP_WRITE_VECTORS=1 cargo test -p sun2xp-remote-protocol --test vectors"
     );
 }
 
