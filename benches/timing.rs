@@ -1,5 +1,5 @@
-//! Measures what the timing figures cost in a cycle of one finger: the clock readings, the notes and the ring, as in
-//! `Servo::cycle`.
+//! Measures the cost of timing one cycle of one finger. As in `Servo::cycle`, the clock is read, the duration of each
+//! stage is noted, and the result is pushed into the ring.
 
 use divan::{Bencher, black_box};
 use sun2xp::realtime::ring;
@@ -32,7 +32,8 @@ fn of_a_cycle(bencher: Bencher) {
         timing.note(CycleStage::Whole, beginning, computed);
         let left = timings.push(black_box(timing));
         beginning = computed;
-        // In the library another thread collects the timings. Here this keeps the ring from filling.
+        // In the library another thread collects the timings. Here they are popped at once, so that the ring does not
+        // fill up.
         let _ = black_box(arriving.pop());
         left
     });

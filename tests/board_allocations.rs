@@ -1,4 +1,4 @@
-//! A servo thread must not allocate. This test checks the link that it uses.
+//! A servo thread must not allocate. This test checks the link between a servo thread and its boards.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -41,7 +41,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Hardware of a program, every second exchange of which fails.
+/// Hardware that a program provides. Every second exchange with it fails.
 struct Failing;
 
 impl FingerIo for Failing {

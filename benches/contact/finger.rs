@@ -1,4 +1,4 @@
-//! A finger with its controller in a closed loop, in simulated time, without a line.
+//! A finger in a closed loop with its controller, in simulated time, without the serial line between them.
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 use std::error::Error;
@@ -8,7 +8,7 @@ use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
 pub const RATE: f64 = 1000.0;
 
-/// Kx of every spring, N/cm.
+/// Kx of every set point, N/cm.
 const STIFFNESS: f64 = 3.0;
 
 pub struct Finger {
@@ -20,8 +20,8 @@ pub struct Finger {
 }
 
 impl Finger {
-    /// Constructs a finger that rests as a spring. `belief` is the configuration of its controller. `gravity` is in
-    /// m/s^2, in the finger's frame.
+    /// Constructs a finger at rest, whose motors hold the initial tensions. `belief` is the configuration of its
+    /// controller. `gravity` is in m/s^2, in the finger's frame.
     pub fn new(
         finger: &ConfiguredFinger,
         belief: &ConfiguredFinger,

@@ -1,5 +1,6 @@
-//! Measures how long a planner waits until the simulated hand holds its pose: loading of the shared library, and
-//! OpenHand with its stages. Every measurement runs in a fresh process, as a planner does.
+//! Measures how long a planner waits until the simulated hand holds its pose. The planner waits while the shared
+//! library is loaded, and during OpenHand. The stages of OpenHand are also measured. Every measurement runs in a fresh
+//! process, as a planner does.
 //!
 //!     cargo bench --bench opening
 //!     cargo bench --bench opening -- --library /usr/local/lib/libsun2xp.so
@@ -126,8 +127,9 @@ fn calls(library: &Path) -> Result<Vec<Row>, Box<dyn Error>> {
     Ok(rows)
 }
 
-/// Opens the hand as OpenHand does, and measures the stages. Some are measured by themselves, because the hand does not
-/// expose their ends.
+/// Opens the hand as OpenHand does, and measures the stages. `Hand::open_as` does not report when the check of the
+/// configuration and the start of the boards end. Both are therefore measured separately before the hand is opened, and
+/// their durations are subtracted.
 fn stages() -> Result<Vec<Row>, Box<dyn Error>> {
     let mut begin = Instant::now();
     let configured = find_configuration()?;

@@ -26,9 +26,9 @@ pub struct LateCycle {
     pub computed: u64,
 }
 
-/// A clock that records late cycles from the calls that a servo makes in one cycle. The servo sleeps until the start,
-/// reads the time after waking up, and last reads the times at the start and the end of its computation. So the
-/// measured library needs no change.
+/// A clock that records late cycles from the calls that a servo makes in one cycle. The servo sleeps until the start of
+/// the cycle, and reads the time when it wakes up. Its last two readings in the cycle are the start and the end of its
+/// computation. So the measured library needs no change.
 pub struct NotingClock {
     period: u64,
     beginning: Cell<u64>,
@@ -168,7 +168,7 @@ impl Pauses {
         self.0.iter().map(Vec::len).sum()
     }
 
-    /// Returns how long the core that paused longest paused between two times, ns.
+    /// Returns the total length of the pauses between two times, ns, on the core for which this total is largest.
     pub fn longest(&self, [from, to]: [u64; 2]) -> u64 {
         let overlap = |&(begun, ended): &Pause| ended.min(to).saturating_sub(begun.max(from));
         let total = |core: &Vec<Pause>| {
@@ -182,10 +182,10 @@ impl Pauses {
     fn explain(&self, cycle: &LateCycle, period: u64) -> bool {
         let excess = cycle.done - (cycle.beginning + period);
         let overlap = |&(from, to): &Pause| to.min(cycle.done).saturating_sub(from.max(cycle.beginning));
-        // A pause that begins between two wake-ups of a watch thread is recorded shorter than it was.
+        // If a pause begins between two wake-ups of a watch thread, the recorded pause is shorter than the true one.
         let corrected = |overlap: u64| if overlap > 0 { overlap + CHECK_INTERVAL } else { 0 };
         self.0.iter().any(|core| {
-            // The pauses are in the order of time.
+            // The pauses are sorted by time.
             let near = &core[core.partition_point(|pause| pause.1 <= cycle.beginning)..];
             let near = near.iter().take_while(|pause| pause.0 < cycle.done);
             near.map(overlap).map(corrected).sum::<u64>() >= excess
@@ -196,15 +196,18 @@ impl Pauses {
 /// The cause of a late cycle.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Cause {
-    /// Its thread was woken late. With a wake-up in time, the cycle would have met its deadline.
+    /// Its thread was woken late. If the thread had been woken on time, the cycle would have met its deadline.
     WakeUp,
-    /// During the cycle a core did not run a thread above all servos, for at least as long as the cycle was late.
+    /// During the cycle, a core did not run a thread whose priority is above that of all servos. This lasted at least
+    /// as long as the cycle was late.
     Pause,
-    /// A late return of a poll, or other threads, kept the thread from its core. Its run time was shorter than the part
-    /// of a period that is left after the latest reply, so with its core it would have met its deadline.
+    /// A poll that returned late, or other threads, kept the thread off its core. The run time of the thread was at
+    /// most the part of a period that remains after the latest reply. If the thread had kept its core, the cycle would
+    /// have met its deadline.
     KeptFromCore,
-    /// Its run time was longer than that, but the cycle would have been late even without its computation: write, wait
-    /// and read took long.
+    /// The run time of the thread was longer than in [`Cause::KeptFromCore`], but the computation was not the cause.
+    /// Either the cycle would have been late even without the computation, or the computation took at most the fraction
+    /// `COMPUTING` of a period. Write, wait and read took long.
     Exchange,
     /// None of the above: the computation of the library itself.
     Library,
@@ -213,7 +216,7 @@ pub enum Cause {
 /// A computation with a run time below this part of a period did not make the cycle late.
 const COMPUTING: f64 = 0.05;
 
-/// Returns the cause of a late cycle. `pauses` are those of threads above all servos.
+/// Returns the cause of a late cycle. `pauses` are the pauses of threads whose priority is above that of all servos.
 pub fn cause(cycle: &LateCycle, period: u64, pauses: &Pauses) -> Cause {
     let &LateCycle { beginning, woken, done, ran, computed } = cycle;
     let late_without_computation = done - computed > beginning + period;

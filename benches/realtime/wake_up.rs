@@ -1,5 +1,5 @@
-//! Compares the wake-up latency of three servo-like threads with cyclictest at the same priority and interval. The two
-//! alternate.
+//! Compares the wake-up latency of three servo-like threads with cyclictest at the same priority and interval. The
+//! threads and cyclictest run alternately.
 
 use crate::Failure;
 use crate::cyclictest::Cyclictest;

@@ -1,4 +1,5 @@
-//! Identifies a finger whose tendons differ from their configuration. Users do the same before they use a hand.
+//! Runs the identification routine on a finger whose tendons differ from their configuration. Users run the same
+//! routine before they use a hand.
 
 use crate::cases::{Case, Friction, stiffen};
 use nalgebra::Vector3;
@@ -7,8 +8,8 @@ use sun2xp::control::{Activity, Controller, Feedback, MotorCommand, Report};
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
-/// Returns the stiffness of each tendon that identification finds, N/cm, if the true tendons are stiffer than
-/// configured by the factors `ratio`. The finger has the default friction, and its sensors return whole counts.
+/// Identifies a finger whose true tendons are stiffer than configured by the factors `ratio`. Returns the identified
+/// stiffness of each tendon, N/cm. The finger has the default friction, and its sensors return whole counts.
 pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obstacle> {
     let pose = Vector3::from(ConfiguredFinger::default().simulation.start_degrees.map(f64::to_radians));
     let mut truth = case.finger(&pose, Friction::Default);

@@ -1,4 +1,4 @@
-//! A hand of the table: one of this machine, or one on another machine.
+//! An open hand in the table of handles. It belongs to this machine or to another machine.
 
 use crate::board::HandIo;
 use crate::capi::refusal::Refusal;
@@ -25,7 +25,7 @@ pub(super) enum Source {
 /// A configuration, and the hardware that the program provides.
 pub(super) struct SourceWithIo {
     source: Source,
-    /// Hardware of the program; none in a call that takes none.
+    /// The hardware. It is `None` if the C call takes no hardware.
     io: Option<HandIo>,
 }
 
@@ -49,7 +49,8 @@ impl Source {
         configured.map_err(HandError::from)
     }
 
-    /// Where another library finds the same configuration; none if there is no file.
+    /// Returns the source from which another library reads the same configuration. Returns `None` if the configuration
+    /// came neither from a text nor from a file.
     fn into_remote(self, found: &Configured) -> Option<RemoteSource> {
         match self {
             Self::Text(text) => Some(RemoteSource::Text(text)),
@@ -58,8 +59,8 @@ impl Source {
     }
 }
 
-/// Opens the hand that a configuration describes: that of this machine, or with a table `[remote]` that of another. In
-/// a library without a network, `open_remote` opens the latter.
+/// Opens the hand that a configuration describes. With a table `[remote]` it is a hand on another machine, and
+/// otherwise a hand of this machine. In a library without a network, `open_remote` opens hands on other machines.
 pub(super) fn open(from: SourceWithIo, open_remote: RemoteOpener) -> Result<OpenedHand, Refusal> {
     let SourceWithIo { source, io } = from;
     let configured = source.read()?;
@@ -79,7 +80,8 @@ pub(super) fn open(from: SourceWithIo, open_remote: RemoteOpener) -> Result<Open
 }
 
 impl OpenedHand {
-    /// Begins to bring the hand to its end state, as [`Hand::request_end`] does.
+    /// Begins to bring a hand of this machine to its end state, as [`Hand::request_end`] does. Does nothing for a hand
+    /// on another machine.
     pub fn request_end(&self) {
         if let Self::Local(hand) = self {
             hand.request_end();

@@ -18,7 +18,7 @@ pub enum Pose {
     Tip([f64; 3]),
 }
 
-/// The part of a group that commands one finger. What is none keeps its value.
+/// The part of a group that commands one finger. A quantity that is `None` keeps its value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct FingerCommand {
@@ -79,8 +79,8 @@ impl FingerCommand {
         }
     }
 
-    /// Checks the command. Returns a change of the set point, which may still refuse the damping that results.
-    /// `present` is the pose of the finger, rad.
+    /// Checks the command. Returns a function that changes the set point. That function returns an error if it refuses
+    /// the resulting damping. `present` is the pose of the finger, rad.
     fn admit(
         &self,
         admission: &Admission,
@@ -107,20 +107,20 @@ impl FingerCommand {
 }
 
 impl Hand {
-    /// Sends commands to several fingers. All of them take effect in the same period of the hand, also if different
-    /// threads serve the fingers. This period begins within two periods. Either every command is sent, or none is. The
-    /// command of a single finger takes effect in its next cycle.
+    /// Sends commands to several fingers. All of them take effect in the same period of the hand, even if different
+    /// threads serve the fingers. The period begins at most two periods after the call. Either every command is sent,
+    /// or none is. The command of a single finger takes effect in its next cycle.
     ///
     /// If a servo is so late that it skips this period, its fingers follow in their next cycle. With
-    /// `hand.clock = "board"` the periods of the threads follow different clocks. Then a finger may follow one period
-    /// later, about once in the time in which two clocks differ by a period.
+    /// `hand.clock = "board"` the periods of the threads follow different clocks. A finger may then follow one period
+    /// later. This happens about once in the time in which two clocks drift apart by one period.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if a finger has two commands, if a finger refuses its command, if a
     /// finger is faulted, or if 16 groups of a finger have not taken effect yet.
     pub fn send_group(&self, commands: &[FingerCommand]) -> Result<(), HandError> {
         if let [alone] = commands {
-            // A single finger waits for no other one.
+            // A command for a single finger does not wait for other fingers.
             let finger = FingerNumber::try_from(alone.finger)?;
             let present = self.dispatcher.last_report(finger)?.cycle.joints;
             let what = (alone.replaced(), alone.validity);

@@ -140,7 +140,8 @@ impl InverseKinematics {
         Ok([elbow(bent), elbow(-bent)])
     }
 
-    /// Returns the joint that is farthest outside its limits, and the distance, rad, which is negative inside.
+    /// Returns the joint that is farthest outside its limits, and its distance from the limit, rad. The distance is
+    /// negative if the joint is inside its limits.
     fn beyond(&self, joints: &Vector3<f64>) -> (usize, f64) {
         let outside = (self.low - joints).sup(&(joints - self.high));
         outside.argmax()
@@ -161,7 +162,7 @@ impl InverseKinematics {
     }
 }
 
-/// Returns the same angle within -pi to pi.
+/// Wraps an angle, rad, to the range -pi to pi.
 fn half_turn(angle: f64) -> f64 {
     angle - 2.0 * PI * (angle / (2.0 * PI)).round()
 }

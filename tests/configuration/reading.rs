@@ -1,4 +1,4 @@
-//! Reads configurations and the reference with every key.
+//! Reads configurations, and the reference configuration docs/sun2xp.toml, which contains every key.
 
 use std::fs;
 use sun2xp::hand::{self, ConfigurationError};
@@ -20,7 +20,7 @@ pub fn usable(text: &str) -> Configuration {
     read(text).unwrap_or_else(|(line, reason)| panic!("line {line:?}: {reason}\n{text}"))
 }
 
-/// The reference with its optional keys in force: a # without a space behind it disables a key.
+/// Returns the reference with its optional keys enabled. The reference disables a key with a # that no space follows.
 pub fn with_optional_keys() -> String {
     let shown = |line: &'static str| match line.strip_prefix('#') {
         Some(key) if key.starts_with(|first: char| first.is_ascii_lowercase() || first == '[') => key,

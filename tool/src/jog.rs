@@ -23,8 +23,8 @@ use worker::Worker;
 /// Opens a hand and moves it by keys. The keys move joints or fingertips, change the stiffness, and push the fingertips
 /// of the simulated hand, which yield like springs. Shows the hand as `sun2xp monitor` does.
 ///
-/// Without --config the hand is simulated. Before a real hand moves, the command asks, and its steps are limited. The
-/// space bar stops all fingers. ? shows all keys.
+/// Without --config the hand is simulated. The command asks for confirmation before it moves a real hand. The steps of
+/// a real hand are limited. The space bar stops all fingers. ? shows all keys.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration of the hand. Without it the hand is simulated.
@@ -46,7 +46,7 @@ pub struct Arguments {
     address: web::Address,
 }
 
-/// Opens the hand, and closes it after the last key. With a page, closes it at SIGINT, SIGTERM or SIGHUP.
+/// Opens the hand, and closes it when a key ends the program. With a page, closes it at SIGINT, SIGTERM or SIGHUP.
 ///
 /// # Errors
 /// Returns an error if there is no terminal, if the configuration cannot be used, if the person does not confirm, or
@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             Configuration::default()
         }
     };
-    // The picture comes from the hand's telemetry.
+    // The screen and the page show the hand's telemetry.
     configuration.telemetry.enabled = true;
     let mut of_hand = configuration.hand.fingers.members().map(|number| &configuration.fingers[number.index()]);
     let real = of_hand.any(|finger| !finger.simulated());
@@ -77,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let source = Source::start(Wanted::Process(std::process::id()))?;
     let worker = Worker::start(hand.clone(), configuration.clone())?;
-    let mut view = View::new("the hand is open, and its first cycles are on their way".into());
+    let mut view = View::new("the hand is open, and its first cycles have not arrived yet".into());
     view.jog = Some(JogPanel::new(real));
     let stopper = worker.stopper().clone();
     let controls = Controls {
@@ -104,7 +104,7 @@ fn confirm(configuration: &Configuration) -> Result<(), Failure> {
         };
         writeln!(output, "    finger {number}: {port}")?;
     }
-    writeln!(output, "The tendons are tightened now. Steps are at most 3 degrees or 0.3 cm. Space stops all fingers.")?;
+    writeln!(output, "The tendons will be tightened. Steps are at most 3 degrees or 0.3 cm. Space stops all fingers.")?;
     write!(output, "Keep hands and cables clear. Type yes to continue: ")?;
     output.flush()?;
     let mut answer = String::new();

@@ -1,11 +1,11 @@
-//! The parameters of state feedback ([`Numbers`]). One procedure computes them from the configuration, and nothing is
-//! tuned by hand for a finger.
+//! The parameters of state feedback ([`Numbers`]). One procedure computes them from the configuration. No parameter is
+//! tuned by hand for a single finger.
 //!
-//! The masses follow from the configured rotor inertias, and the gains of the observers follow from the size of a count
-//! and a bandwidth. The other numbers are tuned. Most of them are dimensionless, or their unit is cycles or radians per
-//! cycle. They were found by a search on the eigenvalues of the exact one-cycle map of the default finger. No number
-//! was tuned for a single pose. `cargo bench --bench stiffness -- --search` searches for the numbers of a set of
-//! fingers.
+//! The masses follow from the configured rotor inertias. The gains of the observers follow from the size of a count of
+//! the encoders and of the gauges, and from a bandwidth. The other numbers are tuned. Most of them are dimensionless,
+//! or their unit is cycles or radians per cycle. They were found by a search on the eigenvalues of the exact one-cycle
+//! map of the default finger. No number was tuned for a single pose. `cargo bench --bench stiffness -- --search`
+//! searches for the numbers of a set of fingers.
 
 use crate::control::number_checks::{not_negative, positive};
 use crate::control::rate_table::{Row, Tuned, at};
@@ -28,7 +28,8 @@ pub struct Numbers {
     pub disturbance_bandwidth: f64,
     /// Bandwidth with which the observers follow the motion of the links, rad/s.
     pub link_bandwidth: f64,
-    /// The motion is computed for this time relative to the next sample, cycles. A negative time is before the sample.
+    /// Time for which the motion is computed, relative to the next sample, cycles. A negative time is before the
+    /// sample.
     pub sample_offset: f64,
     /// Lowest frequency for which the damping is designed, rad/s.
     pub least_frequency: f64,
@@ -72,8 +73,9 @@ pub struct Numbers {
     pub drift_bandwidth: f64,
     /// The part of the pulleys' friction that is fed forward while the reference moves.
     pub pulley_share: f64,
-    /// Speed of a tendon from which this part is fed forward in full, m/s. It is the speed that the tendon has if the
-    /// joints follow the reference.
+    /// Speed of a tendon, m/s, from which [`Numbers::pulley_share`] is fed forward in full. Below this speed, the
+    /// feed-forward is proportional to the speed. The speed is the one that the tendon would have if the joints
+    /// followed the reference exactly.
     pub pulley_creep: f64,
 }
 
@@ -95,12 +97,12 @@ const DITHER: f64 = 1.6;
 /// oscillate.
 const TENSION_DITHER: f64 = 0.06;
 
-/// See [`Numbers::pulley_excess`]. An amplitude of p t would suffice at rest. More of it lets the tendons slide so fast
-/// that a push or a step has settled after some periods.
+/// See [`Numbers::pulley_excess`]. An amplitude of p t would suffice at rest. With a larger amplitude the tendons slide
+/// during most of a dither period, so that the finger settles within some periods after a push or a step.
 const PULLEY_EXCESS: f64 = 5.0;
 
-/// See [`Numbers::dither_reserve`]. With more pretension, the tensions divided by the entries of the null vector also
-/// differ less from each other.
+/// See [`Numbers::dither_reserve`]. Consider the tension of each tendon divided by the tendon's entry of the null
+/// vector. With more pretension, these quotients also differ less from each other.
 const DITHER_RESERVE: f64 = 16.0 / 3.0;
 
 /// See [`Numbers::dither_rise`].
@@ -109,7 +111,8 @@ const DITHER_RISE: f64 = 2.0;
 /// See [`Numbers::drift_bandwidth`].
 const DRIFT_BANDWIDTH: f64 = 60.0;
 
-/// See [`Numbers::pulley_share`]. With the whole friction, steps overshoot by 12 % with pulley friction of 5 %.
+/// See [`Numbers::pulley_share`]. If the whole friction is fed forward and the pulley friction is 5 %, steps overshoot
+/// by 12 %.
 const PULLEY_SHARE: f64 = 0.5;
 
 /// See [`Numbers::pulley_creep`].
@@ -132,7 +135,7 @@ struct TunedNumbers {
     disturbance: f64,
     /// Bandwidth with which the observers follow the motion of the links, radians per cycle.
     link: f64,
-    /// The motion is computed for this time before the next sample, cycles.
+    /// Time before the next sample for which the motion is computed, cycles.
     look_back: f64,
     lag: f64,
     common_gain: f64,

@@ -9,14 +9,14 @@ pub(super) struct SetPointMotion {
     /// Number of the period of the next cycle.
     pub next_period: u64,
     pub path: Following,
-    /// The place to which set points are interpolated, rad.
+    /// The joint angles at which the interpolation of the set point ends, rad.
     pub target: Vector3<f64>,
     pub interpolation: InterpolationState,
     pub expiry: Option<Expiry>,
     /// The newest renewal of a validity. Its set point may not have taken effect yet.
     pub renewal: Option<Renewal>,
-    /// The spring phase that ended when the last set point expired. A set point for this phase is still accepted,
-    /// because its planner may not have known of the expiry.
+    /// Number of the spring phase that ended when the last set point expired (see `SentSetPoint`). A set point for this
+    /// phase is still accepted, because the planner may have sent it before it learned of the expiry.
     pub expired_phase: Option<u32>,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Expiry {
     pub ends: u64,
 }
 
-/// A period that does not come.
+/// The number of a period that is never reached.
 pub(super) const NEVER: u64 = u64::MAX;
 
 impl SetPointMotion {

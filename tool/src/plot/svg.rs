@@ -3,7 +3,8 @@
 use super::palette::{Colour, PAPER};
 use std::fmt::Write;
 
-/// The family of all texts. The PNG has the embedded DejaVu Sans; a browser takes it, or its own sans-serif.
+/// The font families of all texts. The PNG uses the embedded DejaVu Sans. A browser uses the first of these fonts that
+/// it has.
 const FONT: &str = "DejaVu Sans, Verdana, sans-serif";
 
 /// Mean width of a letter of DejaVu Sans, as a fraction of its size.
@@ -87,7 +88,8 @@ impl Svg {
         ));
     }
 
-    /// A curve through points. It has a gap at points that are not finite. Programs find it by its name.
+    /// A curve through points. It has a gap at points that are not finite. Programs find the curve by its name, which
+    /// is in the attribute `data-name`.
     pub fn curve(&mut self, name: &str, points: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke) {
         let (mut path, mut drawing) = (String::new(), false);
         for [x, y] in points {
@@ -144,7 +146,8 @@ impl Svg {
         ));
     }
 
-    /// Draws `content` so that nothing is visible outside of a rectangle. `data` has attributes for programs.
+    /// Draws `content` so that nothing is visible outside of a rectangle. `data` contains attributes that programs
+    /// read.
     pub fn within(&mut self, [x, y, width, height]: [f64; 4], data: &str, content: impl FnOnce(&mut Self)) {
         self.clips += 1;
         let clip = self.clips;
@@ -178,7 +181,7 @@ pub fn text_width(text: &str, size: f64) -> f64 {
     text.chars().count() as f64 * LETTER * size
 }
 
-/// A text as XML writes it.
+/// Escapes a text for XML.
 pub fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for letter in text.chars() {
@@ -187,7 +190,7 @@ pub fn escaped(text: &str) -> String {
             '>' => escaped.push_str("&gt;"),
             '&' => escaped.push_str("&amp;"),
             '"' => escaped.push_str("&quot;"),
-            // Other control characters are not permitted in XML.
+            // XML does not permit most control characters.
             letter if letter.is_control() => escaped.push(' '),
             letter => escaped.push(letter),
         }
