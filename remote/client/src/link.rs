@@ -254,8 +254,7 @@ fn send(shared: &Shared, session: &Session, key: &KeyExpr<'_>) {
             drop(exchange);
             // A Target that is lost, or that cannot be sent now, is repeated.
             if let Ok(payload) = target.encode() {
-                // A declared publisher would send only if the server could tell it of its subscriber, which the access
-                // control does not permit.
+                // Not through a declared publisher, which sends nothing until it is told of a subscriber.
                 let put = session.put(key, payload).congestion_control(CongestionControl::Drop);
                 let _ = put.priority(Priority::RealTime).express(true).wait();
             }
