@@ -4,7 +4,7 @@
 mod common;
 
 use clap::Parser;
-use common::{Offer, percentile, pose_of};
+use common::{Offer, hand, percentile, pose_of};
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -44,7 +44,7 @@ fn main() {
         return client(&arguments, endpoint);
     }
     let fingers = if arguments.whole_hand { Ok(Fingers::ALL) } else { Fingers::only(1) };
-    let offer = Offer::new(!arguments.plain, arguments.rate, fingers.expect("a finger"), None);
+    let offer = Offer::new(!arguments.plain, hand(arguments.rate, fingers.expect("a finger")));
     let mut command = Command::new(std::env::current_exe().expect("this program"));
     command.args(["--client", &offer.endpoint, "--samples", &arguments.samples.to_string()]);
     if let Some(folder) = offer.folder() {

@@ -1,17 +1,21 @@
 //! Whether clients delay the servos: the wake-up of the servo threads with two writers and ten readers, against the
 //! server alone, in alternating turns. One writer owns the hand. The other one sends with an epoch that is not in
-//! force. The clients are processes of their own. Prints Markdown.
+//! force. The clients are processes of their own, and take processor time of this machine. A third turn therefore has
+//! the same clients at another server, in a process of its own. Prints Markdown.
 //!
-//! On the hand's machine, real clients take no processor time, and its servos have a core of their own. With two cores:
+//! Real clients are on other machines, and the servos have a core of their own. With two cores:
 //! `taskset --cpu-list 0 cargo bench -p sun2xp-serve --bench wake_up -- --servo-core 1`.
 
 mod common;
 
 use clap::Parser;
-use common::{Offer, configuration, percentile, pose_of};
+use common::{Offer, configuration, hand, percentile, pose_of};
+use std::io::{BufRead, BufReader};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
+use sun2xp::RealTime;
 use sun2xp::model::Fingers;
 use sun2xp::realtime::CycleStage;
 use sun2xp_remote_client::RemoteHand;
@@ -58,11 +62,20 @@ fn main() {
     if let (Some(role), Some(endpoint)) = (&arguments.role, &arguments.endpoint) {
         return client(role, endpoint, arguments.folder.as_deref());
     }
-    let offer = Offer::new(!arguments.plain, 1000.0, Fingers::ALL, arguments.servo_core);
-    let (mut alone, mut watched) = (Vec::new(), Vec::new());
+    if arguments.role.is_some() {
+        return offer_until_input_ends(!arguments.plain);
+    }
+    let other = Other::start(arguments.plain);
+    let mut configuration = hand(1000.0, Fingers::ALL);
+    configuration.fingers.iter_mut().for_each(|finger| finger.core = arguments.servo_core);
+    let offer = Offer::new(!arguments.plain, configuration);
+    let (mut alone, mut elsewhere, mut watched) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..arguments.turns {
         alone.push(measure(&offer, arguments.seconds));
-        let clients = Clients::start(&offer, arguments.readers);
+        let clients = Clients::start(&other.endpoint, other.folder.as_deref(), arguments.readers);
+        elsewhere.push(measure(&offer, arguments.seconds));
+        drop(clients);
+        let clients = Clients::start(&offer.endpoint, offer.folder().and_then(Path::to_str), arguments.readers);
         watched.push(measure(&offer, arguments.seconds));
         drop(clients);
     }
@@ -73,9 +86,15 @@ fn main() {
         println!("| {name} | {median:.1} us | {p999:.1} us |");
     };
     row("server alone", &alone);
-    row(&format!("two writers and {} readers", arguments.readers), &watched);
-    let ratio = middle(alone.iter().zip(&watched).map(|(alone, watched)| watched[1] / alone[1]));
-    println!("\nMedian ratio of neighbouring turns, 99.9 %: {ratio:.2} (goal: at most {GOAL})");
+    let clients = format!("two writers and {} readers", arguments.readers);
+    row(&format!("{clients}, at another server"), &elsewhere);
+    row(&clients, &watched);
+    let ratio = |side: &[[f64; 2]]| middle(side.iter().zip(&watched).map(|(side, watched)| watched[1] / side[1]));
+    let (alone, elsewhere) = (ratio(&alone), ratio(&elsewhere));
+    println!(
+        "\nMedian ratio of neighbouring turns, 99.9 %, with the clients: {alone:.2} of the server alone (goal: at"
+    );
+    println!("most {GOAL}), {elsewhere:.2} of the same clients at another server");
     offer.end();
 }
 
@@ -92,16 +111,58 @@ fn measure(offer: &Offer, seconds: f64) -> [f64; 2] {
     [middle(wake.iter().map(|wake| wake.median)), middle(wake.iter().map(|wake| wake.p999))]
 }
 
+/// A server in a process of its own, whose servos are not real-time. Dropping it ends it.
+struct Other {
+    child: Child,
+    endpoint: String,
+    /// The folder with the certificates.
+    folder: Option<String>,
+}
+
+impl Other {
+    fn start(plain: bool) -> Self {
+        let mut command = Command::new(std::env::current_exe().expect("this program"));
+        command.args(["--role", "server"]).args(plain.then_some("--plain")).stdin(Stdio::piped());
+        let mut child = command.stdout(Stdio::piped()).spawn().expect("a server");
+        let mut lines = BufReader::new(child.stdout.take().expect("its output")).lines();
+        let mut line = || lines.next().expect("a line").expect("text");
+        let endpoint = line();
+        Self { child, endpoint, folder: (!plain).then(line) }
+    }
+}
+
+impl Drop for Other {
+    fn drop(&mut self) {
+        // The server ends at the end of its input. If it has ended already, it has printed why.
+        drop(self.child.stdin.take());
+        let _ = self.child.wait();
+    }
+}
+
+/// The server of [`Other`]. Prints its endpoint, and the folder with its certificates.
+fn offer_until_input_ends(tls: bool) {
+    let mut configuration = hand(1000.0, Fingers::ALL);
+    configuration.hand.real_time = RealTime::Ignore;
+    let offer = Offer::new(tls, configuration);
+    println!("{}", offer.endpoint);
+    if let Some(folder) = offer.folder() {
+        println!("{}", folder.display());
+    }
+    // The input has no lines.
+    let _ = std::io::stdin().read_line(&mut String::new());
+    offer.end();
+}
+
 /// The processes of the clients. Dropping them ends them.
 struct Clients(Vec<Child>);
 
 impl Clients {
-    fn start(offer: &Offer, readers: usize) -> Self {
+    fn start(endpoint: &str, folder: Option<&str>, readers: usize) -> Self {
         let roles = ["owner", "late"].into_iter().chain(std::iter::repeat_n("reader", readers));
         let children = roles.map(|role| {
             let mut command = Command::new(std::env::current_exe().expect("this program"));
-            command.args(["--role", role, "--endpoint", &offer.endpoint]).stdin(Stdio::null());
-            if let Some(folder) = offer.folder() {
+            command.args(["--role", role, "--endpoint", endpoint]).stdin(Stdio::null());
+            if let Some(folder) = folder {
                 command.arg("--folder").arg(folder);
             }
             command.spawn().expect("a client")

@@ -14,6 +14,14 @@ use sun2xp_serve::settings::{Overrides, Settings};
 /// The clients. Alice commands; the others only read.
 const CLIENTS: &str = "[serve.clients]\nalice = 'command'\nbob = 'command'\ncarol = 'read'\n";
 
+/// The simulated hand with these fingers at this rate, Hz.
+pub fn hand(rate: f64, fingers: Fingers) -> Configuration {
+    let mut configuration = Configuration::default();
+    (configuration.hand.rate, configuration.hand.fingers) = (rate, fingers);
+    configuration.hand.real_time = RealTime::Try;
+    configuration
+}
+
 /// A hand that is offered on loopback.
 pub struct Offer {
     server: Server,
@@ -22,9 +30,8 @@ pub struct Offer {
 }
 
 impl Offer {
-    /// Offers the simulated hand with these fingers at this rate, Hz. `core` is the core of the servos; with none, the
-    /// kernel selects it.
-    pub fn new(tls: bool, rate: f64, fingers: Fingers, core: Option<usize>) -> Self {
+    /// Offers the hand of this configuration.
+    pub fn new(tls: bool, mut configuration: Configuration) -> Self {
         let port = TcpListener::bind("127.0.0.1:0").and_then(|at| at.local_addr()).expect("a free port").port();
         let endpoint = format!("{}/127.0.0.1:{port}", if tls { "tls" } else { "tcp" });
         let certificates = tls.then(|| tempfile::tempdir().expect("a folder"));
@@ -38,10 +45,6 @@ impl Offer {
         let folder = certificates.as_ref().map_or(PathBuf::new(), |folder| folder.path().into());
         let settings = Settings::from_text(&text, &folder.join("sun2xp.toml"), &Overrides::default());
         let settings = settings.unwrap_or_else(|error| panic!("{error}"));
-        let mut configuration = Configuration::default();
-        (configuration.hand.rate, configuration.hand.fingers) = (rate, fingers);
-        configuration.hand.real_time = RealTime::Try;
-        configuration.fingers.iter_mut().for_each(|finger| finger.core = core);
         prepare(&mut configuration, &settings.limits);
         let hand = Hand::open(configuration).expect("the simulated hand");
         let server = Server::start(hand, settings).unwrap_or_else(|error| panic!("{error}"));
