@@ -101,6 +101,30 @@ fn a_hand_that_was_stopped_moves_only_when_it_is_commanded_again() {
 }
 
 #[test]
+fn a_hand_is_not_taken_over_while_a_finger_is_calibrated() {
+    let rig = Rig::new(PATIENT);
+    let hand = RemoteHand::open(&configuration(&rig, "alice")).expect("open");
+    let mut other = configuration(&rig, "bob");
+    other.take_over = true;
+    std::thread::scope(|scope| {
+        let calibration = scope.spawn(|| hand.zero(1));
+        let stage = || rig.hand().report(1).expect("a report").stage;
+        wait_for("the calibration", || (stage() == Stage::Calibrating).then_some(()));
+        let error = RemoteHand::open(&other).map(drop).expect_err("a finger is calibrated");
+        assert!(error.to_string().contains("repeat the request when that has ended"), "{error}");
+        assert_eq!(stage(), Stage::Calibrating);
+        assert!(hand.is_owner());
+        RemoteHand::watch(&other).expect("bob may stop").stop(Some(1)).expect("stopped");
+        let error = calibration.join().expect("no panic").expect_err("the calibration was stopped");
+        assert_eq!(error.kind(), RemoteErrorKind::Faulted, "{error}");
+    });
+    let taken = RemoteHand::open(&other).expect("taken over");
+    assert!(taken.is_owner());
+    wait_for("the loss", || (!hand.is_owner()).then_some(()));
+    rig.server.end();
+}
+
+#[test]
 fn a_client_that_is_not_listed_is_told() {
     let rig = Rig::new("");
     let error = RemoteHand::open(&configuration(&rig, "carol")).map(drop).expect_err("carol only reads");

@@ -9,7 +9,7 @@ use crate::exchange::Exchange;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use sun2xp_remote_protocol::{
     Action, Answer, ClientName, Code, DecodeError, Event, Finger, HandKeys, Request, State, Status,
 };
@@ -30,6 +30,11 @@ const CALIBRATION: Duration = Duration::from_secs(610);
 
 /// The time in which a Status is received, and the first records.
 const FIRST: Duration = Duration::from_secs(3);
+
+/// Attempts of a request that reaches nobody, and the pause between them. Just after a client has connected, Zenoh may not
+/// know the way to the server yet.
+const ATTEMPTS: usize = 3;
+const PAUSE: Duration = Duration::from_millis(200);
 
 /// What the callbacks, the sending thread and the planner share.
 pub struct Shared {
@@ -180,8 +185,17 @@ impl Link {
             Action::Acquire | Action::Recover => ANSWER,
         };
         let key = self.keys.request(action, &self.client);
-        let replies = connection::get(&self.session, &key, Some(payload), (limit, 1));
-        let replies = replies.map_err(|error| self.not_connected(&error))?;
+        let get = || {
+            let replies = connection::get(&self.session, &key, Some(payload.clone()), (limit, 1));
+            replies.map_err(|error| self.not_connected(&error))
+        };
+        let (begun, mut replies) = (Instant::now(), get()?);
+        for _ in 1..ATTEMPTS {
+            if replies.is_empty() && begun.elapsed() < limit {
+                std::thread::sleep(PAUSE);
+                replies = get()?;
+            }
+        }
         let Some((_, payload)) = replies.first() else {
             let reason = format!(
                 "the request `{}` has no answer. Check the line, and whether the server lists the client {} in \

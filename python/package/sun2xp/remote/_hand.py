@@ -13,7 +13,7 @@ from .._types import EventKind, SetPoint
 from . import _messages, _parts
 from ._errors import error_of
 from ._messages import STAGES, Answer, Part
-from ._network import ANSWER_TIME, Network
+from ._network import ANSWER_TIME, ATTEMPTS, PAUSE, Network
 from ._owner import Owner
 from ._reading import Reading
 
@@ -260,7 +260,7 @@ class RemoteHand(Reading):
         if action != "release":
             self._check(*([finger] if finger else []))
         payload = _messages.write_request(action, finger, epoch, **flags)
-        for _, reply in self._network.get(f"{self._prefix}{action}/{self._network.client}", payload, timeout):
+        for _, reply in self._answers(f"{self._prefix}{action}/{self._network.client}", payload, timeout):
             answer = _messages.read_answer(reply)
             if answer is not None:
                 self._receiver.answered(answer.time)
@@ -269,3 +269,15 @@ class RemoteHand(Reading):
                     raise error
                 return answer
         raise self._no_answer(action)
+
+    def _answers(self, key: str, payload: bytes, timeout: float) -> List[tuple]:
+        """Asks again if a request has reached nobody: just after a client has connected, Zenoh may not know the way to
+        the server yet."""
+        begun = time.monotonic()
+        answers = self._network.get(key, payload, timeout)
+        for _ in range(ATTEMPTS - 1):
+            if answers or time.monotonic() - begun >= timeout:
+                break
+            time.sleep(PAUSE)
+            answers = self._network.get(key, payload, timeout)
+        return answers

@@ -22,6 +22,10 @@ LOOPBACK = "tcp/127.0.0.1:7447"
 #: Longest time in which a server answers, s.
 ANSWER_TIME = 2.0
 
+#: Attempts of a request that reaches nobody, and the pause between them, s.
+ATTEMPTS = 3
+PAUSE = 0.2
+
 #: Attempts to connect, at first and after a loss of the connection, ms.
 _RETRY = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
 
@@ -159,8 +163,7 @@ class Network:
     def put(self, key: str, payload: bytes) -> None:
         """Sends a Target. If the line is full, it is dropped: the next one repeats it.
 
-        A declared publisher would send nothing to a server with TLS, because the access control of the server tells no
-        client who has subscribed.
+        A declared publisher would send nothing until it is told of a subscriber.
         """
         self.session.put(
             key,
