@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Vitals {
     /// Count of each gauge without tension.
     pub gauge_zero: Option<[f64; 4]>,
-    /// N rms.
+    /// Noise of each gauge while the motors are off, N rms.
     pub gauge_noise: Option<[f64; 4]>,
     pub newton_per_count: Option<[f64; 4]>,
     pub encoder_zero: Option<[i32; 4]>,

@@ -12,9 +12,16 @@ use sun2xp::model::configuration::ZeroingMethod;
 /// Permitted tension at rest as a part of the intended one.
 const TAUT: (f64, f64) = (0.75, 1.3);
 
+/// Time for which the noise of the gauges is measured, s.
+const READING: f64 = 1.0;
+
 /// The step.
 pub fn zeros(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
+    // The motors are off, and the finger has not moved yet, so the gauges show only noise.
+    let noise = desk.read(READING)?.noise;
+    let scale = desk.finger.gauge.newton_per_count;
+    desk.vitals.gauge_noise = Some(std::array::from_fn(|gauge| noise[gauge] * scale[gauge].abs()));
     if zero(desk, &mut outcome, true)? {
         tautness(desk, &mut outcome)?;
     }

@@ -14,6 +14,10 @@ const STIFFNESS: f64 = 0.1;
 const GAIN: f64 = 0.05;
 /// Permitted tension at rest relative to that of the commissioning.
 const TENSION: f64 = 0.25;
+/// The noise of a gauge may rise by this factor and in addition by this value, N rms.
+const NOISE: (f64, f64) = (2.0, 0.05);
+/// Largest rise of the heat of a motor at rest, relative to the heat that it bears continuously.
+const HEAT: f64 = 0.25;
 /// Friction may rise by this factor and in addition by this value: motors and joints, N cm; conduits and pulleys.
 const FRICTION: (f64, f64, f64) = (1.5, 0.03, 0.03);
 
@@ -38,7 +42,6 @@ pub fn compare(
     let mut all = Vec::new();
     zeros(&mut all, before, configured, today);
     let relative = |limit: f64| move |before: f64, today: f64| (today / before - 1.0).abs() > limit;
-    let more = |offset: f64| move |before: f64, today: f64| today > FRICTION.0 * before + offset;
     let softer = "The tendon ages, frays or slips in its clamp: inspect it, and replace it";
     each(
         &mut all,
@@ -47,9 +50,18 @@ pub fn compare(
         relative(STIFFNESS),
         softer,
     );
+    frictions(&mut all, before, today);
+    gauges_and_tensions(&mut all, before, today, found);
+    noise_and_heat(&mut all, (before, configured), (today, found));
+    all
+}
+
+/// Compares the frictions.
+fn frictions(all: &mut Vec<Complaint>, before: &Vitals, today: &Vitals) {
+    let more = |offset: f64| move |before: f64, today: f64| today > FRICTION.0 * before + offset;
     let rubs = "Lubricate or replace the bearings of the motor; look for a drum that rubs";
     each(
-        &mut all,
+        all,
         ("motor_friction", "friction of motor", "N cm"),
         (before.motor_friction, today.motor_friction),
         more(FRICTION.1),
@@ -57,7 +69,7 @@ pub fn compare(
     );
     let conduit = "Clean, lubricate or replace the conduit of the tendon";
     each(
-        &mut all,
+        all,
         ("conduit_friction", "friction of conduit", ""),
         (before.conduit_friction, today.conduit_friction),
         more(FRICTION.2),
@@ -65,7 +77,7 @@ pub fn compare(
     );
     let pulley = "Clean and lubricate the pulleys of the tendon";
     each(
-        &mut all,
+        all,
         ("pulley_friction", "friction of the pulleys of tendon", ""),
         (before.pulley_friction, today.pulley_friction),
         more(FRICTION.2),
@@ -73,14 +85,43 @@ pub fn compare(
     );
     let joint = "Clean and lubricate the joint";
     each(
-        &mut all,
+        all,
         ("joint_friction", "friction of joint (counted from 1)", "N cm"),
         (before.joint_friction, today.joint_friction),
         more(FRICTION.1),
         joint,
     );
-    gauges_and_tensions(&mut all, before, today, found);
-    all
+}
+
+/// Compares the noise of the gauges, and the heat of the motors at rest.
+fn noise_and_heat(
+    all: &mut Vec<Complaint>,
+    (before, configured): (&Vitals, &ConfiguredFinger),
+    (today, found): (&Vitals, &ConfiguredFinger),
+) {
+    let noisy = "Check the cable, the shield and the ground of the gauge, and what else is switched nearby";
+    each(
+        all,
+        ("gauge_noise", "noise of gauge", "N rms"),
+        (before.gauge_noise, today.gauge_noise),
+        |before, today| today > NOISE.0 * before + NOISE.1,
+        noisy,
+    );
+    let hot = "Look for friction, for a joint that something holds, and for a pretension that is too high";
+    each(
+        all,
+        ("motor_heat", "heat at rest of motor", "of the continuous heat"),
+        (heat(before, configured), heat(today, found)),
+        |before, today| today > before + HEAT,
+        hot,
+    );
+}
+
+/// Estimates the heat of each winding after a long time at rest, relative to the heat that the motor bears continuously.
+/// The heat grows with the square of the torque, and the rise of the temperature in proportion to the heat.
+fn heat(vitals: &Vitals, finger: &ConfiguredFinger) -> Option<[f64; 4]> {
+    let torques = vitals.torques?;
+    Some(std::array::from_fn(|motor| (torques[motor] / finger.motor.continuous_torque[motor]).powi(2)))
 }
 
 /// Compares the scales of the gauges and the tensions at rest.
@@ -163,7 +204,9 @@ mod tests {
             gauge_zero: Some([200.0; 4]),
             newton_per_count: Some([100.0 / 4095.0; 4]),
             encoder_zero: Some([1000; 4]),
+            gauge_noise: Some([0.02; 4]),
             tensions: Some([7.5, 13.2, 13.2, 7.5]),
+            torques: Some([1.0; 4]),
             tendon_stiffness: Some([300.0; 4]),
             motor_friction: Some([0.07; 4]),
             conduit_friction: Some([0.05; 4]),
@@ -209,5 +252,9 @@ mod tests {
         assert_eq!(dry, only("conduit_friction", "friction of conduit 2"));
         let loose = named(|today| today.tensions = Some([4.0, 13.2, 13.2, 7.5]));
         assert_eq!(loose, only("tension", "tension at rest of tendon 1"));
+        let noisy = named(|today| today.gauge_noise = Some([0.02, 0.02, 0.02, 0.2]));
+        assert_eq!(noisy, only("gauge_noise", "noise of gauge 4"));
+        let hot = named(|today| today.torques = Some([1.0, 1.8, 1.0, 1.0]));
+        assert_eq!(hot, only("motor_heat", "heat at rest of motor 2"));
     }
 }
