@@ -1,4 +1,5 @@
-//! A planner that knows only the calls of 1990 and has functions, types and constants of its own with likely names.
+//! A planner that knows only the calls of 1990. Its own functions, types and constants have names that a hand suggests,
+//! such as `GetFault`.
 
 #[allow(dead_code)]
 mod c;
@@ -42,7 +43,8 @@ fn its_own_names_compile_in_every_dialect() {
 #[test]
 fn the_shared_library_does_not_take_them_for_its_own() {
     Bench::new().succeed(STRICT, &["five_calls.c"]);
-    // The dynamic linker would bind a call of the library to an exported name to the planner's function.
+    // If the library called one of its own exported functions by name, the dynamic linker would bind this call to the
+    // planner's function with the same name.
     let run = Command::new("readelf").args(["-r", "-W"]).arg(library()).output().expect("readelf can be started");
     let relocations = said(&run);
     assert!(run.status.success() && uses(&relocations, "pthread_create"), "{relocations}");

@@ -38,7 +38,8 @@ type Push = (usize, bool, f64);
 pub struct After {
     pub pushes: usize,
     pub noticed: usize,
-    /// Sum and largest of the errors of the torques, N cm. An error is that of the joint with the largest one.
+    /// Sum of the errors of the pushes, and the largest of them, N cm. The error of a push is the largest error of a
+    /// joint torque.
     pub sum: f64,
     pub worst: f64,
 }

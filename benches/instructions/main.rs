@@ -8,7 +8,7 @@
 //! nothing is compared, and a line on standard error says so. Record again when such a version becomes the usual one,
 //! or when an increase is intended.
 
-#[allow(dead_code, reason = "what the comparison with C needs of it")]
+#[allow(dead_code, reason = "only the comparison with C uses all of it")]
 #[path = "../recorded_run/mod.rs"]
 mod recorded_run;
 

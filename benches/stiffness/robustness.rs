@@ -31,10 +31,11 @@ fn believing(
     }))
 }
 
-/// Ratios of the motors' true torques to their commands: all alike, and with opposite signs.
+/// Ratios of the motors' true torques to their commands. Their deviations from 1 are all alike, or differ in sign.
 pub const MOTOR_CONSTANTS: [[f64; 4]; 4] = [[1.2; 4], [0.8; 4], [1.2, 0.8, 1.2, 0.8], [1.2, 0.8, 0.8, 1.2]];
 
-/// Ratios of the tendons' true stiffness to the configured one, 10 % off: all alike, and with opposite signs.
+/// Ratios of the tendons' true stiffness to the configured one. Their deviations from 1, of 10 %, are all alike, or
+/// differ in sign.
 pub const TENDONS: [[f64; 4]; 4] = [[1.1; 4], [0.9; 4], [1.1, 0.9, 1.1, 0.9], [1.1, 0.9, 0.9, 1.1]];
 
 /// Returns the worst result over motors with each of these ratios.

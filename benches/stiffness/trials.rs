@@ -32,7 +32,7 @@ pub struct Trial {
     /// the tip ends.
     pub settling: f64,
     pub overshoot: f64,
-    /// Distance of this end from the target, as a part of the step.
+    /// Distance from the target of the place where the tip ends, as a part of the step.
     pub off: f64,
     /// Largest motion at a wall, cm rms.
     pub wall: f64,

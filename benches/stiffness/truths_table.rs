@@ -19,7 +19,7 @@ pub fn run(arguments: &Arguments, only: &str, begun: Instant) -> Result<(), Box<
     overlaid(&ConfiguredFinger::default(), &arguments.keys)?;
     let adjust = |finger: &mut ConfiguredFinger| *finger = overlaid(finger, &arguments.keys).expect("checked before");
     let columns = [
-        "finger; worst of all seeds, median of the worst of each seed",
+        "finger (in each cell: the worst of all seeds, then the median over the seeds of the worst pose of each seed)",
         "error at 3 N/cm",
         "error at 6 N/cm",
         "rest at 3 N/cm, um",

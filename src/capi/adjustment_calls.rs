@@ -20,9 +20,9 @@ use std::ffi::{CStr, c_char, c_int};
 /// reconnect, address, thread, core, priority, base, turn_degrees, encoder, motor.sign,
 /// motor.torque_limit, motor.torque_constant, stiffness.initial and simulation.
 ///
-/// A configured stiffness.bound was chosen for the configured controller.scheme. If keys changes
-/// controller.scheme but does not set stiffness.bound, the smaller of the configured bound and the default
-/// bound applies.
+/// A configured stiffness.bound was chosen for the configured controller.scheme. If the lines in keys
+/// change controller.scheme but do not set stiffness.bound, the smaller of the configured bound and the
+/// default bound applies.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -35,8 +35,9 @@ use std::path::PathBuf;
 /// files or call the library. The behaviour is undefined if one of the functions does not return: longjmp,
 /// pthread_exit, exceptions.
 ///
-/// The program has the watchdog: if no exchange comes for terms->watchdog, the hardware must enter the end
-/// state by itself, also if this process hangs or has died.
+/// The program must provide a watchdog outside this process, such as that of its drives: if no exchange
+/// comes for terms->watchdog, the hardware must enter the end state by itself, also if this process hangs
+/// or has died.
 ///
 /// A tension may be from -8192 to 57342 steps. A tension outside, NaN, or an encoder that moves by 32768
 /// counts between two exchanges faults the finger, as SUN2XP_IO_SENSOR does.
@@ -71,7 +72,7 @@ pub unsafe extern "C" fn sun2xp_open_io(
     }
 }
 
-/// sun2xp_open_io_text - open a hand with hardware of the program, of a configuration in memory
+/// sun2xp_open_io_text - sun2xp_open_io for a configuration in memory
 ///
 ///   configuration   the text, as in sun2xp_open_text
 ///   count, io       as in sun2xp_open_io

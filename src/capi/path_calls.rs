@@ -43,13 +43,13 @@ pub struct sun2xp_path_pose {
 ///   poses     poses[count], in the order of their times; set size of every pose
 ///   seconds   how long the end of the path is valid, s; 0 for finger.motion.valid_ms
 ///
-/// The path begins at once where the anchor of the fingertip's spring is, continues its motion, passes
-/// every pose at its time and rests at the last one. Between poses the joint angles, or the tip, follow
-/// a spline. If the path begins at rest and its only pose is a position of the tip, the tip moves along
-/// a straight line. Speed, acceleration and jerk are continuous. Because they are fed forward, the
-/// finger follows without the lag of sun2xp_send_position. Between two poses that have a Kx, Kx changes
-/// linearly. Before the first pose that has one, Kx changes linearly from the one in force at the
-/// beginning.
+/// The path begins at once. Its first point is the present place of the anchor of the fingertip's spring,
+/// and it continues the anchor's motion. It passes every pose at its time and rests at the last one.
+/// Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only
+/// pose is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
+/// continuous. Because they are fed forward, the finger follows without the lag of sun2xp_send_position.
+/// Between two poses that have a Kx, Kx changes linearly. Before the first pose that has one, Kx changes
+/// linearly from the one in force at the beginning.
 ///
 /// The whole path is checked before anything moves: against the joint limits, and against speed,
 /// acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -114,9 +114,10 @@ pub unsafe extern "C" fn sun2xp_send_path(
 ///   position   position[3]: desired angles of joints 0, 1, 2, rad, as for sun2xp_send_position
 ///   seconds    how long the angles are valid, s; 0 for finger.motion.valid_ms
 ///
-/// Has the effect of sun2xp_send_position. If no other command of the planner arrives within seconds, the
-/// finger no longer follows the angles. By default it then holds its present pose, with the soft stiffness
-/// finger.motion.expired_stiffness. With finger.motion.on_expiry = "end state" it faults.
+/// Has the effect of sun2xp_send_position. If the time given by seconds passes without another command of
+/// the planner, the finger no longer follows the angles. By default it then holds its present pose, with
+/// the soft stiffness finger.motion.expired_stiffness. With finger.motion.on_expiry = "end state" it
+/// faults.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

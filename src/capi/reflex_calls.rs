@@ -36,10 +36,10 @@ pub const SUN2XP_WHEN_JOINT_ABOVE: c_int = 6;
 /// The angle of the member joint is below bound, rad.
 pub const SUN2XP_WHEN_JOINT_BELOW: c_int = 7;
 
-/// The board has not replied for the time bound, s.
+/// The board has not replied for the time in the member bound, s.
 pub const SUN2XP_WHEN_LINK_LOST: c_int = 8;
 
-/// The planner has sent no set point for the time bound, s.
+/// The planner has sent no set point for the time in the member bound, s.
 pub const SUN2XP_WHEN_PLANNER_SILENT: c_int = 9;
 
 /// The finger stops with a fault.
@@ -119,9 +119,9 @@ pub struct sun2xp_reflex {
 ///   ENODEV   no such hand
 ///   EINVAL   size is too small; no such finger, joint, condition, reaction or event; position or stiffness is
 ///            NaN
-///   ERANGE   another value is NaN or outside its range; position as in sun2xp_send_position; stiffness as in
-///            sun2xp_send_stiffness
-///   EDOM     stiffness as in sun2xp_send_stiffness
+///   ERANGE   another value is NaN or outside its range; sun2xp_send_position would refuse position, or
+///            sun2xp_send_stiffness would refuse stiffness, with ERANGE
+///   EDOM     sun2xp_send_stiffness would refuse stiffness with EDOM
 ///   ENOSPC   the finger has 16 rules
 ///
 /// Threads: any. Never waits for a servo. Takes a few us.

@@ -10,7 +10,7 @@ use crate::capi::handle::{Handle, sun2xp_hand};
 use crate::capi::memory::{load, load_rows};
 use std::ffi::c_int;
 
-/// sun2xp_send_joint_stiffness - make the joints of a finger springs
+/// sun2xp_send_joint_stiffness - turn the joints of a finger into springs
 ///
 ///   finger      1 to 3
 ///   stiffness   stiffness[9] or &stiffness[0][0] of stiffness[3][3], row by row: entry [row][column] is

@@ -20,9 +20,9 @@ use std::ffi::{c_int, c_ulong};
 ///   status   result; set status->size before the call
 ///
 /// Works on a faulted finger too. A servo thread does not run while a thread with a higher priority
-/// occupies its core, or while a debugger stops it. Then state stays that of the last cycle, and cycles
-/// does not grow. skipped_periods grows with every period, so a planner can compare it with an earlier
-/// value to compute how old the pose of sun2xp_position is.
+/// occupies its core, or while a debugger stops it. Meanwhile the members state and cycles keep the values
+/// of the last cycle, and the member skipped_periods grows by 1 in every period. A planner can therefore
+/// compare skipped_periods with an earlier value to compute how old the pose of sun2xp_position is.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

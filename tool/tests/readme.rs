@@ -1,4 +1,4 @@
-//! The commands with which README begins work as printed.
+//! Tests that the first commands of README work as they are printed there.
 
 #[allow(dead_code)]
 #[path = "../../tests/common/pauses.rs"]

@@ -116,8 +116,8 @@ impl Monitors {
         let silent = (0..4).find(|&gauge| flickers.silent(gauge)).filter(|_| disagrees.is_some());
         let stuck = stuck.or(silent.map(|gauge| gauge_stuck::alarm(&sample, gauge)));
         let stalled = self.stalled_motor.watch(&mut watch.stalled_motor, &sample);
-        // A gauge that drifts makes its motor seem stalled. The gauge reports a tension that does not exist, so the
-        // motor seems to stand still although pull and tension are not balanced.
+        // A gauge that drifts makes its motor seem stalled. The gauge reports a tension that does not exist, so pull
+        // and tension seem to be unbalanced, and yet the motor stands still.
         let stalled = stalled.map(|alarm| {
             let number = alarm.part.number();
             if self.agreement.explains(&watch.agreement, usize::from(number) - 1, alarm.value) {

@@ -38,7 +38,7 @@ impl Follower {
         Self { piece: 0, stiffness: 0, initial }
     }
 
-    /// Moves `set_point` to its place on the path at a time since the beginning of the path, s. The time never goes
+    /// Moves `set_point` to the place that the path has reached at `time`, s since its beginning. The time never goes
     /// back. Returns whether the path has ended. The set point then rests at the end of the path.
     pub fn advance(&mut self, path: &PathTable, time: f64, set_point: &mut SetPoint) -> bool {
         if let Some(stiffness) = self.stiffness_at(path.stiffness, time) {

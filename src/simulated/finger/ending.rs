@@ -15,7 +15,7 @@ impl SimulatedFinger {
         Frame::Stopped(Stopped { status: self.status() })
     }
 
-    /// Enters the end state of the terms.
+    /// Enters the end state that the host has set in its terms.
     pub(super) fn end(&mut self, now: u64) {
         let holds_until = match self.terms.end_state {
             EndState::Hold if self.terms.hold_time_ms > 0 => {

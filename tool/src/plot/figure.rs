@@ -75,7 +75,7 @@ impl Figure {
         }
     }
 
-    /// Draws one panel below the title, beginning at `top` pixels below the first row.
+    /// Draws one panel whose top edge is `top` pixels below the place where the first row of panels would begin.
     pub fn place(&mut self, panel: &Panel, top: f64, height: f64) {
         panel.draw(&mut self.svg, [LEFT, TOP + top, WIDTH - LEFT - self.right, height]);
     }
