@@ -299,7 +299,7 @@ int CloseHand(void);
    i     finger, 1 to 3
    Pos   Pos[3]: desired angles of joints 0, 1, 2, rad (chapter 3)
 
- All three angles take effect together. From the next cycle on the anchor of the fingertip's spring
+ All three angles take effect together. From the next cycle on, the anchor of the fingertip's spring
  moves to Pos, along a straight line in joint angles and at a bounded speed. The stiffness is the one
  sent last. When the anchor is at Pos, the force of the fingertip is Kx (Tip - p) at any distance: Tip
  is the position of the fingertip at the angles Pos, and p is its present position. With

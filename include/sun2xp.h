@@ -92,9 +92,9 @@
    4. STRUCTS
 
    The first member of every struct is size. Set it to the sizeof of the struct before the call. A smaller
-   size is refused. Later versions of the library add members at the end: a program that was compiled with
-   a newer header finds zeros in results that an older library does not know. The library never changes
-   size.
+   size is refused. Later versions of the library add members at the end. If a program was compiled with a
+   newer header and runs with an older library, the result members that this library does not know are
+   zero. The library never changes size.
 
 
    5. THREADS, SIGNALS, FORK, EXIT
@@ -563,8 +563,9 @@ struct sun2xp_io {
  files or call the library. The behaviour is undefined if one of the functions does not return: longjmp,
  pthread_exit, exceptions.
 
- The program has the watchdog: if no exchange comes for terms->watchdog, the hardware must enter the end
- state by itself, also if this process hangs or has died.
+ The program must provide a watchdog outside this process, such as that of its drives: if no exchange
+ comes for terms->watchdog, the hardware must enter the end state by itself, also if this process hangs
+ or has died.
 
  A tension may be from -8192 to 57342 steps. A tension outside, NaN, or an encoder that moves by 32768
  counts between two exchanges faults the finger, as SUN2XP_IO_SENSOR does.
@@ -584,7 +585,7 @@ struct sun2xp_io {
 int sun2xp_open_io(const char *path, int count, const struct sun2xp_io *io, sun2xp_hand **hand);
 
 /*
- sun2xp_open_io_text - open a hand with hardware of the program, of a configuration in memory
+ sun2xp_open_io_text - sun2xp_open_io for a configuration in memory
 
    configuration   the text, as in sun2xp_open_text
    count, io       as in sun2xp_open_io
@@ -608,10 +609,10 @@ int sun2xp_open_io_text(const char *configuration, int count, const struct sun2x
    finger     1 to 3
    position   position[3]: desired angles of joints 0, 1, 2, rad
 
- All three angles take effect together. From the next cycle on the anchor of the fingertip's spring moves
+ All three angles take effect together. From the next cycle on, the anchor of the fingertip's spring moves
  to position, along a straight line in joint angles and at a bounded speed. The stiffness is the one sent
  last. When the anchor is at position, the force of the fingertip is Kx (tip - p) at any distance: tip is
- the place of the fingertip at the angles position, and p is its present place. With controller.law =
+ the place of the fingertip at the angles in position, and p is its present place. With controller.law =
  "report" the finger follows the law of the report, which holds for small distances. The call does not
  wait until the finger arrives. sun2xp_limits reads the joint limits.
 
@@ -701,14 +702,14 @@ int sun2xp_position(sun2xp_hand *hand, int finger, double *position);
  force is computed from the measured tensions, so it includes friction, weight and inertia of the finger.
  It is never NaN. Near singular poses there are directions that the joints cannot measure. Along these,
  force and stiffness are zero. contact_force does not contain constant errors of the gauges. It is zero
- while the finger is not running. stiffness contains the part of Kx that is in force. The joint limits, a
- tip near the axis of joint 0 and the rotational stiffness of a contact add to it. It is zero while the
- finger is not running. slide_speed is 0 while touching is 0. While touching is 1, the tip slides on the
- object at this speed, or tip and object move together at this speed.
+ while the finger is not running. stiffness contains the part of Kx that the finger applies at present.
+ The joint limits, a tip near the axis of joint 0 and the rotational stiffness of a contact add to it.
+ stiffness is zero while the finger is not running. slide_speed is 0 while touching is 0. While touching
+ is 1, the tip slides on the object at this speed, or tip and object move together at this speed.
  */
 struct sun2xp_tip {
     size_t size;                            /* sizeof (struct sun2xp_tip), set before the call. */
-    int force_directions;                   /* Directions of force that the joints can measure, 0 to 3. */
+    int force_directions;                   /* Number of force directions that the joints can measure, 0 to 3. */
     double position[3];                     /* Position of the tip: x, y, z, cm. */
     double force[3];                        /* Force of the tip on an object, with friction and weight: x, y, z, N. */
     double tensions[4];                     /* Measured tendon tensions, N. */
@@ -724,7 +725,7 @@ struct sun2xp_tip {
    finger   1 to 3
    tip      tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm
 
- From the next cycle on the anchor of the fingertip's spring moves to tip, along a straight line in joint
+ From the next cycle on, the anchor of the fingertip's spring moves to tip, along a straight line in joint
  angles and at a bounded speed. The stiffness is the one sent last. When the anchor is at tip and p is
  the position of the fingertip, the force is Kx (tip - p) at any distance, whatever the configured
  controller.law. If several joint solutions are within the joint limits, the call takes the one nearest
@@ -857,7 +858,7 @@ int sun2xp_send_damping(sun2xp_hand *hand, int finger, double ratio);
 /* ---- SPRINGS IN JOINT ANGLES ------------------------------------------------------------------------------------- */
 
 /*
- sun2xp_send_joint_stiffness - make the joints of a finger springs
+ sun2xp_send_joint_stiffness - turn the joints of a finger into springs
 
    finger      1 to 3
    stiffness   stiffness[9] or &stiffness[0][0] of stiffness[3][3], row by row: entry [row][column] is
@@ -961,7 +962,7 @@ struct sun2xp_set_point {
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
  "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
- This happens about once each time that two of the clocks have drifted apart by one more period.
+ This happens about once in the time in which two of the clocks drift apart by one period.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1043,13 +1044,13 @@ struct sun2xp_path_pose {
    poses     poses[count], in the order of their times; set size of every pose
    seconds   how long the end of the path is valid, s; 0 for finger.motion.valid_ms
 
- The path begins at once where the anchor of the fingertip's spring is, continues its motion, passes
- every pose at its time and rests at the last one. Between poses the joint angles, or the tip, follow
- a spline. If the path begins at rest and its only pose is a position of the tip, the tip moves along
- a straight line. Speed, acceleration and jerk are continuous. Because they are fed forward, the
- finger follows without the lag of sun2xp_send_position. Between two poses that have a Kx, Kx changes
- linearly. Before the first pose that has one, Kx changes linearly from the one in force at the
- beginning.
+ The path begins at once. Its first point is the present place of the anchor of the fingertip's spring,
+ and it continues the anchor's motion. It passes every pose at its time and rests at the last one.
+ Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only
+ pose is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
+ continuous. Because they are fed forward, the finger follows without the lag of sun2xp_send_position.
+ Between two poses that have a Kx, Kx changes linearly. Before the first pose that has one, Kx changes
+ linearly from the one in force at the beginning.
 
  The whole path is checked before anything moves: against the joint limits, and against speed,
  acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -1095,9 +1096,10 @@ int sun2xp_send_path(sun2xp_hand *hand, int finger, int count, const struct sun2
    position   position[3]: desired angles of joints 0, 1, 2, rad, as for sun2xp_send_position
    seconds    how long the angles are valid, s; 0 for finger.motion.valid_ms
 
- Has the effect of sun2xp_send_position. If no other command of the planner arrives within seconds, the
- finger no longer follows the angles. By default it then holds its present pose, with the soft stiffness
- finger.motion.expired_stiffness. With finger.motion.on_expiry = "end state" it faults.
+ Has the effect of sun2xp_send_position. If the time given by seconds passes without another command of
+ the planner, the finger no longer follows the angles. By default it then holds its present pose, with
+ the soft stiffness finger.motion.expired_stiffness. With finger.motion.on_expiry = "end state" it
+ faults.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1462,9 +1464,9 @@ int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
  reconnect, address, thread, core, priority, base, turn_degrees, encoder, motor.sign,
  motor.torque_limit, motor.torque_constant, stiffness.initial and simulation.
 
- A configured stiffness.bound was chosen for the configured controller.scheme. If keys changes
- controller.scheme but does not set stiffness.bound, the smaller of the configured bound and the default
- bound applies.
+ A configured stiffness.bound was chosen for the configured controller.scheme. If the lines in keys
+ change controller.scheme but do not set stiffness.bound, the smaller of the configured bound and the
+ default bound applies.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1548,9 +1550,9 @@ struct sun2xp_status {
    status   result; set status->size before the call
 
  Works on a faulted finger too. A servo thread does not run while a thread with a higher priority
- occupies its core, or while a debugger stops it. Then state stays that of the last cycle, and cycles
- does not grow. skipped_periods grows with every period, so a planner can compare it with an earlier
- value to compute how old the pose of sun2xp_position is.
+ occupies its core, or while a debugger stops it. Meanwhile the members state and cycles keep the values
+ of the last cycle, and the member skipped_periods grows by 1 in every period. A planner can therefore
+ compare skipped_periods with an earlier value to compute how old the pose of sun2xp_position is.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -2095,8 +2097,8 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 #define SUN2XP_WHEN_TENSION_BELOW 5         /* The tension of any tendon is below bound, N. */
 #define SUN2XP_WHEN_JOINT_ABOVE 6           /* The angle of the member joint is above bound, rad. */
 #define SUN2XP_WHEN_JOINT_BELOW 7           /* The angle of the member joint is below bound, rad. */
-#define SUN2XP_WHEN_LINK_LOST 8             /* The board has not replied for the time bound, s. */
-#define SUN2XP_WHEN_PLANNER_SILENT 9        /* The planner has sent no set point for the time bound, s. */
+#define SUN2XP_WHEN_LINK_LOST 8             /* The board has not replied for the time in the member bound, s. */
+#define SUN2XP_WHEN_PLANNER_SILENT 9        /* The planner has sent no set point for the time in the member bound, s. */
 #define SUN2XP_THEN_STOP 1                  /* The finger stops with a fault. */
 #define SUN2XP_THEN_HOLD 2                  /* The finger stays where it is. */
 #define SUN2XP_THEN_SOFTEN 3                /* The tip gets the member stiffness. */
@@ -2150,9 +2152,9 @@ struct sun2xp_reflex {
    ENODEV   no such hand
    EINVAL   size is too small; no such finger, joint, condition, reaction or event; position or stiffness is
             NaN
-   ERANGE   another value is NaN or outside its range; position as in sun2xp_send_position; stiffness as in
-            sun2xp_send_stiffness
-   EDOM     stiffness as in sun2xp_send_stiffness
+   ERANGE   another value is NaN or outside its range; sun2xp_send_position would refuse position, or
+            sun2xp_send_stiffness would refuse stiffness, with ERANGE
+   EDOM     sun2xp_send_stiffness would refuse stiffness with EDOM
    ENOSPC   the finger has 16 rules
 
  Threads: any. Never waits for a servo. Takes a few us.
