@@ -117,7 +117,7 @@ impl Desk {
             }
             Err(error) => {
                 Rejection::Refused.count(&mut self.counts);
-                self.fingers.keep_valid(&silence, now);
+                self.fingers.keep_valid(&silence);
                 let text = error.to_string();
                 Some(Answer { number: target.sequence, ..self.answer(code_of(&error), text, target.epoch, now) })
             }
@@ -148,7 +148,7 @@ impl Desk {
         }
         let silence = Silence::after_acquire(now, self.limits.catch_ms, self.limits.end_ms);
         self.silence = Some(silence);
-        self.fingers.begin_epoch(&silence, now);
+        self.fingers.begin_epoch(&silence);
         true
     }
 

@@ -55,7 +55,7 @@ impl Fingers {
     }
 
     /// Begins the epoch of a new owner. A finger that follows a path of the owner before stays where its path is.
-    pub fn begin_epoch(&mut self, silence: &Silence, now: u64) {
+    pub fn begin_epoch(&mut self, silence: &Silence) {
         for number in self.numbers() {
             let mut goal = std::mem::take(&mut self.goals[number as usize - 1]);
             let Ok(report) = self.hand.report(number) else { continue };
@@ -65,7 +65,7 @@ impl Fingers {
                 let _ = self.hand.send_position(number, report.reference.joints.into());
             }
         }
-        self.keep_valid(silence, now);
+        self.keep_valid(silence);
     }
 
     /// Applies the parts of a Target that are new, all of them or none, and renews the validity of everything else.
@@ -73,7 +73,7 @@ impl Fingers {
     /// # Errors
     /// Returns why a finger refuses its part. Then no part is applied, and the validity is not renewed.
     pub fn apply(&mut self, parts: &[Part], silence: &Silence, now: u64) -> Result<(), HandError> {
-        let valid = silence.of_commanded(now);
+        let valid = silence.of_commanded();
         let new = parts.iter().filter(|part| {
             let index = part.finger.index();
             self.goals[index].is_new(part)
@@ -90,18 +90,18 @@ impl Fingers {
             }
             self.goals[finger] = goal;
         }
-        self.keep_valid(silence, now);
+        self.keep_valid(silence);
         Ok(())
     }
 
     /// Renews the validity of every finger. A finger that was caught follows again, from where it is.
-    pub fn keep_valid(&mut self, silence: &Silence, now: u64) {
+    pub fn keep_valid(&mut self, silence: &Silence) {
         for number in self.numbers() {
             let index = number as usize - 1;
             let Ok(report) = self.hand.report(number) else { continue };
             self.goals[index].notice(&report);
             let commanded = self.goals[index].is_commanded();
-            let valid = if commanded { silence.of_commanded(now) } else { silence.of_other(now) };
+            let valid = if commanded { silence.of_commanded() } else { silence.of_other() };
             // A finger that has stopped needs no validity.
             let _ = self.hand.keep_valid(number, valid);
             if self.goals[index].is_interrupted(&report) {
@@ -127,10 +127,10 @@ impl Fingers {
                 if self.admitted(number, &goal, &report, &report.reference.joints) < 1.0 {
                     // The finger does not follow its path. It goes on as to a single place.
                     self.goals[index].destination = Destination::Joints(end);
-                    self.send(number, &report, silence.of_commanded(now), false);
+                    self.send(number, &report, silence.of_commanded(), false);
                 }
             } else if goal.is_commanded() && !goal.whole {
-                self.send(number, &report, silence.of_commanded(now), false);
+                self.send(number, &report, silence.of_commanded(), false);
             }
         }
     }

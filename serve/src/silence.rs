@@ -31,16 +31,16 @@ impl Silence {
         (self.heard, self.validity) = (heard, validity);
     }
 
-    /// Returns what remains at `now`, ns, for a finger that the owner has commanded.
+    /// Returns the validity of what a finger has that the owner has commanded.
     #[must_use]
-    pub fn of_commanded(&self, now: u64) -> Validity {
-        Validity { hold_after: Some(self.remaining(self.validity, now)), ..self.of_other(now) }
+    pub fn of_commanded(&self) -> Validity {
+        Validity { hold_after: Some(Duration::from_nanos(self.validity)), ..self.of_other() }
     }
 
-    /// Returns what remains at `now`, ns, for another finger. It is not caught, but it goes to its end state.
+    /// Returns the validity of what another finger has. It is not caught, but it goes to its end state.
     #[must_use]
-    pub fn of_other(&self, now: u64) -> Validity {
-        Validity { hold_after: None, end_after: Some(self.remaining(self.end, now)) }
+    pub fn of_other(&self) -> Validity {
+        Validity { hold_after: None, end_after: Some(Duration::from_nanos(self.end)), since: Some(self.heard) }
     }
 
     /// Returns whether the newest Target is still valid.
@@ -53,10 +53,6 @@ impl Silence {
     #[must_use]
     pub fn is_over(&self, now: u64) -> bool {
         now >= self.heard.saturating_add(self.end)
-    }
-
-    fn remaining(&self, time: u64, now: u64) -> Duration {
-        Duration::from_nanos(self.heard.saturating_add(time).saturating_sub(now))
     }
 }
 
@@ -71,11 +67,11 @@ mod tests {
         assert!(silence.is_valid(at(99)) && !silence.is_valid(at(100)));
         assert!(!silence.is_over(at(999)) && silence.is_over(at(1000)));
         silence.renew(at(500), 50 * MILLISECOND);
-        let left = silence.of_commanded(at(520));
-        assert_eq!(left.hold_after, Some(Duration::from_millis(30)));
-        assert_eq!(left.end_after, Some(Duration::from_millis(980)));
-        assert_eq!(silence.of_other(at(520)), Validity { hold_after: None, ..left });
-        assert_eq!(silence.of_commanded(at(700)).hold_after, Some(Duration::ZERO));
+        let left = silence.of_commanded();
+        assert_eq!(left.hold_after, Some(Duration::from_millis(50)));
+        assert_eq!(left.end_after, Some(Duration::from_secs(1)));
+        assert_eq!(left.since, Some(at(500)));
+        assert_eq!(silence.of_other(), Validity { hold_after: None, ..left });
         assert!(silence.is_over(at(1500)));
     }
 }

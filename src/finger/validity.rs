@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-/// How long what was sent last to a finger is valid. Both times count from the cycle in which the servo takes it. A
-/// time that is none is the configured one.
+/// How long what was sent last to a finger is valid. Both times count from `since`. A time that is none is the configured
+/// one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Validity {
     /// After this time the finger reacts as `finger.motion.on_expiry` says. The configured time is
@@ -12,6 +12,10 @@ pub struct Validity {
     /// After this time the finger faults, and its board goes to the end state. The configured time is that of
     /// `hold_after`, and `finger.motion.end_state_ms` in addition, which may be absent.
     pub end_after: Option<Duration>,
+    /// The time from which both times count, ns of the monotonic clock ([`realtime::now`](crate::realtime::now)). If it
+    /// is none, they count from the cycle in which the servo takes what was sent. A program that only passes on what
+    /// others send gives the time, so that a delay in the program does not prolong the validity.
+    pub since: Option<u64>,
 }
 
 impl Validity {
@@ -19,7 +23,7 @@ impl Validity {
     /// time.
     #[must_use]
     pub fn hold_after(time: Option<Duration>) -> Self {
-        Self { hold_after: time, end_after: None }
+        Self { hold_after: time, ..Self::default() }
     }
 }
 

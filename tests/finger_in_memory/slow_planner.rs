@@ -104,7 +104,8 @@ fn to_target(set_point: &mut SetPoint) -> Result<(), ()> {
 
 /// A validity in milliseconds: which are periods, because the finger runs at 1000 Hz.
 fn validity(hold: u64, end: u64) -> Validity {
-    Validity { hold_after: Some(Duration::from_millis(hold)), end_after: Some(Duration::from_millis(end)) }
+    let [hold_after, end_after] = [hold, end].map(|time| Some(Duration::from_millis(time)));
+    Validity { hold_after, end_after, since: None }
 }
 
 #[test]
@@ -152,6 +153,26 @@ fn a_renewed_set_point_does_not_expire() {
 }
 
 #[test]
+fn a_delayed_renewal_does_not_prolong_the_validity() {
+    let mut bench = Bench::new();
+    bench.cycles(300);
+    let late = |bench: &Bench, cycles: u64| {
+        let since = Some(bench.report().last - cycles * 1_000_000);
+        bench.mailbox.keep_valid(Validity { since, ..validity(100, 150) }).expect("not faulted");
+    };
+    bench.mailbox.try_send((Replaced::Place, validity(100, 1000)), to_target).expect("not faulted").expect("admitted");
+    bench.cycles(50);
+    late(&bench, 60);
+    bench.cycles(38);
+    assert!(!bench.report().expired);
+    bench.cycles(4);
+    assert!(bench.report().expired, "the validity has ended 100 ms after its beginning");
+    late(&bench, 200);
+    bench.cycles(3);
+    assert!(matches!(bench.stage(), Stage::Faulted(_)), "the end was before the renewal arrived");
+}
+
+#[test]
 fn a_renewal_limits_a_path_and_a_later_set_point_ends_it() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
@@ -172,7 +193,7 @@ fn a_finger_without_a_command_can_stop_after_a_time_too() {
     let mut bench = Bench::new();
     let springs = bench.report().springs;
     let end_after = Some(Duration::from_millis(300));
-    bench.mailbox.keep_valid(Validity { hold_after: None, end_after }).expect("not faulted");
+    bench.mailbox.keep_valid(Validity { end_after, ..Validity::default() }).expect("not faulted");
     bench.cycles(299);
     assert_eq!((bench.stage(), bench.report().springs), (Stage::Running, springs));
     bench.faults(FaultKind::SetPointExpired);

@@ -38,12 +38,13 @@ impl FingerServo {
         }
     }
 
-    /// Sets the validity, which begins in the period `begin`. A finger that holds its pose after its set point has
-    /// expired continues to hold it.
+    /// Sets the validity, which begins in the period `begin` unless it says when. A finger that holds its pose after its
+    /// set point has expired continues to hold it.
     fn set_validity(&mut self, begin: u64, validity: &Validity) {
         let (hold, end) = self.adjustable.motion.times(validity);
-        // The conversion saturates, so an infinite time becomes a period that does not come.
-        let after = |seconds: f64| begin.saturating_add((seconds / self.limits.period()).ceil() as u64);
+        let past = validity.since.map_or(0.0, |since| self.report.last.saturating_sub(since) as f64 * 1e-9);
+        // The conversion saturates, so an infinite time becomes a period that does not come, and a negative time 0.
+        let after = |seconds: f64| begin.saturating_add(((seconds - past) / self.limits.period()).ceil() as u64);
         let expires = if self.report.expired { NEVER } else { after(hold) };
         let expiry = Expiry { sent: self.motion.next_period, expires, ends: after(end) };
         self.motion.expiry = (expiry.expires.min(expiry.ends) != NEVER).then_some(expiry);
