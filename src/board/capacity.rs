@@ -2,6 +2,7 @@
 
 use super::protocol::{Kind, TURNAROUND_MICROSECONDS};
 use crate::model::Counted;
+use crate::model::configuration::RATES;
 use thiserror::Error;
 
 /// Start bit, eight data bits, stop bit.
@@ -17,12 +18,11 @@ pub const USABLE_SHARE: f64 = 0.8;
     "{who} at {rate} Hz {verb} not fit on a port at {baud} baud: a command of {command} bytes takes \
      {command_us:.0} us, the response of the board {turnaround} us, and {replies} of {reply} bytes \
      {replies_us:.0} us (10 bits a byte), {needed_us:.0} us in all, but only {share:.0} % of a period, {usable_us:.0} \
-     us, are usable. Set baud = {least_baud} or more for every finger of the port and in its board, set hand.rate = \
-     {fastest_rate:.0} or less, or put fewer fingers on the port",
+     us, are usable. {remedy}",
     who = Counted(*.fingers as u64, "finger", "fingers"), verb = if *.fingers == 1 { "does" } else { "do" },
     replies = Counted(*.fingers as u64, "reply", "replies"),
     command = Kind::Command.wire_length(), reply = Kind::Reply.wire_length(), turnaround = TURNAROUND_MICROSECONDS,
-    share = 100.0 * USABLE_SHARE
+    share = 100.0 * USABLE_SHARE, remedy = remedy(*.least_baud, *.fastest_rate, *.fingers)
 )]
 pub struct TooFast {
     /// Baud rate of the port, bit/s.
@@ -43,6 +43,20 @@ pub struct TooFast {
     pub least_baud: u32,
     /// The highest servo rate that this port can carry, Hz.
     pub fastest_rate: f64,
+}
+
+fn remedy(least_baud: u32, fastest_rate: f64, fingers: usize) -> String {
+    let mut ways = vec![format!("Set baud = {least_baud} or more for every finger of the port and in its board")];
+    if fastest_rate >= *RATES.start() {
+        ways.push(format!("set hand.rate = {fastest_rate:.0} or less"));
+    }
+    if fingers > 1 {
+        ways.push("put fewer fingers on the port".into());
+    }
+    match ways.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{}, or {last}", others.join(", ")),
+        _ => ways.concat(),
+    }
 }
 
 /// Returns how long one exchange with `fingers` fingers takes on the line, us. `more` is the number of additional bytes
@@ -123,6 +137,8 @@ mod tests {
         assert!(text.starts_with("3 fingers at 1000 Hz do not fit") && text.contains(" 3 replies of "), "{text}");
         let one = capacity(115_200, 1, 1000.0).unwrap_err().to_string();
         assert!(one.starts_with("1 finger at 1000 Hz does not fit") && one.contains(" 1 reply of "), "{one}");
+        // Such a rate is not permitted, and there is no other finger.
+        assert!(!one.contains("hand.rate") && !one.contains("fewer fingers"), "{one}");
         assert!(capacity(2_000_000, 3, 1000.0).is_ok());
         assert!(capacity(1_000_000, 3, refusal.fastest_rate).is_ok());
     }
