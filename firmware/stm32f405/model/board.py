@@ -5,7 +5,7 @@ import zlib
 from collections import OrderedDict
 
 from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_MODE_MCLASS, UC_MODE_THUMB, Uc
-from unicorn.arm_const import UC_ARM_REG_LR, UC_ARM_REG_PRIMASK, UC_ARM_REG_SP, UC_CPU_ARM_CORTEX_M4
+from unicorn.arm_const import UC_ARM_REG_LR, UC_ARM_REG_PRIMASK, UC_ARM_REG_SP, UC_ARM_REG_XPSR, UC_CPU_ARM_CORTEX_M4
 
 from cycles import REFILL, Program
 from registers import MEGAHERTZ, SYSTICK, Registers, bus_wait
@@ -14,6 +14,8 @@ FLASH, SRAM, SYSTEM = 0x08000000, 0x20000000, 0x1FFF7000
 UNIQUE = bytes(range(0xA0, 0xAC))
 # An exception pushes eight registers in 12 cycles and pops them in 10.
 ENTRY, EXIT = 12, 10
+# The bits of xPSR that make the next instructions conditional (IT). Entering an exception clears them.
+CONDITIONAL = 0x0600FC00
 # The handler returns to this address.
 RETURN = FLASH + 0xFFFF0
 # Flash has five wait states at 168 MHz, for lines of 16 bytes.
@@ -121,6 +123,7 @@ class Board:
         self.handling = True
         self.uc.reg_write(UC_ARM_REG_SP, self.uc.reg_read(UC_ARM_REG_SP) - 32)
         self.uc.reg_write(UC_ARM_REG_LR, RETURN | 1)
+        self.uc.reg_write(UC_ARM_REG_XPSR, self.uc.reg_read(UC_ARM_REG_XPSR) & ~CONDITIONAL)
         self.uc.emu_start(self.program.symbols[handler] | 1, RETURN)
         self.handling = False
         self.end = 0
