@@ -71,15 +71,14 @@ static void answer(struct board *board, const struct frame *request, uint32_t ar
 void board_poll(struct board *board)
 {
     uint8_t bytes[64];
-    uint32_t arrived_at;
+    uint32_t arrived_at = 0;
     size_t taken;
     /* Takes at most 32 runs of bytes: a line that never falls silent must not keep the watchdogs from running. */
     for (int runs = 0; runs < 32 && (taken = hal_receive(board->line, bytes, sizeof bytes, &arrived_at)) > 0; runs++) {
         for (size_t i = 0; i < taken; i++) {
-            struct frame request;
-            enum received received = receiver_take(&board->receiver, bytes[i], &request);
+            enum received received = receiver_take(&board->receiver, bytes[i]);
             if (received == RECEIVED_FRAME)
-                answer(board, &request, arrived_at);
+                answer(board, &board->receiver.frame, arrived_at);
             for (size_t n = 0; received == RECEIVED_DAMAGE && n < board->count; n++)
                 board->fingers[n].damaged = true;
         }

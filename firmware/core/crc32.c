@@ -7,13 +7,9 @@ static const uint32_t of_four_bits[16] = {
     0xEDB88320u, 0xF00F9344u, 0xD6D6A3E8u, 0xCB61B38Cu, 0x9B64C2B0u, 0x86D3D2D4u, 0xA00AE278u, 0xBDBDF21Cu,
 };
 
-uint32_t crc32(const uint8_t *bytes, size_t length)
+uint32_t crc32_add(uint32_t crc, uint8_t byte)
 {
-    uint32_t crc = 0xFFFFFFFFu;
-    for (size_t i = 0; i < length; i++) {
-        crc ^= bytes[i];
-        crc = crc >> 4 ^ of_four_bits[crc & 0xFu];
-        crc = crc >> 4 ^ of_four_bits[crc & 0xFu];
-    }
-    return ~crc;
+    crc ^= byte;
+    crc = crc >> 4 ^ of_four_bits[crc & 0xFu];
+    return crc >> 4 ^ of_four_bits[crc & 0xFu];
 }

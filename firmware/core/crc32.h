@@ -1,10 +1,14 @@
 #ifndef FIRMWARE_CRC32_H
 #define FIRMWARE_CRC32_H
 
-#include <stddef.h>
 #include <stdint.h>
 
-/* CRC-32/ISO-HDLC, the CRC of zlib and Ethernet. */
-uint32_t crc32(const uint8_t *bytes, size_t length);
+/* CRC-32/ISO-HDLC, the CRC of zlib and Ethernet, byte by byte: it starts as CRC32_START, crc32_add adds a byte, and the
+   complement of the result is the checksum. */
+#define CRC32_START 0xFFFFFFFFu
+uint32_t crc32_add(uint32_t crc, uint8_t byte);
+
+/* The result over bytes and their correct checksum, whatever the bytes are. */
+#define CRC32_WITH_CHECK 0xDEBB20E3u
 
 #endif

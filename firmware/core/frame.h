@@ -3,7 +3,6 @@
 #ifndef FIRMWARE_FRAME_H
 #define FIRMWARE_FRAME_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -40,8 +39,5 @@ void frame_put32(struct frame *frame, uint32_t value);
 
 /* Appends the checksum, stuffs the bytes, and then appends the delimiter. Returns the length on the wire. */
 size_t frame_to_wire(const struct frame *frame, uint8_t wire[WIRE_MOST]);
-
-/* Decodes the bytes between two delimiters. Returns false if the frame is damaged. */
-bool frame_from_wire(struct frame *frame, const uint8_t *stuffed, size_t length);
 
 #endif

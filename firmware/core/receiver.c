@@ -1,20 +1,45 @@
 #include "receiver.h"
+#include "crc32.h"
 
-enum received receiver_take(struct receiver *receiver, uint8_t byte, struct frame *frame)
+/* Takes a byte that is not the delimiter. */
+static void collect(struct receiver *receiver, uint8_t byte)
+{
+    size_t place = receiver->collected;
+    if (place > STUFFED_MOST)
+        return;
+    receiver->collected = place + 1;
+    if (place == STUFFED_MOST)
+        return;
+    /* The first byte is a distance, but stands for nothing. */
+    if (place == 0) {
+        receiver->next_zero = byte;
+        receiver->crc = CRC32_START;
+        return;
+    }
+    /* A distance replaced a zero, so it becomes zero again. All other bytes stay as they are. */
+    if (place == receiver->next_zero) {
+        receiver->next_zero = place + byte;
+        byte = 0;
+    }
+    receiver->frame.bytes[place - 1] = byte;
+    receiver->crc = crc32_add(receiver->crc, byte);
+}
+
+enum received receiver_take(struct receiver *receiver, uint8_t byte)
 {
     if (byte != 0) {
-        if (receiver->collected < STUFFED_MOST)
-            receiver->stuffed[receiver->collected] = byte;
-        if (receiver->collected <= STUFFED_MOST)
-            receiver->collected++;
+        collect(receiver, byte);
         return RECEIVED_NOTHING;
     }
-    size_t length = receiver->collected;
+    size_t collected = receiver->collected;
     receiver->collected = 0;
     /* An empty run between two delimiters is no damage: the host sends delimiters to resynchronise. */
-    if (length == 0)
+    if (collected == 0)
         return RECEIVED_NOTHING;
-    if (length > STUFFED_MOST || !frame_from_wire(frame, receiver->stuffed, length))
+    /* One byte is the first distance. The last distance must lead to the delimiter. */
+    if (collected < 1 + FRAME_LEAST || collected > STUFFED_MOST || receiver->next_zero != collected ||
+        receiver->crc != CRC32_WITH_CHECK)
         return RECEIVED_DAMAGE;
+    receiver->frame.length = collected - 1 - FRAME_CHECK;
     return RECEIVED_FRAME;
 }

@@ -1,4 +1,5 @@
-/* Finds frames in a stream of bytes. */
+/* Finds frames in a stream of bytes. Each byte is decoded as it arrives, so that little is left to do when a frame
+   ends. */
 
 #ifndef FIRMWARE_RECEIVER_H
 #define FIRMWARE_RECEIVER_H
@@ -8,12 +9,14 @@
 /* Must be all zeros at the start. */
 struct receiver {
     size_t collected; /* Bytes since the last delimiter. Stays at STUFFED_MOST + 1 once there are too many. */
-    uint8_t stuffed[STUFFED_MOST];
+    size_t next_zero; /* The place among them of the next byte that stands for a zero. */
+    uint32_t crc;     /* Of the decoded bytes. */
+    struct frame frame;
 };
 
 enum received { RECEIVED_NOTHING, RECEIVED_FRAME, RECEIVED_DAMAGE };
 
-/* Takes one byte. Returns RECEIVED_FRAME if the byte completed `frame`. */
-enum received receiver_take(struct receiver *receiver, uint8_t byte, struct frame *frame);
+/* Takes one byte. Returns RECEIVED_FRAME if the byte completed `receiver->frame`, which stays until the next call. */
+enum received receiver_take(struct receiver *receiver, uint8_t byte);
 
 #endif

@@ -1,18 +1,25 @@
-/* Consistent overhead byte stuffing (COBS): it removes all zeros, so that a zero can delimit frames. */
+/* Consistent overhead byte stuffing (COBS): it removes all zeros, so that a zero can delimit frames. receiver.c undoes
+   it. */
 
 #ifndef FIRMWARE_STUFFING_H
 #define FIRMWARE_STUFFING_H
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* Longest input that stuffing lengthens by only one byte. */
 enum { STUFF_MOST = 254 };
 
-/* Stuffs `length` bytes, at most STUFF_MOST, into length + 1 bytes. */
-void stuff(const uint8_t *bytes, size_t length, uint8_t *stuffed);
+/* Stuffs byte by byte, at most STUFF_MOST of them. */
+struct stuffing {
+    uint8_t *distance_at; /* Receives the distance to the next zero. */
+    uint8_t *next;
+};
 
-/* The inverse. Returns the length, or 0 if the input is not validly stuffed or does not fit into `room` bytes. */
-size_t unstuff(const uint8_t *stuffed, size_t length, uint8_t *bytes, size_t room);
+/* Begins at `stuffed`, which needs room for all bytes and one more. */
+void stuff_begin(struct stuffing *stuffing, uint8_t *stuffed);
+void stuff(struct stuffing *stuffing, uint8_t byte);
+
+/* Completes the stuffed bytes, which end before `stuffing->next`. */
+void stuff_end(struct stuffing *stuffing);
 
 #endif

@@ -123,13 +123,13 @@ static void check_motors(void)
 static void check_output(void)
 {
     struct receiver receiver = {0};
-    struct frame frame;
+    const struct frame *frame = &receiver.frame;
     for (size_t i = 0; i < fake.output_length; i++) {
-        enum received received = receiver_take(&receiver, fake.output[i], &frame);
+        enum received received = receiver_take(&receiver, fake.output[i]);
         require(received != RECEIVED_DAMAGE, "a damaged answer");
         if (received == RECEIVED_FRAME) {
-            require((frame_type(&frame) & TYPE_IS_ANSWER) != 0, "an answer that is a request");
-            require(frame_address(&frame) == 1 || frame_address(&frame) == 2, "an answer of another finger");
+            require((frame_type(frame) & TYPE_IS_ANSWER) != 0, "an answer that is a request");
+            require(frame_address(frame) == 1 || frame_address(frame) == 2, "an answer of another finger");
             answered++;
         }
     }
@@ -141,10 +141,11 @@ static struct receiver observer;
 
 static void arrive(const uint8_t *bytes, size_t length)
 {
-    struct frame frame;
+    const struct frame *frame = &observer.frame;
     for (size_t i = 0; i < length; i++) {
-        if (receiver_take(&observer, bytes[i], &frame) == RECEIVED_FRAME) {
-            require(slow_check(frame.bytes, frame.length) == frame_get32(&frame, frame.length), "a wrong check passed");
+        if (receiver_take(&observer, bytes[i]) == RECEIVED_FRAME) {
+            uint32_t check = frame_get32(frame, frame->length);
+            require(slow_check(frame->bytes, frame->length) == check, "a wrong check passed");
             accepted++;
         }
     }

@@ -16,13 +16,12 @@
 static size_t frames_in(const uint8_t *bytes, size_t length, struct frame *last, unsigned *damaged)
 {
     struct receiver receiver = {0};
-    struct frame frame;
     size_t found = 0;
     for (size_t i = 0; i < length; i++) {
-        enum received received = receiver_take(&receiver, bytes[i], &frame);
+        enum received received = receiver_take(&receiver, bytes[i]);
         if (received == RECEIVED_FRAME) {
             found++;
-            *last = frame;
+            *last = receiver.frame;
         } else if (received == RECEIVED_DAMAGE) {
             (*damaged)++;
         }
