@@ -14,23 +14,31 @@ void finger_refuse(const struct finger *finger, const struct frame *request, uin
     write_refused(answer, frame_type(request), reason, detail);
 }
 
-static int64_t clip(int64_t value, int64_t limit)
+static int32_t clip(int32_t value, int32_t limit)
 {
     return value > limit ? limit : value < -limit ? -limit : value;
 }
 
-/* The current for a torque, uA: nN m / (uN m/A) is mA. */
-static int64_t current_of(int16_t torque, uint32_t unit, uint32_t constant)
+/* 1000 * rest / constant without a division of 64 bits, which takes five times as long. `rest` is below `constant`. */
+static uint32_t thousandths(uint32_t rest, uint32_t constant)
 {
-    int64_t product = (int64_t)torque * unit;
-    uint32_t magnitude = (uint32_t)(product < 0 ? -product : product);
-    if (product > INT32_MAX || product < -INT32_MAX || constant > UINT32_MAX / 1000u)
-        /* At most 2^15 * 2^32 * 1000, which fits 63 bits. */
-        return product * 1000 / constant;
-    /* The same in 32 bits, which takes a fifth of the time. The remainder is smaller than the constant. */
-    uint32_t whole = magnitude / constant, rest = magnitude % constant;
-    int64_t current = (int64_t)whole * 1000 + rest * 1000u / constant;
-    return product < 0 ? -current : current;
+    if (constant <= UINT32_MAX / 1000u)
+        return rest * 1000u / constant;
+    /* The quotient is below 1000, and constant / 1000 loses less than a thousandth of its value to rounding. So the
+       estimate is right or too large by 1. */
+    uint32_t estimate = rest / (constant / 1000u);
+    return (uint64_t)estimate * constant > (uint64_t)rest * 1000u ? estimate - 1 : estimate;
+}
+
+/* The current for a torque, uA: nN m / (uN m/A) is mA. Both are without a sign; `magnitude` is at most 2^15. */
+static uint64_t current_of(uint32_t magnitude, uint32_t unit, uint32_t constant)
+{
+    uint64_t product = (uint64_t)magnitude * unit;
+    if (product > UINT32_MAX)
+        /* At most 2^15 * 2^32 * 1000, which fits 64 bits. */
+        return product * 1000u / constant;
+    uint32_t whole = (uint32_t)product / constant;
+    return (uint64_t)whole * 1000u + thousandths((uint32_t)product % constant, constant);
 }
 
 /* Clamps torques to `limits` and to the currents that the drivers allow, and sets the motor currents. Returns true
@@ -43,11 +51,13 @@ static bool drive(struct finger *finger, const int16_t wanted[MOTORS], const uin
         uint32_t constant = finger->terms.torque_constants[i];
         if (constant == 0)
             constant = finger->traits->torque_constants[i];
-        finger->torques[i] = (int16_t)clip(wanted[i], limits[i]);
-        int64_t current = current_of(finger->torques[i], finger->traits->torque_unit, constant);
-        int64_t borne = clip(current, finger->traits->largest_currents[i]);
-        currents[i] = (int32_t)borne;
-        clipped = clipped || finger->torques[i] != wanted[i] || borne != current;
+        int32_t torque = clip(wanted[i], limits[i]);
+        uint64_t current = current_of((uint32_t)(torque < 0 ? -torque : torque), finger->traits->torque_unit, constant);
+        uint32_t most = (uint32_t)finger->traits->largest_currents[i];
+        int32_t borne = (int32_t)(current > most ? most : current);
+        finger->torques[i] = (int16_t)torque;
+        currents[i] = torque < 0 ? -borne : borne;
+        clipped = clipped || torque != wanted[i] || current > most;
     }
     hal_set_currents(finger->index, currents);
     return clipped;
