@@ -12,9 +12,9 @@ pub struct Validity {
     /// After this time the finger faults, and its board goes to the end state. The configured time is that of
     /// `hold_after`, and `finger.motion.end_state_ms` in addition, which may be absent.
     pub end_after: Option<Duration>,
-    /// The time from which both times count, ns of the monotonic clock ([`realtime::now`](crate::realtime::now)). If it
-    /// is none, they count from the cycle in which the servo takes what was sent. A program that only passes on what
-    /// others send gives the time, so that a delay in the program does not prolong the validity.
+    /// The time from which both times count, ns of the clock CLOCK_MONOTONIC. If it is none, they count from the cycle
+    /// in which the servo takes what was sent. A program that only passes on what others send gives the time, so that a
+    /// delay in the program does not prolong the validity.
     pub since: Option<u64>,
 }
 
