@@ -7,6 +7,7 @@ mod gauge_zero;
 mod gauges;
 mod grip;
 mod standstill;
+mod swing;
 
 use super::findings::{Findings, Zeros};
 use super::instruments::Instruments;
@@ -22,6 +23,7 @@ use gauge_zero::GaugeZero;
 use grip::Grip;
 use nalgebra::{Vector3, Vector4};
 use std::ops::ControlFlow::{self, Continue};
+use swing::Swing;
 
 #[derive(Clone, Debug)]
 pub(super) struct Zeroing {
@@ -47,10 +49,21 @@ enum Phase {
     Gauges(GaugeZero),
     /// Tightens the tendons. The gauge offsets are now known.
     Tighten(TakeUp),
-    /// The finger was limp at the beginning. Checks whether something holds it in its pose.
+    /// The finger was limp at the beginning. Reads its pose before it is pushed.
+    ReadHeld {
+        guide: JointGuide,
+        swing: Swing,
+    },
+    /// Checks whether something holds it in its pose.
     Try(Grip),
     ReadPose {
         grip: Grip,
+        swing: Swing,
+    },
+    /// Reads the finger at its pretension. `joints` are the angles that the swing has measured, rad.
+    RestInPose {
+        grip: Grip,
+        joints: Vector3<f64>,
         reading: Reading,
     },
     Seek {
@@ -58,6 +71,12 @@ enum Phase {
         joint: usize,
         upper: bool,
         search: StopSearch,
+    },
+    ReadStop {
+        guide: JointGuide,
+        joint: usize,
+        upper: bool,
+        swing: Swing,
     },
     Return {
         guide: JointGuide,
@@ -106,10 +125,17 @@ impl Zeroing {
             Phase::Read => self.read_before(instruments, sample),
             Phase::Gauges(gauges) => self.zero_gauges(gauges, instruments, sample),
             Phase::Tighten(take_up) => self.take_up_slack(take_up, instruments, sample),
+            Phase::ReadHeld { guide, swing } => self.read_held(guide, swing, instruments, sample),
             Phase::Try(grip) => self.try_pose(grip, instruments, sample),
-            Phase::ReadPose { grip, reading } => self.read_pose(grip, reading, instruments, sample),
+            Phase::ReadPose { grip, swing } => self.read_pose(grip, swing, instruments, sample),
+            Phase::RestInPose { grip, joints, reading } => {
+                self.rest_in_pose(grip, joints, reading, instruments, sample)
+            }
             Phase::Seek { guide, joint, upper, search } => {
                 self.seek_stop(guide, joint, upper, search, instruments, sample)
+            }
+            Phase::ReadStop { guide, joint, upper, swing } => {
+                self.read_stop(guide, joint, upper, swing, instruments, sample)
             }
             Phase::Return { guide, joint } => self.return_to_middle(guide, joint, instruments, sample),
             Phase::Rest { guide, seconds } => self.rest(guide, seconds, instruments, sample),

@@ -175,11 +175,16 @@ impl Bench {
         unreachable!("a routine ends by its time limit at the latest")
     }
 
-    /// Replaces the controller by one with the new findings, and makes the finger a spring again.
-    pub fn adopt(mut self) -> Self {
+    /// Replaces the controller by one with the present belief.
+    pub fn follow_belief(&mut self) {
         self.controller = Controller::in_gravity(&self.belief, &self.gravity, self.rate).unwrap();
         let feedback = self.feedback();
         self.state = self.controller.start(&feedback);
+    }
+
+    /// Replaces the controller by one with the new findings, and makes the finger a spring again.
+    pub fn adopt(mut self) -> Self {
+        self.follow_belief();
         self.open()
     }
 }

@@ -1,6 +1,7 @@
 //! Runs the calibration routines in closed loop with the simulated finger. Checks their findings and their refusals.
 
 mod bench;
+mod exactness;
 mod identifying;
 mod pose;
 mod refusing;

@@ -235,7 +235,7 @@ fn a_limp_finger_that_nothing_holds() {
 fn a_limp_finger_that_is_released_during_the_reading() {
     let tally = Tally::of("limp, released", 200, |seed| {
         let mut trial = Trial::new(Scheme::StateFeedback, seed);
-        let at = trial.chance.between(0.0, 5.0);
+        let at = trial.chance.between(0.0, 9.0);
         trial.zero(&mut trial.limp(), |seconds, plant| {
             if seconds > at {
                 plant.release();

@@ -19,6 +19,8 @@ use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
 /// Finds signs, zeros, friction and stiffness of the fingers, and writes them into the configuration file.
 ///
 /// Without --signs, --zero and --identify the tool does all three, in this order. The motors are off at the beginning.
+/// With --zero and --identify it zeroes the finger again at the end, because the zeros depend on the stretch of the
+/// tendons and on their moment arms.
 ///
 /// Signs: every motor turns a little in both directions.
 ///
@@ -77,7 +79,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                     format!("{error}. {instructions}").into()
                 }
             })?;
-            calibrated.measured.extend(Measured::all(&found));
+            // The last zeroing is compared with a file that the first one has corrected already.
+            if !tasks[..done].contains(&task) {
+                calibrated.measured.extend(Measured::all(&found));
+            }
             // Results are stored after each task, so that they are kept if a later task is refused.
             if !arguments.dry_run {
                 hand.store_calibration(finger)?;
@@ -121,7 +126,9 @@ impl Arguments {
 
     /// The requested tasks, in the order of their execution.
     fn tasks(&self) -> Vec<Task> {
-        let asked = [(Task::Signs, self.signs), (Task::Zero, self.zero), (Task::Identify, self.identify)];
+        let again = self.zero && self.identify;
+        let asked =
+            [(Task::Signs, self.signs), (Task::Zero, self.zero), (Task::Identify, self.identify), (Task::Zero, again)];
         let everything = asked.iter().all(|&(_, asked)| !asked);
         asked.into_iter().filter(|&(_, asked)| asked || everything).map(|(task, _)| task).collect()
     }
@@ -137,7 +144,8 @@ impl Arguments {
                 Task::Zero => " --zero",
                 Task::Identify => " --identify",
             };
-            tasks.iter().map(|&task| option(task)).collect::<String>()
+            let new = |&(place, task): &(usize, &Task)| !tasks[..place].contains(task);
+            tasks.iter().enumerate().filter(new).map(|(_, &task)| option(task)).collect::<String>()
         };
         let again = if self.dry_run { self.tasks() } else { left.to_vec() };
         let mut text = format!(

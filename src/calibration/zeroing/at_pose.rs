@@ -2,37 +2,81 @@
 
 use super::encoder_zero::Reading;
 use super::grip::Grip;
+use super::swing::Swing;
 use super::{Phase, Stepped, Zeroing, going};
 use crate::calibration::findings::Findings;
 use crate::calibration::instruments::Instruments;
+use crate::calibration::joint_guide::JointGuide;
 use crate::calibration::step::{Sample, Step};
-use nalgebra::Vector4;
+use nalgebra::{Vector3, Vector4};
 use std::ops::ControlFlow::Break;
 
 impl Zeroing {
+    /// Reads the joint angles before the pushes.
+    pub(super) fn read_held(
+        &mut self,
+        mut guide: JointGuide,
+        mut swing: Swing,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        guide.measure(instruments, sample);
+        let done = swing.step(instruments, sample, &mut guide);
+        self.phase = if done {
+            Phase::Try(Grip::new(guide, swing.reading.joints(instruments, &Vector4::zeros())))
+        } else {
+            Phase::ReadHeld { guide, swing }
+        };
+        going(Step::TryingPose, 0.4, guide.activity(instruments, sample))
+    }
+
     pub(super) fn try_pose(&mut self, mut grip: Grip, instruments: &Instruments, sample: &Sample) -> Stepped {
         let (activity, done) = grip.step(instruments, sample, self.speed)?;
-        self.phase = if done { Phase::ReadPose { grip, reading: Reading::default() } } else { Phase::Try(grip) };
+        self.phase =
+            if done { Phase::ReadPose { grip, swing: Swing::new(instruments, self.torque) } } else { Phase::Try(grip) };
         going(Step::TryingPose, 0.6, activity)
     }
 
     pub(super) fn read_pose(
         &mut self,
         mut grip: Grip,
+        mut swing: Swing,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        let (activity, _) = grip.step(instruments, sample, self.speed)?;
+        if !swing.step(instruments, sample, &mut grip.guide) {
+            self.phase = Phase::ReadPose { grip, swing };
+            return going(Step::ReadingEncoders, 0.9, activity);
+        }
+        let joints = swing.reading.joints(instruments, &Vector4::zeros());
+        swing.reading.still()?;
+        grip.returned(&joints)?;
+        self.phase = Phase::RestInPose { grip, joints, reading: Reading::default() };
+        going(Step::ReadingEncoders, 0.95, activity)
+    }
+
+    pub(super) fn rest_in_pose(
+        &mut self,
+        mut grip: Grip,
+        joints: Vector3<f64>,
         mut reading: Reading,
         instruments: &Instruments,
         sample: &Sample,
     ) -> Stepped {
         let (activity, _) = grip.step(instruments, sample, self.speed)?;
-        if !reading.step(instruments, sample) {
-            self.phase = Phase::ReadPose { grip, reading };
-            return going(Step::ReadingEncoders, 0.9, activity);
+        if !reading.step(instruments, sample, true) {
+            self.phase = Phase::RestInPose { grip, joints, reading };
+            return going(Step::ReadingEncoders, 0.97, activity);
         }
         // The instruments have already subtracted the offsets.
         let none = Vector4::zeros();
-        reading.still()?;
-        grip.returned(&reading.joints(instruments, &none))?;
-        Ok(Break(self.at_pose(instruments, &reading, &none)))
+        let at_rest = reading.joints(instruments, &none);
+        // The zeros correct the joint angles of the swing. This reading only shows how far the motors have wound in all
+        // tendons together: at the pretension, that does not depend on the stiffness.
+        let too_far = joints - self.pose;
+        let zeros = reading.zeros(instruments, &none, &(at_rest - too_far), self.configured);
+        Ok(Break(self.findings(instruments, zeros, too_far, None)))
     }
 
     /// Returns the findings for a finger that was in the configured pose during `reading`.

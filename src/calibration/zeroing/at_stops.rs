@@ -1,6 +1,7 @@
 //! Zeros the encoders with the two stops of every joint.
 
 use super::encoder_zero::Reading;
+use super::swing::Swing;
 use super::{Phase, Stepped, Zeroing, going};
 use crate::calibration::instruments::Instruments;
 use crate::calibration::joint_guide::JointGuide;
@@ -8,6 +9,7 @@ use crate::calibration::obstacle::Obstacle;
 use crate::calibration::step::{Sample, Step};
 use crate::calibration::stop_search::StopSearch;
 use nalgebra::Vector4;
+use std::f64::consts::PI;
 use std::ops::ControlFlow::Break;
 
 /// Largest permitted difference between the measured and the configured range of a joint, rad. A larger one means an
@@ -31,20 +33,44 @@ impl Zeroing {
         sample: &Sample,
     ) -> Stepped {
         guide.measure(instruments, sample);
-        self.phase = match (search.step(instruments, &mut guide, self.speed)?, upper) {
-            (None, _) => Phase::Seek { guide, joint, upper, search },
-            (Some(angle), false) => {
+        self.phase = match search.step(instruments, &mut guide, self.speed)? {
+            None => Phase::Seek { guide, joint, upper, search },
+            Some(_) => Phase::ReadStop { guide, joint, upper, swing: Swing::new(instruments, self.torque) },
+        };
+        let part = 0.3 + 0.2 * (joint as f64 + if upper { 0.5 } else { 0.0 });
+        going(Step::SeekingStops, part, guide.activity(instruments, sample))
+    }
+
+    pub(super) fn read_stop(
+        &mut self,
+        mut guide: JointGuide,
+        joint: usize,
+        upper: bool,
+        mut swing: Swing,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        guide.measure(instruments, sample);
+        let beyond = guide.joints[joint] + if upper { PI } else { -PI };
+        guide.advance(joint, beyond, self.speed * instruments.period);
+        let done = swing.step(instruments, sample, &mut guide);
+        let part = 0.3 + 0.2 * (joint as f64 + if upper { 0.7 } else { 0.2 });
+        let activity = guide.activity(instruments, sample);
+        // The instruments have already subtracted the offsets.
+        let angle = swing.reading.joints(instruments, &Vector4::zeros())[joint];
+        self.phase = match (done, upper) {
+            (false, _) => Phase::ReadStop { guide, joint, upper, swing },
+            (true, false) => {
                 self.stops_found.0[joint] = angle;
                 self.search_upper(joint, guide)
             }
-            (Some(angle), true) => {
+            (true, true) => {
                 self.stops_found.1[joint] = angle;
                 self.check_range(joint)?;
                 Phase::Return { guide, joint }
             }
         };
-        let part = 0.3 + 0.2 * (joint as f64 + if upper { 0.5 } else { 0.0 });
-        going(Step::SeekingStops, part, guide.activity(instruments, sample))
+        going(Step::SeekingStops, part, activity)
     }
 
     pub(super) fn return_to_middle(
@@ -91,7 +117,7 @@ impl Zeroing {
         sample: &Sample,
     ) -> Stepped {
         guide.measure(instruments, sample);
-        if !reading.step(instruments, sample) {
+        if !reading.step(instruments, sample, true) {
             self.phase = Phase::ReadAgain { guide, reading };
             return going(Step::ReadingEncoders, 0.95, guide.activity(instruments, sample));
         }

@@ -9,6 +9,8 @@ use nalgebra::{Vector3, Vector4};
 
 /// Duration of a reading, s.
 const READING: f64 = 0.3;
+/// Time constant of the check that the joints stand still while the tensions rise and fall, s.
+const SWINGING: f64 = 0.1;
 
 /// Averages counts and tensions of a finger at rest.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,12 +22,20 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// Adds one cycle. Returns whether the reading is complete.
-    pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> bool {
+    /// A reading while the tensions rise and fall. Motors may tremble then, which the means remove.
+    pub fn swinging() -> Self {
+        Self { standstill: Standstill::new(SWINGING), ..Self::default() }
+    }
+
+    /// Adds one cycle. Only cycles that count contribute to the means. Returns whether the time of a reading at rest is
+    /// over.
+    pub fn step(&mut self, instruments: &Instruments, sample: &Sample, counts: bool) -> bool {
         self.seconds += instruments.period;
         let (travel, tensions) = (instruments.travel(sample.feedback), instruments.tensions(sample.feedback));
-        self.travel.add(travel);
-        self.tensions.add(tensions);
+        if counts {
+            self.travel.add(travel);
+            self.tensions.add(tensions);
+        }
         self.standstill.note(&instruments.joints(&travel, &tensions), instruments.period);
         self.seconds >= READING
     }

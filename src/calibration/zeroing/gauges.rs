@@ -1,7 +1,7 @@
 //! The first phases of zeroing, until the gauges are zeroed and the tendons are tight.
 
 use super::gauge_zero::GaugeZero;
-use super::grip::Grip;
+use super::swing::Swing;
 use super::{Phase, Stepped, Zeroing, going};
 use crate::calibration::instruments::Instruments;
 use crate::calibration::joint_guide::JointGuide;
@@ -37,7 +37,7 @@ impl Zeroing {
 
     pub(super) fn read_before(&mut self, instruments: &Instruments, sample: &Sample) -> Stepped {
         let mut first = self.first.unwrap_or_default();
-        if first.step(instruments, sample) {
+        if first.step(instruments, sample, true) {
             if self.method == ZeroingMethod::Pose {
                 first.still()?;
             }
@@ -77,11 +77,11 @@ impl Zeroing {
             self.phase = Phase::Tighten(take_up);
             return going(Step::TakingUpSlack, 0.25, activity);
         }
+        let guide = JointGuide::new(instruments, sample, self.torque);
         if self.method == ZeroingMethod::Pose {
-            self.phase = Phase::Try(Grip::new(instruments, sample, self.torque));
+            self.phase = Phase::ReadHeld { guide, swing: Swing::new(instruments, self.torque) };
             return going(Step::TryingPose, 0.3, Activity::Tighten(instruments.offset));
         }
-        let guide = JointGuide::new(instruments, sample, self.torque);
         self.phase = self.search_lower(0, guide);
         going(Step::SeekingStops, 0.3, guide.activity(instruments, sample))
     }

@@ -20,7 +20,7 @@ const RESTING: f64 = 0.3;
 /// The sequence of pushes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grip {
-    guide: JointGuide,
+    pub guide: JointGuide,
     /// Joint angles at the beginning, rad.
     start: Vector3<f64>,
     /// Number of the push, which selects joint and direction: 0 to 5, or 6 after the last push.
@@ -30,10 +30,10 @@ pub(super) struct Grip {
 }
 
 impl Grip {
-    /// `torque`: the largest torque of a push, N cm.
-    pub fn new(instruments: &Instruments, sample: &Sample, torque: f64) -> Self {
-        let guide = JointGuide::new(instruments, sample, torque);
-        Self { guide, start: guide.joints, push: 0, seconds: 0.0 }
+    /// `guide` limits the torque of a push. `start` are the joint angles before the pushes, rad.
+    pub fn new(mut guide: JointGuide, start: Vector3<f64>) -> Self {
+        guide.anchor = start;
+        Self { guide, start, push: 0, seconds: 0.0 }
     }
 
     /// Runs one cycle. Returns the activity, and whether all joints were pushed and the finger is at rest again.

@@ -5,13 +5,15 @@ use nalgebra::Vector3;
 /// Largest permitted deviation of a joint, rad. It bounds the error of the zeros.
 pub(super) const TOLERANCE: f64 = 0.004;
 
-/// Time constant of the low-pass filter on the joints, s. It removes the noise of the gauges and the oscillation caused
-/// by state feedback.
+/// Usual time constant of the low-pass filter on the joints, s. It removes the noise of the gauges and the oscillation
+/// caused by state feedback.
 const SMOOTHING: f64 = 0.02;
 
 /// Mean and extremes of the joint angles over a period of time.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Standstill {
+    /// Time constant of the low-pass filter, s.
+    smoothing: f64,
     samples: f64,
     sum: Vector3<f64>,
     smoothed: Vector3<f64>,
@@ -19,12 +21,24 @@ pub(super) struct Standstill {
     extremes: Option<(Vector3<f64>, Vector3<f64>)>,
 }
 
+impl Default for Standstill {
+    fn default() -> Self {
+        Self::new(SMOOTHING)
+    }
+}
+
 impl Standstill {
+    /// `smoothing`: time constant of the low-pass filter, s.
+    pub fn new(smoothing: f64) -> Self {
+        let (samples, sum, smoothed) = (0.0, Vector3::zeros(), Vector3::zeros());
+        Self { smoothing, samples, sum, smoothed, extremes: None }
+    }
+
     /// Adds the joint angles of a cycle, rad. `period` is the time since the previous cycle, s.
     pub fn note(&mut self, joints: &Vector3<f64>, period: f64) {
         self.samples += 1.0;
         self.sum += joints;
-        let settled = SMOOTHING / period;
+        let settled = self.smoothing / period;
         // Until the filter has settled, this is the mean of all samples. At the time at which the filter has settled,
         // the mean has as little noise as the filter.
         self.smoothed += (joints - self.smoothed) / self.samples.min(settled);
