@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-/// How long what was sent last to a finger is valid. Both times count from `since`. A time that is none is the configured
-/// one.
+/// How long what was sent last to a finger is valid. Both times count from `since`. A time that is none is the
+/// configured one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Validity {
     /// After this time the finger reacts as `finger.motion.on_expiry` says. The configured time is

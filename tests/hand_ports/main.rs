@@ -22,5 +22,6 @@ mod recovery;
 mod rig;
 #[path = "../common/settling.rs"]
 mod settling;
+mod stopping;
 
 use c::pauses;

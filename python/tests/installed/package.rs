@@ -20,8 +20,8 @@ fn the_wheel_works_in_an_empty_environment() {
     environment.delete();
 }
 
-/// Returns the path of `sun2xp-serve`, for the tests of `sun2xp.remote`. Cargo builds it here, because it is the program
-/// of another package. Cargo selects the features of `cargo test --workspace`, in which Zenoh is compiled already, only
+/// Returns the path of `sun2xp-serve`, for the tests of `sun2xp.remote`. Cargo builds it here, because it belongs to
+/// another package. Cargo selects the features of `cargo test --workspace`, in which Zenoh is compiled already, only
 /// for a build with an example or a test.
 fn server() -> PathBuf {
     let mut build = Command::new(env!("CARGO"));

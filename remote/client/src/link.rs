@@ -31,8 +31,8 @@ const CALIBRATION: Duration = Duration::from_secs(610);
 /// The time in which a Status is received, and the first records.
 const FIRST: Duration = Duration::from_secs(3);
 
-/// Attempts of a request that reaches nobody, and the pause between them. Just after a client has connected, Zenoh may not
-/// know the way to the server yet.
+/// Attempts of a request that reaches nobody, and the pause between them. Just after a client has connected, Zenoh may
+/// not know the way to the server yet.
 const ATTEMPTS: usize = 3;
 const PAUSE: Duration = Duration::from_millis(200);
 
