@@ -53,6 +53,7 @@ def settings(name, clients, *, listen="", connect="", tls=None):
     text = f'[finger]\nport = "simulated"\n[telemetry]\nname = "py-{os.getpid()}-{name}"\n[serve]\nname = "{name}"\n'
     text += f'listen = ["{listen}"]\n' if listen else ""
     text += f'connect = ["{connect}"]\n' if connect else ""
+    text += "catch_ms = 500\nend_ms = 2000\n"  # The machine may be busy.
     text += "[serve.clients]\n" + "".join(f'{client} = "{may}"\n' for client, may in clients.items())
     if tls is not None:
         text += f'[serve.tls]\nauthority = "{tls / "ca.pem"}"\n'

@@ -31,7 +31,7 @@ fn a_library_of_another_version_is_refused() {
     loading.replace_library("unsigned sun2xp_abi_version(void) { return 0; }\n");
     let (result, errno, text) = opened(&loading.said("opens.c", Way::Configured));
     assert_eq!((result, errno), (-1, libc::ELIBBAD), "{text}");
-    assert!(text.contains("from one version"), "{text}");
+    assert!(text.contains("from the same version"), "{text}");
 }
 
 #[test]
