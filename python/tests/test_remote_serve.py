@@ -73,7 +73,7 @@ def test_a_finger_is_moved_held_and_read(endpoint):
         assert list(sun2xp.remote.discover(endpoint)) == ["hand"]
         hand.send_group([sun2xp.SetPoint(finger, position=HOME) for finger in hand.fingers])
         hand.send_stiffness(1, numpy.diag([2.0, 2.0, 1.0]))
-        hand.wait(timeout=30)
+        hand.wait(condition="settled", timeout=30)
         for finger in hand.fingers:
             assert abs(hand.position(finger) - HOME).max() < 0.05
         hand.send_path(1, [0.5, 1.0], [[0.0, 0.7, 0.9], HOME])
@@ -88,10 +88,11 @@ def test_a_finger_is_moved_held_and_read(endpoint):
             with pytest.raises(sun2xp.remote.NotOwner):
                 screen.acquire(take_over=True)
             screen.stop(3)
+        end = time.monotonic() + 10
+        while hand.state(3).stage != "faulted" and time.monotonic() < end:
+            time.sleep(0.01)  # The state with the fault comes after the answer to the stop.
         with pytest.raises(sun2xp.Fault):
-            for _ in range(1000):  # The state with the fault comes after the answer to the stop.
-                hand.position(3)
-                time.sleep(0.01)
+            hand.wait(3, timeout=10)
         hand.recover(3)
         assert hand.status().owner == "planner" and hand.status().counts.malformed == 0
         hand.send_position(3, HOME)
