@@ -82,14 +82,13 @@ fn carry_out(shared: &Arc<Shared>, request: &Request, client: ClientName, reply:
         }
         Action::Recover | Action::Calibrate | Action::Identify => {}
     }
-    long(shared, request.epoch, reply, move |shared, reply| {
+    long(shared, request.epoch, reply, move |shared| {
         let done = match (request.action, request.finger) {
             (Action::Calibrate, Some(finger)) => calibrated(&shared.hand, finger, Hand::zero),
             (Action::Identify, Some(finger)) => calibrated(&shared.hand, finger, Hand::identify),
             (_, finger) => recover(&shared.hand, finger),
         };
-        let answer = shared.desk.lock().answer(Code::Done, String::new(), request.epoch, now());
-        reply.send(&result(&answer, done));
+        result(&shared.desk.lock().answer(Code::Done, String::new(), request.epoch, now()), done)
     });
 }
 
@@ -135,26 +134,28 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
     if !request.recover {
         return reply.send(&begin(shared, Ok(())));
     }
-    run(shared, reply, move |shared, reply| {
+    run(shared, reply, move |shared| {
         let recovered = recover(&shared.hand, None);
-        reply.send(&begin(shared, recovered));
+        begin(shared, recovered)
     });
 }
 
 /// Runs something that takes long, unless something else does already.
-fn long<R: Reply>(shared: &Arc<Shared>, epoch: u64, reply: R, body: impl FnOnce(&Shared, R) + Send + 'static) {
+fn long(shared: &Arc<Shared>, epoch: u64, reply: impl Reply, body: impl FnOnce(&Shared) -> Answer + Send + 'static) {
     match shared.busy.swap(true, Ordering::AcqRel) {
         true => reply.send(&in_progress(shared, epoch)),
         false => run(shared, reply, body),
     }
 }
 
-/// Runs something that takes long in a thread. The caller has set `busy`.
-fn run<R: Reply>(shared: &Arc<Shared>, reply: R, body: impl FnOnce(&Shared, R) + Send + 'static) {
+/// Runs something that takes long in a thread, and sends its Answer. The caller has set `busy`.
+fn run(shared: &Arc<Shared>, reply: impl Reply, body: impl FnOnce(&Shared) -> Answer + Send + 'static) {
     let of_thread = shared.clone();
     let started = spawn("sun2xp request", Priority::default(), move |_| {
-        body(&of_thread, reply);
+        let answer = body(&of_thread);
+        // A client that has the Answer may send the next request at once.
         of_thread.busy.store(false, Ordering::Release);
+        reply.send(&answer);
     });
     match started {
         Ok(thread) => {
