@@ -116,7 +116,11 @@ def longest_loop(cached):
 
 ROWS = [
     ("Command to Reply, typical", lambda cached: Bench(cached).reply_time(VALUES[0][0], 100), MARGIN),
-    ("Command to Reply, longest over phases of the main loop, torques and constants", lambda cached: at_any_phase(cached, 0), MARGIN),
+    (
+        "Command to Reply, longest over phases of the main loop, torques and constants",
+        lambda cached: at_any_phase(cached, 0),
+        MARGIN,
+    ),
     ("the same while more Commands arrive at 2 Mbaud", lambda cached: at_any_phase(cached, 2), 1),
     ("the same while the main loop takes a sample of its own", lambda cached: during_a_sample(cached, 1), 1),
     ("interrupt of one byte at 2 Mbaud (a byte takes 5 us)", one_handler, None),
