@@ -120,7 +120,7 @@ fn wait(run: &mut Finger, seconds: f64, mut joints: impl FnMut() -> Vector3<f64>
     }
 }
 
-/// Pushes once, and then waits as long without a force.
+/// Pushes once, and then waits for the same time without a force.
 fn push_once(run: &mut Finger, force: Vector3<f64>, mut joints: impl FnMut() -> Vector3<f64>) -> Push {
     let cycles = (PUSH * RATE) as usize;
     run.plant.set_external_force(force);

@@ -17,7 +17,7 @@ pub struct Case {
     pub poses: usize,
     pub seed: u64,
     pub law: Law,
-    /// The numbers of state feedback. None: those of the library.
+    /// The numbers of state feedback. `None` selects those of the library.
     pub numbers: Option<Numbers>,
 }
 

@@ -1,4 +1,4 @@
-//! Rows that push slowly and measure the deflection of the tip.
+//! Measurements for the table that push the tip slowly and measure its deflection.
 
 use crate::cases::{Case, Friction, axes};
 use crate::closed_loop::{ClosedLoop, Held, Senses};
@@ -71,7 +71,8 @@ pub fn pushed_about(held: &Held) -> Pushed {
     Pushed { forces, deflections, scale: scales / 6.0 }
 }
 
-/// Returns the error of the slope of a triangular force loop of +-2 mm in 3 s, with friction.
+/// Pushes the tip with a triangular wave of 3 s, with friction. The largest force deflects the spring by 2 mm in either
+/// direction. Returns the error of the slope of the deflection.
 pub fn triangle(case: &Case, stiffness: f64) -> f64 {
     const AMPLITUDE: f64 = 0.2;
     worst(each(&case.poses(), |_, pose| {

@@ -32,11 +32,11 @@ pub struct Trial {
     /// the tip ends.
     pub settling: f64,
     pub overshoot: f64,
-    /// Distance from the target of the place where the tip ends, as a part of the step.
+    /// Distance between the target and the final position of the tip, as a part of the step.
     pub off: f64,
     /// Largest motion at a wall, cm rms.
     pub wall: f64,
-    /// Time after a bump until every tension is above half of t_min again, s: the longer of two bumps.
+    /// Time after a bump until every tension is above half of t_min again, s: the longest of all bumps.
     pub bump: f64,
     /// The first fault of a monitor, with the trial in which it appeared.
     pub fault: Option<String>,

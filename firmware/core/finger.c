@@ -19,7 +19,8 @@ static int32_t clip(int32_t value, int32_t limit)
     return value > limit ? limit : value < -limit ? -limit : value;
 }
 
-/* 1000 * rest / constant without a division of 64 bits, which takes five times as long. `rest` is below `constant`. */
+/* Returns 1000 * rest / constant. It avoids a 64-bit division, which takes five times as long. `rest` is below
+   `constant`. */
 static uint32_t thousandths(uint32_t rest, uint32_t constant)
 {
     if (constant <= UINT32_MAX / 1000u)
@@ -30,12 +31,13 @@ static uint32_t thousandths(uint32_t rest, uint32_t constant)
     return (uint64_t)estimate * constant > (uint64_t)rest * 1000u ? estimate - 1 : estimate;
 }
 
-/* The current for a torque, uA: nN m / (uN m/A) is mA. Both are without a sign; `magnitude` is at most 2^15. */
+/* Returns the current for a torque, uA. The quotient of nN m and uN m/A is in mA. Torque and current are both without
+   a sign, and `magnitude` is at most 2^15. */
 static uint64_t current_of(uint32_t magnitude, uint32_t unit, uint32_t constant)
 {
     uint64_t product = (uint64_t)magnitude * unit;
     if (product > UINT32_MAX)
-        /* At most 2^15 * 2^32 * 1000, which fits 64 bits. */
+        /* The dividend is at most 2^15 * 2^32 * 1000, which fits 64 bits. */
         return product * 1000u / constant;
     uint32_t whole = (uint32_t)product / constant;
     return (uint64_t)whole * 1000u + thousandths((uint32_t)product % constant, constant);
@@ -101,8 +103,8 @@ static void end(struct finger *finger, uint32_t now)
 }
 
 /* Returns whether more than `milliseconds` lie between two instants. The difference is taken as signed, because
-   `now` may be slightly older than `since`: the main loop may read the clock before the last bytes arrive. 65 535 ms
-   is far from the wrap of the timer. */
+   `now` may be slightly older than `since`: the main loop may read the clock before the last bytes arrive. The longest
+   time, 65 535 ms, is far below the 71 minutes after which the timer wraps. */
 static bool passed(uint32_t since, uint32_t now, uint16_t milliseconds)
 {
     uint32_t elapsed = now - since;
@@ -219,7 +221,7 @@ void finger_command(struct finger *finger, const struct frame *request, uint32_t
     struct command command;
     read_command(request, &command);
     hal_set_toggle(finger->index, command.toggle);
-    /* Sampled before the torques are set, so that the sensors show the effect of the previous torques. */
+    /* The sensors are sampled before the torques are set, so that they show the effect of the previous torques. */
     struct sensors sensors;
     uint32_t sampled_at = hal_microseconds();
     hal_sample(finger->index, &sensors);

@@ -17,7 +17,7 @@ struct finger_traits {
     uint16_t torque_limit;
     uint16_t shortest_watchdog_ms;
     uint32_t capabilities;
-    uint32_t torque_constants[MOTORS]; /* Used where a Configure says 0; uN m/A, not 0. */
+    uint32_t torque_constants[MOTORS]; /* uN m/A, never 0. A Configure with 0 selects this value. */
     int32_t largest_currents[MOTORS];  /* Currents that driver and motor can carry continuously, uA. */
     struct touch_traits touch;         /* Used with CAPABILITY_TACTILE. */
 };
@@ -38,7 +38,7 @@ struct finger {
     struct touch touch;
 };
 
-/* The state after power-up: idle, with the motors off. */
+/* Puts the finger into the state after power-up: idle, with the motors off. */
 void finger_start(struct finger *finger, const struct finger_traits *traits, unsigned index);
 
 /* Checks faults, watchdog and hold time. Call it at least every millisecond, and before a request that arrived at

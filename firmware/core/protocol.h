@@ -37,7 +37,8 @@ enum {
     REASON_UNKNOWN_FRAME = 6
 };
 
-/* Offsets of the fields of a Configure, counted from the header. A Refused 2 carries them as its detail. */
+/* Offsets of the fields of a Configure, counted from the header. A Refused with REASON_VALUE carries one of
+   them as its detail. */
 enum { FIELD_VERSION = 2, FIELD_WATCHDOG = 3, FIELD_END_STATE = 5, FIELD_TORQUE_LIMITS = 10 };
 
 /* Flags of a Command. */

@@ -9,8 +9,8 @@
 /* Must be all zeros at the start. */
 struct receiver {
     size_t collected; /* Bytes since the last delimiter. Stays at STUFFED_MOST + 1 once there are too many. */
-    size_t next_zero; /* The place among them of the next byte that stands for a zero. */
-    uint32_t crc;     /* Of the decoded bytes. */
+    size_t next_zero; /* Index, among these bytes, of the next one that stands for a zero. */
+    uint32_t crc;     /* CRC of the decoded bytes. */
     struct frame frame;
 };
 

@@ -9,7 +9,7 @@
 /* Longest input that stuffing lengthens by only one byte. */
 enum { STUFF_MOST = 254 };
 
-/* Stuffs byte by byte, at most STUFF_MOST of them. */
+/* Stuffs at most STUFF_MOST bytes, one at a time. */
 struct stuffing {
     uint8_t *distance_at; /* Receives the distance to the next zero. */
     uint8_t *next;

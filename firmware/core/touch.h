@@ -10,9 +10,9 @@ enum { TOUCH_ELEMENTS_MOST = 16, TOUCH_QUEUE = 16 };
 /* The properties of the elements that are fixed when the board is built, in counts of their converter. */
 struct touch_traits {
     uint16_t elements; /* 0 to TOUCH_ELEMENTS_MOST. */
-    uint16_t made;     /* An element is pressed above its count at power-up plus this. */
-    uint16_t lost;     /* It is no longer pressed below its count at power-up plus this, which is less than `made`. */
-    uint16_t step;     /* A change since the last event that causes a pressure event. */
+    uint16_t made;     /* An element is pressed when its count exceeds the one at power-up by more than this. */
+    uint16_t lost;     /* It is no longer pressed when its count exceeds that one by less than this (below `made`). */
+    uint16_t step;     /* A change by this much since the last event causes a pressure event. */
 };
 
 struct touch_element {

@@ -11,12 +11,13 @@ enum { INPUT_ROOM = 512, OUTPUT_ROOM = 1024 };
 static struct {
     volatile size_t written, taken; /* Never reset; their difference is the number of bytes that wait. */
     volatile uint8_t bytes[INPUT_ROOM];
-    volatile uint32_t arrived_at[INPUT_ROOM]; /* Of zero bytes only: the clock takes a third of an interrupt. */
+    /* Set for zero bytes only, because reading the clock takes a third of the time of an interrupt. */
+    volatile uint32_t arrived_at[INPUT_ROOM];
 } input;
 
 /* The main loop writes `written`; `taken` is written by uart_transmit only. */
 static struct {
-    volatile size_t written, taken; /* As for the input. */
+    volatile size_t written, taken; /* Never reset, like those of the input. */
     uint8_t bytes[OUTPUT_ROOM];
 } output;
 
@@ -78,7 +79,7 @@ void hal_send(unsigned line, const uint8_t *bytes, size_t length)
     size_t written = output.written, place = written % OUTPUT_ROOM;
     bool fits = length <= OUTPUT_ROOM - (written - output.taken);
     if (fits) {
-        /* The interrupt does not read behind `written`, so the copy needs no mask. */
+        /* The interrupt does not read past `written`, so the copy needs no mask. */
         size_t before_the_end = length < OUTPUT_ROOM - place ? length : OUTPUT_ROOM - place;
         memcpy(output.bytes + place, bytes, before_the_end);
         memcpy(output.bytes, bytes + before_the_end, length - before_the_end);

@@ -85,7 +85,7 @@ void plant_start(void)
 {
     to_plant = open_file("plant_to");
     from_plant = open_file("plant_from");
-    /* Unreadable until the plant answers. */
+    /* The tactile elements are unreadable until the plant answers. */
     for (unsigned finger = 0; finger < PLANT_FINGERS; finger++)
         memset(fingers[finger].touch, 0xFF, sizeof fingers[finger].touch);
 }

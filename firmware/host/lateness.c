@@ -1,5 +1,5 @@
-/* Tests that no vector can express: the arrival of a Command restarts the watchdog, not the moment at which the main
-   loop reads it. */
+/* Tests that no test vector can express. The watchdog restarts at the time at which a Command arrives, and not at the
+   time at which the main loop reads it. */
 
 #include "fake_hardware.h"
 #include "../core/protocol.h"
@@ -69,7 +69,7 @@ int main(void)
         expect(finger.state == FINGER_ENABLED, "a Command that came in time was not obeyed");
         fake.now += 6000;
         board_poll(&board);
-        expect(finger.state == FINGER_ENDED, "the watchdog counts from when the Command was looked at");
+        expect(finger.state == FINGER_ENDED, "the watchdog counts from the reading of the Command");
 
         enable(beginnings[i]);
         fake.now += 25000;

@@ -14,7 +14,7 @@ struct mechanism {
     double theta[JOINTS], theta_rate[JOINTS];
     double motor[MOTORS], motor_rate[MOTORS];
     double torque[MOTORS];
-    bool braked; /* Until the first non-zero torque. */
+    bool braked; /* True until the first non-zero torque. */
 };
 
 void mechanism_start(struct mechanism *finger);

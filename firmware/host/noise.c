@@ -2,9 +2,10 @@
 
        noise STREAMS SEED
 
-   Each stream is a sequence of random bytes, or of frames, some of them damaged, with pauses between streams. After
-   each one the program checks that answers are whole frames of this board, that no frame with a wrong checksum
-   passes, that no motor has torque unless it is enabled or holding, and that the next good frame is found. */
+   Each stream is a sequence of random bytes, or a sequence of frames, some of which are damaged. A pause follows some
+   of the streams. After each stream the program checks that answers are whole frames of this board, that no frame with
+   a wrong checksum passes, that no motor has torque unless it is enabled or holding, and that the next good frame is
+   found. */
 
 #include "fake_hardware.h"
 #include "../core/protocol.h"
@@ -54,7 +55,7 @@ static struct finger fingers[FAKE_FINGERS];
 static struct board board;
 static unsigned long long accepted, answered, enabled;
 
-/* A request whose fields are mostly valid. The firmware must cope with the others. */
+/* Writes a request whose fields are mostly valid. The firmware must also cope with invalid fields. */
 static size_t some_request(uint8_t wire[WIRE_MOST])
 {
     struct frame frame;
@@ -145,11 +146,11 @@ static void arrive(const uint8_t *bytes, size_t length)
     for (size_t i = 0; i < length; i++) {
         if (receiver_take(&observer, bytes[i]) == RECEIVED_FRAME) {
             uint32_t check = frame_get32(frame, frame->length);
-            require(slow_check(frame->bytes, frame->length) == check, "a wrong check passed");
+            require(slow_check(frame->bytes, frame->length) == check, "a frame with a wrong checksum passed");
             accepted++;
         }
     }
-    /* Delivered in pieces, as a driver would. */
+    /* The bytes arrive in pieces, as from a driver. */
     while (length > 0) {
         size_t piece = 1 + below((uint32_t)length);
         fake_arrive(&board, bytes, piece);

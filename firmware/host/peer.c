@@ -2,8 +2,8 @@
 
        peer ADDRESS...
 
-   The first line of output is the path of the port. For each line on standard input it prints the true joint angles:
-   three a finger, rad. The end of standard input ends the program. */
+   The first line of output is the path of the port. For each line on standard input it prints the true joint angles,
+   rad: three for each finger. The end of standard input ends the program. */
 
 #define _XOPEN_SOURCE 700
 
@@ -28,8 +28,8 @@ static int line;
 static struct finger_traits traits[FINGERS_MOST];
 static struct finger fingers[FINGERS_MOST];
 static struct mechanism mechanisms[FINGERS_MOST];
-/* How much longer each finger may move before its next sample, us. A real finger does not wait. On a busy machine,
-   however, host and board are both delayed by more than any control loop tolerates. */
+/* How much longer each finger may move before its next sample, us. A real finger does not wait for a sample. On a busy
+   machine, however, host and board are both delayed by more than any control loop tolerates, so this finger waits. */
 static uint32_t motion_left[FINGERS_MOST];
 static const uint32_t motion_most = 2000;
 

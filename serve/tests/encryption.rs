@@ -39,7 +39,8 @@ fn a_client_uses_only_the_keys_of_its_certificate() {
     let in_force = || (rig.set_point() == goal).then_some(());
     alice.repeat_until(&[part(1, goal)], "set point", |_| in_force());
 
-    // Bob's certificate, with alice's name and her epoch: nothing arrives, so nothing is even counted.
+    // Bob connects with his own certificate, and uses alice's name and epoch. None of his messages reaches the server,
+    // so it does not count them.
     let bob = connected("alice", "bob");
     let key = bob.keys.request(Action::Stop, &alice.name);
     assert!(bob.ask(&key, request(Action::Stop).encode().expect("a Request")).is_none());
@@ -90,7 +91,7 @@ fn a_certificate_of_another_authority_does_not_connect() {
     certificates(folder.path(), &["alice"]);
     certificates(other.path(), &["alice"]);
     let rig = rig(folder.path());
-    // Mallory trusts the server, and has a certificate of an authority of its own with alice's name.
+    // Mallory trusts the server. The certificate has alice's name, but another authority has signed it.
     for file in ["alice.pem", "alice.key"] {
         let own = other.path().join(file);
         std::fs::copy(own, folder.path().join(format!("foreign{}", &file[5..]))).expect("copied");

@@ -86,7 +86,7 @@ fn a_hand_is_offered_until_a_signal_comes() {
 
 /// Sets what this process does when its terminal closes: SIG_DFL or SIG_IGN.
 fn at_hangup(action: libc::sighandler_t) -> std::io::Result<()> {
-    // SAFETY: the call concerns this process, and `action` is no function of it.
+    // SAFETY: the call concerns this process. `action` is SIG_DFL or SIG_IGN, so no function of the process runs.
     #[allow(unsafe_code)]
     let earlier = unsafe { libc::signal(libc::SIGHUP, action) };
     if earlier == libc::SIG_ERR { Err(std::io::Error::last_os_error()) } else { Ok(()) }
@@ -153,7 +153,7 @@ fn arguments_cannot_change_the_state_of_a_terminal() {
         assert!(!output.stderr.is_empty() && !output.stderr.contains(&0x1b), "{output:?}");
         assert!(!output.stdout.contains(&0x1b), "{output:?}");
     }
-    assert!(!Path::new(folder).exists(), "a refusal makes nothing");
+    assert!(!Path::new(folder).exists(), "a refused command creates no folder");
 }
 
 #[test]
@@ -200,7 +200,7 @@ fn policies(process: u32) -> Vec<(String, u32)> {
         let path = task.ok()?.path();
         let stat = read_to_string(path.join("stat")).ok()?;
         let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
-        // Field 41 of proc(5). Two fields are before the ones that are split.
+        // The policy is field 41 in proc(5). `fields` begins with field 3.
         Some((read_to_string(path.join("comm")).ok()?.trim().to_owned(), fields[38].parse().ok()?))
     });
     policies.collect()

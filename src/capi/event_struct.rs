@@ -22,7 +22,7 @@ pub struct sun2xp_event {
     pub part: c_int,
     /// Cycle of the event, as in sun2xp_status and sun2xp_record.
     pub cycle: c_ulong,
-    /// Events that were lost since sun2xp_open: not taken in time.
+    /// Events lost since sun2xp_open because they were not taken in time.
     pub lost: c_ulong,
     /// Beginning of that cycle, s of CLOCK_MONOTONIC.
     pub time: f64,

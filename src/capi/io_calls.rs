@@ -26,8 +26,8 @@ use std::path::PathBuf;
 ///
 ///   start     in a thread of the library that is not real-time, at opening and at every recovery; may take
 ///             seconds. An error refuses the call.
-///   exchange  in the servo thread of the finger. An error is a lost reply. If it returns after the
-///             deadline, the cycle is late, and possibly an overrun.
+///   exchange  in the servo thread of the finger. An error counts as a lost reply. If it returns
+///             after the deadline, the cycle is late, and possibly an overrun.
 ///   stop      in the servo thread or at a recovery. After an error, the library calls it again. Every
 ///             start that has succeeded is followed by a stop.
 ///
@@ -36,11 +36,11 @@ use std::path::PathBuf;
 /// pthread_exit, exceptions.
 ///
 /// The program must provide a watchdog outside this process, such as that of its drives: if no exchange
-/// comes for terms->watchdog, the hardware must enter the end state by itself, also if this process hangs
+/// comes for terms->watchdog, the hardware must enter the end state by itself, even if this process hangs
 /// or has died.
 ///
-/// A tension may be from -8192 to 57342 steps. A tension outside, NaN, or an encoder that moves by 32768
-/// counts between two exchanges faults the finger, as SUN2XP_IO_SENSOR does.
+/// A tension may be from -8192 to 57342 steps. A tension that is NaN or outside this range faults the
+/// finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by 32768 counts between two exchanges.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -60,7 +60,8 @@ pub unsafe extern "C" fn sun2xp_open_io(
     io: *const sun2xp_io,
     hand: *mut *mut sun2xp_hand,
 ) -> c_int {
-    // SAFETY: here and below, by the contract in the manual, each pointer is null or points to what it is for.
+    // SAFETY: here and below, by the contract in the manual, each pointer is null or points to the data of its
+    // description.
     unsafe {
         open("sun2xp_open_io", hand, || {
             let io = io_table::load(count, io)?;

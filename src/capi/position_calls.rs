@@ -37,7 +37,7 @@ use std::ffi::c_int;
 pub unsafe extern "C" fn sun2xp_send_position(hand: *mut sun2xp_hand, finger: c_int, position: *const f64) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_send_position", hand, || {
-        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array that the manual describes.
         let joints = unsafe { load::<f64, 3>(position, "position") }?;
         let command = || FingerCommand::new(finger).joints(joints);
         hand_table::send(hand, |hand| hand.send_position(finger, joints), command)
@@ -78,7 +78,7 @@ pub unsafe extern "C" fn sun2xp_send_position(hand: *mut sun2xp_hand, finger: c_
 pub unsafe extern "C" fn sun2xp_send_stiffness(hand: *mut sun2xp_hand, finger: c_int, stiffness: *const f64) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_send_stiffness", hand, || {
-        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array that the manual describes.
         let rows = unsafe { load_rows(stiffness, "stiffness") }?;
         let command = || FingerCommand::new(finger).stiffness(rows);
         hand_table::send(hand, |hand| hand.send_stiffness(finger, rows), command)

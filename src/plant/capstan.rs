@@ -57,7 +57,8 @@ impl Capstans {
         Contacts { conduit: motor - SHARES[0] * stretch, pulleys: joint + SHARES[2] * stretch }
     }
 
-    /// Lets the contacts slide as far as the ends of the tendon, m, force them to.
+    /// Lets the contacts slide as far as the ends of the tendon force them. `motor` and `joint` are the positions of
+    /// the ends, m.
     pub fn slide(&self, contacts: &mut Contacts, elasticity: &Elasticity, motor: f64, joint: f64) {
         for _ in 0..SWEEPS {
             let before = *contacts;
@@ -128,8 +129,8 @@ mod tests {
         Elasticity::new(3e4, hardening, 60.0)
     }
 
-    /// Moves the ends along `path` (motor, joint) in small steps, and returns the tensions and the work that the ends
-    /// did, J.
+    /// Moves the ends along `path` (motor, joint) in small steps. Returns the tensions, the work that the ends did, J,
+    /// and the increase of the elastic energy, J.
     fn moved(capstans: &Capstans, hardening: f64, path: &[(f64, f64)]) -> (SectionTensions, f64, f64) {
         let elasticity = spring(hardening);
         let (mut motor, mut joint) = path[0];
@@ -180,7 +181,8 @@ mod tests {
         let elasticity = spring(LINEAR);
         let mut contacts = Capstans::relaxed(6e-4, 0.0);
         let before = contacts;
-        // 18 N in all sections. The motor's section may change by 1.8 N: 0.3e-4 m on its stiffness of 6e4 N/m.
+        // All sections have a tension of 18 N. The motor moves its end by 0.3e-4 m. The motor's section has a stiffness
+        // of 6e4 N/m, so its tension changes by 1.8 N, which is less than the friction.
         capstans.slide(&mut contacts, &elasticity, 6.3e-4, 0.0);
         assert_eq!((contacts.conduit, contacts.pulleys), (before.conduit, before.pulleys));
         assert_eq!(contacts.tensions(&elasticity, 6.3e-4, 0.0).gauge, contacts.tensions(&elasticity, 6e-4, 0.0).gauge);

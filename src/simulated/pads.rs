@@ -15,7 +15,7 @@ const PRESSED: f64 = 0.05;
 /// Force below which a pressed element is no longer pressed, N.
 const RELEASED: f64 = 0.025;
 
-/// Change of the force since the last event of the element that causes a pressure event, N.
+/// A change of the force by this much since the last event of the element causes a pressure event, N.
 const STEP: f64 = 0.1;
 
 /// Speed of the tip across its contact above which the contact slips, cm/s.

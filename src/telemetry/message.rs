@@ -52,7 +52,7 @@ impl Message {
     /// Returns the message in the format of the shared memory, which keeps every bit.
     ///
     /// # Errors
-    /// Returns an error if the message cannot be encoded. No message of this library is such a message.
+    /// Returns an error if the message cannot be encoded. Every message of this library can be encoded.
     pub fn encode(&self) -> io::Result<Vec<u8>> {
         postcard::to_stdvec(self).map_err(io::Error::other)
     }
@@ -79,7 +79,7 @@ pub struct Status {
     pub time: u64,
     /// Stage of the finger.
     pub stage: Stage,
-    /// Counts since open.
+    /// Numbers of cycles and of their errors since open.
     pub losses: Losses,
     /// Time from the scheduled beginning of a cycle to its first instruction, microseconds, since open or the last
     /// reset.

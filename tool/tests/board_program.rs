@@ -1,4 +1,4 @@
-//! `sun2xp board`: a board as a separate program, at the port that it prints.
+//! Tests `sun2xp board`, which runs a board as a separate program and prints the path of its port.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;

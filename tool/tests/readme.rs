@@ -54,7 +54,7 @@ fn the_first_commands_of_readme_work() {
         let mut arguments: Vec<&str> = arguments.split_whitespace().collect();
         used.push(arguments[0]);
         match arguments[0] {
-            // These do not end by themselves. The help checks the options.
+            // These commands do not end by themselves. With --help, the tool checks the other options and ends.
             "monitor" | "jog" => arguments.push("--help"),
             "record" => {
                 let seconds = arguments.iter().position(|&argument| argument == "--seconds").expect("an end");

@@ -13,7 +13,7 @@ use sun2xp_serve::server::Server;
 use sun2xp_serve::settings::{Overrides, Settings};
 use zenoh::Wait;
 
-/// Longest time until something that happens at once has happened. The machine may be busy.
+/// Longest wait for a change that normally takes effect at once. The machine may be busy.
 const HAPPENS: Duration = Duration::from_secs(20);
 
 fn eventually(what: &str, mut holds: impl FnMut() -> bool) {
@@ -48,7 +48,7 @@ fn two_hands_behind_a_router_get_targets_with_one_time_stamp() {
         names.iter().all(|name| found.iter().any(|hand| hand.name == *name))
     });
 
-    // What passes the router: the times sent of the Targets with a command, by their keys.
+    // The time sent of the first Target with a command that passes the router, for each key.
     let seen: Arc<Mutex<BTreeMap<String, u64>>> = Arc::default();
     let mut config = zenoh::Config::default();
     config.insert_json5("mode", "\"client\"").expect("a key");
@@ -68,7 +68,7 @@ fn two_hands_behind_a_router_get_targets_with_one_time_stamp() {
     let home = [1, 2, 3].map(|finger| FingerCommand::new(finger).joints([0.1, 0.7, 0.8]));
     send_together(&[(&hands[0], &home), (&hands[1], &home)]).unwrap_or_else(|error| panic!("{error}"));
     for server in &servers {
-        eventually("the hand is where it shall be", || {
+        eventually("the hand reaches the commanded pose", || {
             (1..=3).all(|finger| {
                 let joints = server.hand().position(finger).expect("a finger");
                 (0..3).all(|joint| (joints[joint] - [0.1, 0.7, 0.8][joint]).abs() < 0.05)
@@ -90,7 +90,7 @@ fn a_reader_that_reads_nothing_slows_no_other() {
     let server = Server::start(hand, settings).unwrap_or_else(|error| panic!("{error}"));
     let reader = Raw::connect(&endpoint, "hand", "reader", None).expect("connected");
     eventually("States arrive", || reader.states() > 10);
-    // It is connected, has subscribed, and is stopped: the buffers between it and the server fill up.
+    // The slow planner connects and subscribes, and is then stopped. The buffers between it and the server fill up.
     let slow = Planner::start_here(
         &format!("[remote]\nendpoint = \"{endpoint}\"\nhand = \"hand\"\nclient = \"slow\"\n"),
         Motion::Watch,
@@ -107,7 +107,7 @@ fn a_reader_that_reads_nothing_slows_no_other() {
             (count, last) = (reader.states(), Instant::now());
         }
     }
-    // A State at least every 10 ms: 500 in 5 s.
+    // The server sends a State at least every 10 ms, which makes 500 in 5 s.
     assert!(count - begin > 400, "{} States in 5 s", count - begin);
     assert!(longest < Duration::from_millis(200), "no State for {longest:?}");
     drop(slow);

@@ -142,7 +142,7 @@ impl Identity {
     /// Converts a torque count to N cm.
     pub fn torque(&self, count: i16) -> f64 {
         // The product is exact, so only the division rounds. The result is therefore the double that is closest to the
-        // torque in decimal. Reading this decimal text from a configuration gives the same double.
+        // exact torque. A configuration with the exact torque as a decimal number gives the same double.
         f64::from(count) * f64::from(self.torque_unit) / NANO_PER_CENTI
     }
 }

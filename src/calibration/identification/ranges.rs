@@ -47,8 +47,8 @@ pub(super) struct Ranges {
 }
 
 impl Ranges {
-    /// `stops` are the configured angles of the lower and upper stops, rad. If they are not `needed`, a joint without
-    /// an upper stop ends the motion without a result.
+    /// `stops` are the configured angles of the lower and upper stops, rad. If `needed` is false, a joint
+    /// without an upper stop ends the motion without a result.
     pub fn new(stops: &(Vector3<f64>, Vector3<f64>), needed: bool) -> Self {
         let width = stops.1 - stops.0;
         Self {
@@ -127,7 +127,7 @@ impl Ranges {
         }
     }
 
-    /// Ends a reading, and begins the next motion. Returns the readings after the last one.
+    /// Ends a reading, and begins the next motion. After the last reading, returns all of them.
     fn read(&mut self) -> Option<Option<MomentArms>> {
         let (travel, tensions) = (self.travel.mean(), self.tensions.mean());
         let rest = Rest { travel, tensions, winding: self.winding.friction };

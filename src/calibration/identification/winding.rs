@@ -6,9 +6,9 @@ use nalgebra::Vector4;
 /// change of direction.
 const LEAST: f64 = 0.01;
 
-/// For every tendon, the part of its conduit friction that acts: +1 after winding in, -1 after letting out, and in
-/// between while the motor turns back. A motor that turns back first stretches only its own end of the tendon: the
-/// tendon slides again when that end has lost or gained twice the friction.
+/// For every tendon, the part of its conduit friction that acts: +1 after winding in, -1 after letting out, and a value
+/// in between while the motor turns back. A motor that turns back first stretches or relaxes only its own end of the
+/// tendon. The tendon slides again when the tension of that end has changed by twice the friction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Winding {
     before: Option<Vector4<f64>>,

@@ -11,8 +11,8 @@ use nalgebra::Vector4;
 
 /// Speed of a sweep, cm/s.
 const SPEED: f64 = 0.5;
-/// A gauge responds alone if every other one changes by less than this part of its change. On a free finger the
-/// tensions change along the null vector of R, in which no entry is so small.
+/// A gauge responds alone if the change of every other gauge is below this part of its own change. The tensions of a
+/// free finger change along the null vector of R. Every entry of this vector is above this part of the largest one.
 const ALONE: f64 = 0.2;
 
 impl SignSearch {
@@ -49,7 +49,7 @@ impl SignSearch {
         Ok(Phase::Sweep(Sweep::first(self.target[self.motor])))
     }
 
-    /// Runs one cycle of the motor's motion. Returns whether it has been at every position.
+    /// Runs one cycle of the motor's motion. Returns whether the motor has been at every position.
     fn advance(
         &mut self,
         sweep: &mut Sweep,

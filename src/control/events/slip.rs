@@ -1,9 +1,9 @@
 //! Detects that a contact is about to slip: the force at the fingertip leaves the friction cone.
 //!
-//! Without touch sensors, the normal of a contact is not measured. The detector takes the direction of the force at the
-//! first rest of the finger during the contact. This is the normal if the finger has pressed against the object and has
-//! not carried it yet. A contact that begins to slide can be recognised by its motion only when the tip moves at 0.5
-//! cm/s, and then the object is lost. The force leaves the cone before the contact slides.
+//! Without touch sensors, the normal of a contact is not measured. The detector uses the direction that the force has
+//! when the finger first comes to rest during the contact. This direction is the normal if the finger has pressed
+//! against the object and has not carried it yet. A contact that begins to slide can be recognised by its motion only
+//! when the tip moves at 0.5 cm/s, and then the object is lost. The force leaves the cone before the contact slides.
 
 use super::observation::{ObservationKind, Observations};
 use crate::control::contact::ContactEstimate;
@@ -92,10 +92,10 @@ mod tests {
     #[test]
     fn a_force_beyond_the_cone_around_the_first_rest_is_a_slip() {
         let mut state = SlipState::default();
-        // The approach, and the rest, in which the finger presses along y.
+        // First the finger approaches. Then it rests, and presses along y.
         assert_eq!(slips(&mut state, [1.0, 1.0, 0.0], false, 500), 0);
         assert_eq!(slips(&mut state, [0.0, 2.0, 0.0], true, 1), 0);
-        // A load along z.
+        // Then a load acts along z.
         assert_eq!(slips(&mut state, [0.0, 2.0, 0.95], true, 500), 0);
         assert_eq!(slips(&mut state, [0.0, 2.0, 1.05], true, 1), 1);
         assert_eq!(slips(&mut state, [0.0, 2.0, 1.05], true, 49), 0);

@@ -40,7 +40,7 @@ impl TensionBounds {
         }
     }
 
-    /// Returns the bound beyond which the tension is. With `eased`, the bounds are moved inward by the hysteresis.
+    /// Returns the bound that the tension has crossed. With `eased`, the bounds are moved inward by the hysteresis.
     fn crossed(&self, tension: f64, eased: bool) -> Option<f64> {
         let ease = |bound: f64| if eased { (HYSTERESIS * bound).max(LEAST_HYSTERESIS) } else { 0.0 };
         let above = self.above.filter(|bound| tension > bound - ease(*bound));

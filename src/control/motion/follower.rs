@@ -5,7 +5,7 @@ use crate::control::signals::{SetPoint, spatial};
 use crate::model::path::Piece;
 use nalgebra::{Matrix3, Matrix6};
 
-/// The Kx that a path reaches at a given time. Between two of them Kx changes linearly.
+/// The Kx that a path reaches at a given time. Between two such times Kx changes linearly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TimedStiffness {
     /// Time since the beginning of the path, s.

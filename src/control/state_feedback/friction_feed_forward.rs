@@ -3,15 +3,15 @@
 use crate::control::motors::motor_friction::MotorFriction;
 use nalgebra::Vector4;
 
-/// Speed of the motor side of a tendon from which the full share is fed forward, m/s. A step at zero speed would
-/// cause chatter.
+/// The full share is fed forward if the motor side of a tendon moves at least at this speed, m/s. A step at zero speed
+/// would cause chatter.
 const CREEP: f64 = 0.001;
 
 /// share sat(v / creep) (coulomb + conduit t), N at the tendon.
 ///
 /// v is the observed speed. If v were the speed of the reference, a limit cycle would remain at high stiffness because
-/// of friction. The observer must receive the pull without this feed-forward. Otherwise its disturbance would
-/// compensate the same friction a second time.
+/// of friction. The observer must receive the pull without this feed-forward. Otherwise the disturbance
+/// that it estimates would compensate the same friction a second time.
 #[derive(Clone, Debug)]
 pub(crate) struct FrictionFeedForward {
     pub friction: MotorFriction,

@@ -25,7 +25,8 @@ impl Warnings {
         }
     }
 
-    /// Returns the newest warning, until the number of cycles given to [`Warnings::note`] has passed without it.
+    /// Returns the newest warning. Returns `None` after the warning has been absent for the number of cycles that
+    /// [`Warnings::note`] was given.
     pub fn newest(&self) -> Option<Fault> {
         self.newest
     }

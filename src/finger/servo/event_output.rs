@@ -11,8 +11,8 @@ pub(super) struct EventOutput {
     writer: EventWriter,
     log: EventLog,
     detectors: DetectorState,
-    /// The kinds of the events that have been written since the last call of [`EventOutput::take_kinds`]: a bit for the
-    /// number of each kind.
+    /// The kinds of the events that have been written since the last call of [`EventOutput::take_kinds`]. Bit n stands
+    /// for the kind with number n.
     kinds: u32,
     /// Whether the last cycle has published events.
     published: bool,
@@ -39,7 +39,8 @@ impl EventOutput {
         self.writer.write(occurrence);
     }
 
-    /// Returns the kinds of the events that have been written since the last call: a bit for the number of each kind.
+    /// Returns the kinds of the events that have been written since the last call. Bit n stands for the kind with
+    /// number n.
     pub fn take_kinds(&mut self) -> u32 {
         std::mem::take(&mut self.kinds)
     }

@@ -4,7 +4,7 @@ use crate::finger::events::EventLog;
 use crate::realtime::{EventCount, SharedPages};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The logs of a hand's fingers. It outlives the hand while a queue or a listener exists.
+/// The logs of a hand's fingers. They outlive the hand while a queue or a listener exists.
 pub struct EventSource {
     pub(super) logs: Vec<EventLog>,
     /// The threads that wait for events.
@@ -16,7 +16,7 @@ pub struct EventSource {
 }
 
 impl EventSource {
-    /// `readers` is what the servos of all fingers notify. `period` is in ns.
+    /// The servos of all fingers notify `readers`. `period` is in ns.
     pub fn new(logs: Vec<EventLog>, readers: SharedPages<EventCount>, period: u64) -> Self {
         Self { logs, readers, closed: AtomicBool::new(false), period }
     }

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredMonitors {
-    /// Torque that may be out of balance at a motor that does not turn, N cm. More is a stalled motor. It must exceed
-    /// the static friction of the motor.
+    /// Torque that may be out of balance at a motor that does not turn, N cm. A larger torque means that the motor is
+    /// stalled. The value must exceed the static friction of the motor.
     pub stall_torque: [f64; 4],
-    /// Part of the pull or of the tension, whichever is larger, that may be out of balance in addition. It covers
-    /// friction in proportion to the tension and the error of the torque constant.
+    /// In addition, this part of the pull or of the tension, whichever is larger, may be out of balance. It covers the
+    /// error of the torque constant, and friction that is proportional to the tension.
     pub stall_fraction: f64,
     /// Disagreement of gauges and encoders that is always tolerated, N of mean tension.
     pub disagreement: f64,

@@ -34,7 +34,7 @@ impl Session<'_> {
         let outcome = match desk.complete(step, failed) {
             Ok(outcome) => outcome,
             Err(failure) if matches!(failure.downcast_ref(), Some(NoAnswer::Left)) => {
-                writeln!(io::stdout(), "\nLeft. {}", self.continuation())?;
+                writeln!(io::stdout(), "\nYou have left the step. {}", self.continuation())?;
                 return Ok(false);
             }
             Err(failure) => return Err(self.stopped(&failure.to_string()).into()),

@@ -46,7 +46,7 @@ fn body_of_key(text: &mut Roff, comment: &[&str]) {
 }
 
 /// Returns the key and the value of a line such as `rate = 1000.0`. A line with an optional key begins with # and has
-/// no space behind it.
+/// no space after it.
 pub fn key(line: &str) -> Option<(&str, &str)> {
     let line = line.strip_prefix('#').unwrap_or(line);
     let (key, value) = line.split_once(" = ")?;

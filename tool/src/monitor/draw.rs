@@ -30,7 +30,7 @@ const FRAME: u16 = 2;
 /// Smallest useful height of events and timing.
 const BOTTOM: u16 = 4;
 
-/// Most useful height of events and timing.
+/// Largest useful height of events and timing.
 const BOTTOM_COMPLETE: u16 = 16;
 
 /// Draws the view.
@@ -180,7 +180,7 @@ fn title(view: &View, palette: &Palette, width: usize) -> Line<'static> {
     Line::from(spans)
 }
 
-/// The end of the hand or a notice, and the keys.
+/// Returns the lines at the bottom: why the hand has ended, a notice, and the keys.
 fn footer(view: &View, palette: &Palette, width: usize) -> Vec<Line<'static>> {
     let mut lines = Vec::new();
     let inner = width.saturating_sub(2);

@@ -21,7 +21,7 @@ pub fn event_text(event: &Event) -> String {
     text
 }
 
-/// Returns values with their unit; none if the value says nothing to a person.
+/// Returns values with their unit, or `None` if they mean nothing to a person.
 fn value_text(meaning: ValueKind, values: &[f64]) -> Option<String> {
     let first = *values.first()?;
     Some(match (meaning, values) {

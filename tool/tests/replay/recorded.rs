@@ -15,7 +15,7 @@ use sun2xp::model::configuration::Scheme;
 use sun2xp::telemetry::{self, Description, Message, Reader};
 use tempfile::NamedTempFile;
 
-/// Size of a chunk of a file, bytes: less than a second.
+/// Size of a chunk of a file, bytes. A chunk holds less than one second of messages.
 const CHUNK: u64 = 1 << 16;
 
 /// The messages of a run.
@@ -97,8 +97,8 @@ impl Recorded {
     }
 }
 
-/// Flips a bit in the middle of a chunk of a recording: the one in the middle of the file. Some bits between the
-/// chunks, and some of their headers, have no check, because no reader needs them.
+/// Flips a bit in the middle of a chunk of a recording. It selects the chunk in the middle of the file. Some bits
+/// between the chunks, and some bits of the headers of chunks, have no checksum, because no reader needs them.
 pub fn damaged(file: &[u8]) -> Vec<u8> {
     let mut damaged = file.to_vec();
     // A record begins with its kind and its length.

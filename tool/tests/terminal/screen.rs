@@ -60,7 +60,7 @@ impl Terminal {
         self.tmux(&["resize-window", "-x", &width.to_string(), "-y", &height.to_string()]);
     }
 
-    /// Returns the number of the process that has written it into `$PIDFILE`.
+    /// Returns the process number that the command has written into `$PIDFILE`.
     pub fn process(&self) -> String {
         std::fs::read_to_string(self.file("pid")).expect("written").trim().into()
     }

@@ -1,4 +1,4 @@
-//! Requests that the server refuses. The page of a hand that is not open serves as well.
+//! Requests that the server refuses. These tests need no open hand, so the program waits for one.
 
 use super::http::{connect, get, request};
 use super::program::Program;
@@ -71,7 +71,7 @@ fn a_page_beyond_loopback_has_a_token() {
 fn a_message_that_is_too_long_ends_the_connection() {
     let program = waiting();
     let mut socket = Socket::open(program.address(), "/stream", &[]).expect("a socket");
-    assert!(matches!(socket.next(), Frame::Text(_)), "why there is no hand");
+    assert!(matches!(socket.next(), Frame::Text(_)), "the first message says why there is no hand");
     socket.send(&"x".repeat(20_000));
     assert!(matches!(socket.next(), Frame::Close(..) | Frame::End));
     assert!(Socket::open(program.address(), "/stream", &[]).is_ok(), "the server serves others");
@@ -82,7 +82,7 @@ fn a_page_that_only_shows_takes_no_commands() {
     let program = waiting();
     let closed = |message: &str| {
         let mut socket = Socket::open(program.address(), "/stream", &[]).expect("a socket");
-        assert!(matches!(socket.next(), Frame::Text(_)), "why there is no hand");
+        assert!(matches!(socket.next(), Frame::Text(_)), "the first message says why there is no hand");
         socket.send(message);
         match socket.next() {
             Frame::Close(code, reason) => (code, reason),
@@ -111,13 +111,13 @@ fn random_bytes_at_the_port_end_only_their_own_connection() {
         let mut stream = connect(program.address());
         let mut bytes = vec![0; 1 + random.next_u32() as usize % 3000];
         random.fill_bytes(&mut bytes);
-        // The server may close the connection before it has taken all.
+        // The server may close the connection before it has read all bytes.
         let _ = stream.write_all(&bytes);
         let _ = stream.shutdown(std::net::Shutdown::Write);
         let _ = stream.read_to_end(&mut Vec::new());
     }
     let mut socket = Socket::open(program.address(), "/stream", &[]).expect("a socket");
-    assert!(matches!(socket.next(), Frame::Text(_)), "why there is no hand");
+    assert!(matches!(socket.next(), Frame::Text(_)), "the first message says why there is no hand");
     for _ in 0..50 {
         let mut bytes = vec![0; 200];
         random.fill_bytes(&mut bytes);

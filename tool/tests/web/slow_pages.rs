@@ -1,4 +1,4 @@
-//! A page that does not keep up loses batches. Other pages get all.
+//! A page that does not keep up loses batches. Other pages get every batch.
 
 use super::messages::{batch, message};
 use super::program::{Program, hand};
@@ -15,7 +15,7 @@ fn a_page_that_does_not_acknowledge_gets_a_second_and_then_waits() {
     let open = || Socket::open(program.address(), "/stream", &[]).expect("a socket");
     let (mut slow, mut quick) = (open(), open());
     let first = (0..AHEAD).map(|_| batch(&mut slow, false)).last().expect("a batch");
-    // More batches than the hub keeps.
+    // The quick page reads more batches than the hub keeps.
     let mut numbers = Vec::new();
     while numbers.len() < 100 {
         numbers.push(batch(&mut quick, true)["number"].as_u64().expect("a number"));

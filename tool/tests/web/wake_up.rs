@@ -10,13 +10,13 @@ use std::time::Duration;
 use sun2xp::realtime::{CycleStage, Distribution};
 use sun2xp::{Hand, RealTime};
 
-/// Number of measurements of each side. The sides alternate.
+/// Number of measurements without the programs, and of measurements with them. The two kinds alternate.
 const TURNS: usize = 12;
 
 /// Duration of a measurement.
 const TURN: Duration = Duration::from_secs(5);
 
-/// Time after the programs have started or ended that is not measured.
+/// Time that is left out of the measurement after the programs have started or ended.
 const SETTLING: Duration = Duration::from_secs(2);
 
 /// Largest ratio of the latency with the programs to the latency without them.
@@ -24,7 +24,8 @@ const LARGEST_RATIO: f64 = 1.1;
 
 const TOOL: &str = env!("CARGO_BIN_EXE_sun2xp");
 
-/// The latencies of one side, us: the median and the largest of 99.9 % of the wake-ups, one value a turn.
+/// The latencies with or without the programs, us: the median and the largest of 99.9 % of the wake-ups. There is one
+/// value for each measurement.
 #[derive(Default)]
 struct Side {
     medians: Vec<f64>,

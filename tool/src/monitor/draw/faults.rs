@@ -9,8 +9,8 @@ use ratatui::style::Style;
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
-/// Returns the lines of all faults and warnings, below a title. Without any, there is no line. Fingers with the same
-/// text share it.
+/// Returns the lines of all faults and warnings. If there are no faults and no warnings, returns no lines. Fingers with
+/// the same text share its lines.
 pub fn lines(palette: &Palette, hand: &HandState, width: usize) -> Vec<Line<'static>> {
     let mut texts: Vec<(String, String, Style)> = Vec::new();
     let mut add = |finger: i32, kind: &str, number: u8, text: &str, style: Style| {
@@ -33,8 +33,8 @@ pub fn lines(palette: &Palette, hand: &HandState, width: usize) -> Vec<Line<'sta
     let mut lines = Vec::new();
     for (fingers, text, style) in texts {
         for (index, line) in wrap(&format!("{fingers}, {text}"), width.saturating_sub(3)).into_iter().enumerate() {
-            // The first line has the fault, and its colour makes it noticed. The other lines have cause and remedy, and
-            // no colour, because they must be easy to read.
+            // The first line has the fault, in a colour that attracts attention. The other lines have cause and remedy.
+            // They have no colour, because they must be easy to read.
             let sign = if index == 0 { "! " } else { "  " };
             lines.push(Line::styled(format!(" {sign}{line}"), if index == 0 { style } else { Style::new() }));
         }
