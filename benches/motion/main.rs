@@ -194,8 +194,8 @@ fn stream(interpolate_ms: Option<f64>) {
     let most = steady.iter().map(|velocity| velocity.norm()).fold(0.0, f64::max);
     let how = interpolate_ms.map_or("no interpolation".into(), |time| format!("interpolate_ms = {time}"));
     println!(
-        "| 10 Hz stream along the circle, {how}: change of the velocity in a period; speed | {:.1} % of the mean \
-         speed; {:.0} % to {:.0} % of it |",
+        "| 10 Hz stream along the circle, {how}: largest change of the velocity in a period, and range of the speed \
+         | {:.1} %, and {:.0} % to {:.0} % of the mean speed |",
         100.0 * jump / mean,
         100.0 * least / mean,
         100.0 * most / mean
@@ -220,8 +220,8 @@ fn at_the_limits() {
             least = least.min(bench.served.mailbox.report().cycle.torque_scale);
         }
         lag.row(&format!(
-            "all joints by {name} to and fro at the default limits, up to {rate:.1} rad/s, tension bounds that permit \
-             {:.0} % of the torque: lag",
+            "all joints by {name} to and fro at the default limits, up to {rate:.1} rad/s, torque never scaled below \
+             {:.0} %: lag",
             100.0 * least
         ));
     }

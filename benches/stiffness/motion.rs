@@ -30,9 +30,9 @@ const ENDING: f64 = 0.2;
 
 /// The result of one step.
 pub struct Step {
-    /// Time until the tip stays within 5 % of the step from its target, s.
+    /// Time until the distance of the tip from its target stays within 5 % of [`STEP`], s.
     pub time: f64,
-    /// Time until the tip stays within 5 % of the step from where it ends, s.
+    /// Time until the distance of the tip from the place where it ends stays within 5 % of [`STEP`], s.
     pub to_its_end: f64,
     /// Distance of this end from the target, as a part of the step.
     pub off: f64,
@@ -89,7 +89,7 @@ pub fn step(finger: &mut ClosedLoop, direction: &Vector3<f64>) -> Step {
     }
 }
 
-/// Returns the time from which the tip stays within 5 % of the step from `target`, s.
+/// Returns the time from which the distance of the tip from `target` stays within 5 % of [`STEP`], s.
 fn settling_time(tips: &[Vector3<f64>], target: &Vector3<f64>, rate: f64) -> f64 {
     // NaN counts as not settled.
     let settled = |tip: &Vector3<f64>| (tip - target).norm() <= 0.05 * STEP;

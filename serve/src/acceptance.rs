@@ -7,7 +7,7 @@ use sun2xp_remote_protocol::{Counts, Target};
 /// Why a Target is not taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rejection {
-    /// It is no Target of this version, or says that it has seen the future.
+    /// It is no Target of this version, or its time `seen` is in the future.
     Malformed,
     /// It does not have the epoch in force, or does not come from the owner.
     OldEpoch,
@@ -87,7 +87,7 @@ mod tests {
         let future = Target { seen: NOW + 1, ..target(1, 1, 0) };
         assert_eq!(acceptance.test(&future, false, NOW, 100), Err(Rejection::Malformed));
         assert_eq!(acceptance.test(&target(9, 9, 500), false, NOW, 100), Err(Rejection::OldEpoch));
-        assert!(acceptance.test(&target(1, 1, 5), true, NOW, 100).is_ok(), "what was not owned fences nothing");
+        assert!(acceptance.test(&target(1, 1, 5), true, NOW, 100).is_ok(), "only Targets of the owner count");
         assert_eq!(acceptance.test(&target(1, 1, 500), true, NOW, 100), Err(Rejection::Replayed));
         assert_eq!(acceptance.test(&target(2, 1, 500), true, NOW, 100), Err(Rejection::Late));
     }

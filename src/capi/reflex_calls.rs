@@ -15,10 +15,11 @@ use crate::model::FingerNumber;
 use nalgebra::{Matrix3, Vector3};
 use std::ffi::{c_double, c_int};
 
-/// An event of the finger occurs. The member event is its kind.
+/// An event of the finger occurs. The member named event gives its kind.
 pub const SUN2XP_WHEN_EVENT: c_int = 1;
 
-/// An event of another finger occurs. The members event and finger are its kind and that finger.
+/// An event of another finger occurs. The member named event gives its kind, and the one named finger gives
+/// that finger.
 pub const SUN2XP_WHEN_OTHER_FINGER: c_int = 2;
 
 /// The force of the surroundings on the tip is above bound, N.
@@ -54,8 +55,8 @@ pub const SUN2XP_THEN_SOFTEN: c_int = 3;
 /// The finger goes to the member position.
 pub const SUN2XP_THEN_RETRACT: c_int = 4;
 
-/// The tip presses harder by the member value, N, up to the member largest, N. This needs a Kx without an
-/// eigenvalue of 0.
+/// The tip presses harder. Its force rises by the member named value, to at most the one named largest, both
+/// in N. This needs a Kx without an eigenvalue of 0.
 pub const SUN2XP_THEN_GRIP: c_int = 5;
 
 /// The tip gets the member value as its damping ratio.

@@ -44,7 +44,7 @@ pub struct BlackBox {
     finger: i32,
     hand: ConfiguredHand,
     controllers: Vec<ControllerSource>,
-    /// Number of the controller that the servo will use when a calibration takes over. The source of this controller is
+    /// Number of the controller that the servo will use when a calibration begins. The source of this controller is
     /// kept although no record names the controller yet.
     awaited: Option<u32>,
     /// Whether a fault arrived that [`BlackBox::faulted`] has not reported yet.
@@ -103,8 +103,8 @@ impl BlackBox {
         self.controllers.push(ControllerSource { number, gravity, finger });
     }
 
-    /// Like [`BlackBox::announce`], for the controller that the servo will use when a calibration takes over. Other
-    /// controllers may be announced before the calibration takes over.
+    /// Like [`BlackBox::announce`], for the controller that the servo will use when a calibration begins. Other
+    /// controllers may be announced before the calibration begins.
     pub fn announce_calibration(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>, taken: u32) {
         self.awaited = None;
         self.announce(finger, gravity, taken);
@@ -117,8 +117,8 @@ impl BlackBox {
         self.forget();
     }
 
-    /// Takes the servo's records and keyframes. [`BlackBox::collect`] must be called at least every half second, so
-    /// that the records that are kept do not need more memory.
+    /// Takes the servo's records and keyframes. [`BlackBox::collect`] must be called at least every half second.
+    /// Otherwise the kept records exceed their capacity, and the collector allocates memory.
     fn take(&mut self) {
         while let Some(record) = self.arriving.pop() {
             self.faulted |= matches!(record.stage, Stage::Faulted(_));

@@ -5,9 +5,9 @@ use crate::model::{Section, UnusableConfiguration};
 
 impl Hand {
     /// Sets gravity in the palm's frame, m/s^2: `hand.gravity` for the time until the hand is closed. Every finger
-    /// compensates the new gravity within a cycle and without a jump in torque: a change by more than 2 m/s^2 in a
-    /// period of 1 ms takes several cycles. It also acts on simulated fingers and on a simulated object. Every record
-    /// of the black box and of telemetry contains the gravity of its cycle.
+    /// compensates the new gravity within a cycle. If gravity changes by more than 2 m/s^2 in a period of 1 ms, this
+    /// takes several cycles, so that the torque does not jump. The new gravity also acts on simulated fingers and on a
+    /// simulated object. Every record of the black box and of telemetry contains the gravity of its cycle.
     ///
     /// Gravity is an input of the servos, as a set point is. The call neither allocates nor replaces a controller, so
     /// a planner can make it in every cycle. Set points, paths, monitors and the estimate of contacts continue.

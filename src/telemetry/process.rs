@@ -1,5 +1,5 @@
-//! A process that a reader watches. A forked child of a hand's process has copies of its sockets, so the connection
-//! does not end with the process.
+//! The process of a hand, which a reader watches to learn when it ends. The end of the connection does not show this:
+//! forked children of the process have copies of its sockets, and keep the connection open.
 #![allow(unsafe_code, reason = "system calls")]
 
 use crate::board::descriptor::Descriptor;

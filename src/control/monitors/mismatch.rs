@@ -34,8 +34,9 @@ const LEAST_NOISE: f64 = 0.03;
 const RISING: f64 = 0.3;
 const FALLING: f64 = 0.01;
 
-/// Change of the terms from one estimation to the next with which the finger moves, N. The noise is learned only while
-/// it moves: at rest the friction of the tendons does not change, which says nothing about its magnitude.
+/// Change of the terms from one estimation to the next, N. The finger counts as moving if the change is larger than
+/// this. The noise is learned only while the finger moves: at rest the friction of the tendons does not change, which
+/// says nothing about its magnitude.
 const MOVING: f64 = 0.1;
 
 /// Number of estimations in motion before the learned noise counts. In this time most tendons slide in both directions.
@@ -85,7 +86,7 @@ impl Mismatch {
         self.old.estimate[tendon] * terms[tendon]
     }
 
-    /// Returns the disagreement that friction can cause, N. `expected` is the one to expect of an unknown hand.
+    /// Returns the disagreement that friction can cause, N. `expected` is the value for an unknown hand.
     pub fn friction(&self, expected: f64) -> f64 {
         self.old.friction(expected)
     }

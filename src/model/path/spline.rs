@@ -122,8 +122,8 @@ fn arriving_from_start(start: &Start, place: &Vector3<f64>, length: f64) -> EndM
     let h = length;
     let (rates, accelerations) = (start.rates * h, start.accelerations * h.powi(2));
     let jerk = start.jerk * h.powi(3);
-    // The place, rate and acceleration at the end, without what the motion at the start contributes to them. The other
-    // coefficients must add the rest. The unit of time is the length of the piece.
+    // The contribution of the motion at the start is subtracted from the place, rate and acceleration at the end. The
+    // other coefficients must produce the differences. The unit of time is the length of the piece.
     let place = (place - start.place - rates - accelerations * 0.5 - jerk / 6.0).transpose();
     let rate = -(rates + accelerations + jerk * 0.5).transpose();
     let acceleration = -(accelerations + jerk).transpose();

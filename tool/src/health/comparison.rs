@@ -18,7 +18,8 @@ const TENSION: f64 = 0.25;
 const NOISE: (f64, f64) = (2.0, 0.05);
 /// Largest rise of the heat of a motor at rest, relative to the heat that it bears continuously.
 const HEAT: f64 = 0.25;
-/// Friction may rise by this factor and in addition by this value: motors and joints, N cm; conduits and pulleys.
+/// Friction may rise by a factor, the first number, and in addition by a value: the second number for motors and
+/// joints, N cm, and the third for conduits and pulleys.
 const FRICTION: (f64, f64, f64) = (1.5, 0.03, 0.03);
 
 /// A change beyond its limit.

@@ -37,7 +37,7 @@ pub fn write(folder: &Path, hand: &HandState, screen: &Buffer) -> io::Result<[Pa
     Err(io::Error::other(format!("there are already {MOST} snapshots of this second")))
 }
 
-/// Returns the characters of a screen, one line each, without spaces at the ends of the lines.
+/// Returns the characters of a screen: a line of text for each row, without spaces at the ends of the lines.
 pub fn text(buffer: &Buffer) -> String {
     let width = usize::from(buffer.area.width).max(1);
     let mut text = String::new();
