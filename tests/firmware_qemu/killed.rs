@@ -95,8 +95,9 @@ fn kill_a_planner(
     let begun = [0, 1, 2].map(|finger| machine.finger(finger).asked.samples);
     let moved_on = || (0..3).all(|finger| machine.finger(finger).asked.samples > begun[finger] + 200);
     let ran = wait_until(PATIENCE / 2, || moved_on() && running());
+    // The kill may take longer than the watchdog's time, so the currents are not checked after it. `ended_by_watchdog`
+    // detects a finger that the planner stopped itself.
     planner.kill();
-    let ran = ran && running();
     // Commands in transit still arrive. 400 ms after the last of them, the slowest watchdog has had time to trip.
     let long_ago = |asked: Asked| asked.now.saturating_sub(asked.arrived_at) > 400_000;
     assert!(
@@ -105,7 +106,7 @@ fn kill_a_planner(
     );
     let asked = [0, 1, 2].map(|finger| machine.finger(finger).asked);
     if !ran {
-        return Err("the planner's fingers did not all run when it was killed".into());
+        return Err("the planner's fingers did not all run before it was killed".into());
     }
     if !ended_by_watchdog(machine) {
         return Err("a finger was not ended by its watchdog".into());
