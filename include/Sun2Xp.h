@@ -105,8 +105,8 @@
 
    for the element type of all its arrays. SendPos, SendKx and GetPos are then plain functions for
    that type; for double they are renamed to SendPosD, SendKxD and GetPosD. The planner's
-   declarations may be int SendPos(); or those below. If they differ from those below, add
-   -DSUN2XP_H, which leaves out this header.
+   declarations may be int SendPos(); or those below. For any other declarations, add -DSUN2XP_H,
+   which leaves out this header.
 
    In the library, the symbols SendPos, SendKx and GetPos take float, and those ending in D take
    double. Compilers without _Generic (gcc before 4.9) choose by the size of an element: they treat

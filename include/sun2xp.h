@@ -531,7 +531,7 @@ struct sun2xp_io {
     int in_step;                            /* 1: a simulation that advances by one period in each exchange. The
                                                servo waits for it. */
     double shortest_watchdog;               /* Shortest watchdog time of the hardware, s. */
-    double tension_unit;                    /* Step in which the library stores tensions, N; 0: 0.005. */
+    double tension_unit;                    /* Step in which the library stores tensions, N. 0 selects 0.005 N. */
     void *user;                             /* First argument of the functions. */
     int (*start)(void*, const struct sun2xp_io_terms*, struct sun2xp_io_sample*); /* Prepares the hardware, with the
                                                motors off, and gets the first sample. */
@@ -554,8 +554,8 @@ struct sun2xp_io {
 
    start     in a thread of the library that is not real-time, at opening and at every recovery; may take
              seconds. An error refuses the call.
-   exchange  in the servo thread of the finger. An error is a lost reply. If it returns after the
-             deadline, the cycle is late, and possibly an overrun.
+   exchange  in the servo thread of the finger. An error counts as a lost reply. If it returns
+             after the deadline, the cycle is late, and possibly an overrun.
    stop      in the servo thread or at a recovery. After an error, the library calls it again. Every
              start that has succeeded is followed by a stop.
 
@@ -564,11 +564,11 @@ struct sun2xp_io {
  pthread_exit, exceptions.
 
  The program must provide a watchdog outside this process, such as that of its drives: if no exchange
- comes for terms->watchdog, the hardware must enter the end state by itself, also if this process hangs
+ comes for terms->watchdog, the hardware must enter the end state by itself, even if this process hangs
  or has died.
 
- A tension may be from -8192 to 57342 steps. A tension outside, NaN, or an encoder that moves by 32768
- counts between two exchanges faults the finger, as SUN2XP_IO_SENSOR does.
+ A tension may be from -8192 to 57342 steps. A tension that is NaN or outside this range faults the
+ finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by 32768 counts between two exchanges.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -962,7 +962,7 @@ struct sun2xp_set_point {
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
  "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
- This happens about once in the time in which two of the clocks drift apart by one period.
+ This happens about once whenever two of the clocks have drifted apart by another period.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1255,10 +1255,10 @@ int sun2xp_palm_pose(sun2xp_hand *hand, int finger, struct sun2xp_palm_pose *pos
 
    gravity   gravity[3]: gravity along x, y, z of the palm's frame, m/s^2
 
- Replaces hand.gravity until sun2xp_close. Every finger compensates the new gravity within a cycle and
- without a jump in torque: a change by more than 2 m/s^2 in a millisecond takes several cycles. It also
- acts on simulated fingers and on a simulated object. Gravity is an input of the servos, as a set point
- is, so a planner can send it in every cycle.
+ Replaces hand.gravity until sun2xp_close. Every finger compensates the new gravity within a cycle. If
+ gravity changes by more than 2 m/s^2 in a millisecond, this takes several cycles, so that the torque does
+ not jump. The new gravity also acts on simulated fingers and on a simulated object. Gravity is an input of
+ the servos, as a set point is, so a planner can send it in every cycle.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1963,7 +1963,7 @@ struct sun2xp_event {
     int kind;                               /* Kind of the event: SUN2XP_EVENT_... */
     int part;                               /* Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0. */
     unsigned long cycle;                    /* Cycle of the event, as in sun2xp_status and sun2xp_record. */
-    unsigned long lost;                     /* Events that were lost since sun2xp_open: not taken in time. */
+    unsigned long lost;                     /* Events lost since sun2xp_open because they were not taken in time. */
     double time;                            /* Beginning of that cycle, s of CLOCK_MONOTONIC. */
     double values[4];                       /* Values of the kind (docs/events.md); unused ones are 0. */
 };
@@ -2089,9 +2089,9 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 
 /* ---- REFLEXES ---------------------------------------------------------------------------------------------------- */
 
-#define SUN2XP_WHEN_EVENT 1                 /* An event of the finger occurs. The member event is its kind. */
-#define SUN2XP_WHEN_OTHER_FINGER 2          /* An event of another finger occurs. The members event and finger are
-                                               its kind and that finger. */
+#define SUN2XP_WHEN_EVENT 1                 /* An event of the finger occurs. The member named event gives its kind. */
+#define SUN2XP_WHEN_OTHER_FINGER 2          /* An event of another finger occurs. The member named event gives its
+                                               kind, and the one named finger gives that finger. */
 #define SUN2XP_WHEN_FORCE_ABOVE 3           /* The force of the surroundings on the tip is above bound, N. */
 #define SUN2XP_WHEN_TENSION_ABOVE 4         /* The tension of any tendon is above bound, N. */
 #define SUN2XP_WHEN_TENSION_BELOW 5         /* The tension of any tendon is below bound, N. */
@@ -2103,8 +2103,9 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 #define SUN2XP_THEN_HOLD 2                  /* The finger stays where it is. */
 #define SUN2XP_THEN_SOFTEN 3                /* The tip gets the member stiffness. */
 #define SUN2XP_THEN_RETRACT 4               /* The finger goes to the member position. */
-#define SUN2XP_THEN_GRIP 5                  /* The tip presses harder by the member value, N, up to the member
-                                               largest, N. This needs a Kx without an eigenvalue of 0. */
+#define SUN2XP_THEN_GRIP 5                  /* The tip presses harder. Its force rises by the member named value, to
+                                               at most the one named largest, both in N. This needs a Kx without an
+                                               eigenvalue of 0. */
 #define SUN2XP_THEN_DAMP 6                  /* The tip gets the member value as its damping ratio. */
 
 /*
