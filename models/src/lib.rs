@@ -12,11 +12,14 @@
 mod realtime {
     #[path = "../../models/src/atomics.rs"]
     pub mod atomics;
+    mod clock;
+    mod locks;
     mod memory;
     mod pages;
     mod ring;
     mod triple_buffer;
 
+    pub use locks::Mutex;
     pub use memory::LockedMemory;
     pub use pages::{Pages, SharedPages};
     pub use ring::{Consumer, Producer, ring};

@@ -1,8 +1,8 @@
 //! Places of queries that wait for their answer. A client that asks faster than it reads takes no place from others.
 
-use parking_lot::Mutex;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use sun2xp::realtime::Mutex;
 use sun2xp_remote_protocol::ClientName;
 
 /// Most Requests of one client that wait.

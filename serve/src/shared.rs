@@ -2,12 +2,11 @@
 
 use crate::desk::Desk;
 use crate::settings::Settings;
-use parking_lot::Mutex;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread::JoinHandle;
 use sun2xp::Hand;
-use sun2xp::realtime::now;
+use sun2xp::realtime::{Mutex, now};
 use sun2xp_remote_protocol::HandKeys;
 
 /// What the threads of the server share.

@@ -4,7 +4,7 @@ use crate::capi::handle::Handle;
 use crate::capi::refusal::Refusal;
 use crate::events::Event;
 use crate::hand::{EventListener, EventQueue, Hand, HandError};
-use parking_lot::{Mutex, RwLock};
+use crate::realtime::{Mutex, RwLock, try_for};
 use std::cell::Cell;
 use std::os::fd::RawFd;
 use std::sync::Arc;
@@ -110,6 +110,6 @@ pub(super) fn in_callback() -> bool {
 pub(super) fn end<'a>(limit: Duration, hands: impl Iterator<Item = &'a HandEvents>) {
     ENDED.store(true, Ordering::Release);
     if !in_callback() {
-        hands.for_each(|events| drop(events.calling.try_lock_for(limit)));
+        hands.for_each(|events| drop(try_for(limit, || events.calling.try_lock())));
     }
 }

@@ -7,9 +7,10 @@ use crate::capi::process;
 use crate::capi::refusal::Refusal;
 use crate::capi::remote_hand::{RemoteHand, RemoteOpener};
 use crate::hand::{FingerCommand, Hand};
-use parking_lot::{MappedRwLockReadGuard, Mutex, MutexGuard, RwLock, RwLockReadGuard};
-use std::sync::Arc;
+use crate::realtime::{Mutex, RwLock, try_for};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, MutexGuard};
+use std::thread::sleep;
 use std::time::Duration;
 
 /// The place of the hand of OpenHand.
@@ -49,7 +50,7 @@ static EXITING: AtomicBool = AtomicBool::new(false);
 const LONGEST_WAIT_AT_EXIT: Duration = Duration::from_millis(100);
 
 /// Interval at which a close checks whether another thread has closed the hand.
-const CLOSING_PERIOD: Duration = Duration::from_millis(5);
+const CLOSING_PERIOD: Duration = Duration::from_millis(1);
 
 /// The handle of the hand of OpenHand; null if it is not open.
 pub(super) fn default_handle() -> Handle {
@@ -117,14 +118,14 @@ pub(super) fn close(handle: Handle, in_callback: bool) -> Result<(), Refusal> {
     loop {
         // The place of a closed hand may have another hand, for which this call must not wait.
         let place = Place::of(handle)?;
-        if let Some(_closing) = place.lifecycle.try_lock_for(if in_callback { Duration::ZERO } else { CLOSING_PERIOD })
-        {
+        if let Some(_closing) = place.lifecycle.try_lock() {
             Place::of(handle)?.close(in_callback);
             return Ok(());
         }
         if in_callback {
             return Err(Refusal::Busy);
         }
+        sleep(CLOSING_PERIOD);
     }
 }
 
@@ -164,8 +165,8 @@ fn close_at_exit() {
 /// would never return.
 fn each_at_exit(call: impl Fn(&OpenedHand)) {
     for place in &TABLE {
-        if let Some(_closing) = place.lifecycle.try_lock_for(LONGEST_WAIT_AT_EXIT)
-            && let Some(opened) = place.hand.try_read_for(LONGEST_WAIT_AT_EXIT)
+        if let Some(_closing) = try_for(LONGEST_WAIT_AT_EXIT, || place.lifecycle.try_lock())
+            && let Some(opened) = try_for(LONGEST_WAIT_AT_EXIT, || place.hand.try_read())
             && let Some(opened) = &*opened
         {
             call(&opened.hand);
@@ -173,14 +174,13 @@ fn each_at_exit(call: impl Fn(&OpenedHand)) {
     }
 }
 
-/// Locks an open hand for reading.
-fn opened(handle: Handle) -> Result<MappedRwLockReadGuard<'static, OpenedHand>, Refusal> {
-    let opened = Place::named_by(handle)?.hand.read();
-    RwLockReadGuard::try_map(opened, |opened| match opened {
-        Some(opened) if opened.handle == handle => Some(&opened.hand),
-        _ => None,
-    })
-    .map_err(|_| Refusal::NoHand)
+/// Runs `call` on an open hand, which stays open meanwhile.
+#[inline]
+fn with_opened<T>(handle: Handle, call: impl FnOnce(&OpenedHand) -> Result<T, Refusal>) -> Result<T, Refusal> {
+    match &*Place::named_by(handle)?.hand.read() {
+        Some(opened) if opened.handle == handle => call(&opened.hand),
+        _ => Err(Refusal::NoHand),
+    }
 }
 
 /// Runs `call` on an open hand of this machine.
@@ -189,10 +189,10 @@ pub(super) fn with<T, E: Into<Refusal>>(
     handle: Handle,
     call: impl FnOnce(&Hand) -> Result<T, E>,
 ) -> Result<T, Refusal> {
-    match &*opened(handle)? {
+    with_opened(handle, |opened| match opened {
         OpenedHand::Local(hand) => call(hand).map_err(E::into),
         OpenedHand::Remote(_) => Err(Refusal::NotRemote),
-    }
+    })
 }
 
 /// Runs `local` on an open hand of this machine, or `remote` on one of another machine.
@@ -202,10 +202,10 @@ pub(super) fn with_either<T, E: Into<Refusal>, F: Into<Refusal>>(
     local: impl FnOnce(&Hand) -> Result<T, E>,
     remote: impl FnOnce(&dyn RemoteHand) -> Result<T, F>,
 ) -> Result<T, Refusal> {
-    match &*opened(handle)? {
+    with_opened(handle, |opened| match opened {
         OpenedHand::Local(hand) => local(hand).map_err(E::into),
         OpenedHand::Remote(hand) => remote(&**hand).map_err(F::into),
-    }
+    })
 }
 
 /// Runs `call`, which moves an open hand of this machine or changes how it moves. It is refused while the process
@@ -233,9 +233,9 @@ pub(super) fn send<E: Into<Refusal>>(
 /// The hand of this handle if it is on another machine. It is used without locking the table, because its calls may
 /// take long.
 pub(super) fn remote(handle: Handle) -> Result<Option<Arc<dyn RemoteHand>>, Refusal> {
-    Ok(match &*opened(handle)? {
-        OpenedHand::Local(_) => None,
-        OpenedHand::Remote(hand) => Some(hand.clone()),
+    with_opened(handle, |opened| match opened {
+        OpenedHand::Local(_) => Ok(None),
+        OpenedHand::Remote(hand) => Ok(Some(hand.clone())),
     })
 }
 

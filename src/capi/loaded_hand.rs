@@ -15,7 +15,7 @@ use crate::capi::remote_library::{self, RemoteLibrary};
 use crate::capi::status_struct::sun2xp_status;
 use crate::hand::{FingerCommand, Pose, Until};
 use crate::model::configuration::Configuration;
-use parking_lot::Mutex;
+use crate::realtime::Mutex;
 use std::collections::VecDeque;
 use std::ffi::{CStr, CString, c_char, c_int};
 use std::mem::MaybeUninit;

@@ -8,8 +8,7 @@ use crate::capi::handle::Handle;
 use crate::capi::planners_pointer::PlannersPointer;
 use crate::capi::refusal::Refusal;
 use crate::capi::text::Text;
-use crate::realtime::{Severity, offer_messages_to};
-use parking_lot::RwLock;
+use crate::realtime::{RwLock, Severity, offer_messages_to};
 use std::cell::Cell;
 use std::ffi::{c_char, c_int, c_void};
 

@@ -20,9 +20,8 @@ use crate::finger::validity::Renewal;
 use crate::finger::{Adjustable, Fault, FingerReport, Order, Replaced, Stage, Validity, stop_calls};
 use crate::realtime::atomics::{AtomicBool, AtomicU32};
 use crate::realtime::{
-    Consumer, Input, LockedMemory, Output, Pages, Producer, SharedPages, ring, triple_buffer, triple_buffer_of,
+    Consumer, Input, LockedMemory, Mutex, Output, Pages, Producer, SharedPages, ring, triple_buffer, triple_buffer_of,
 };
-use parking_lot::Mutex;
 
 /// The planners' end.
 pub struct Mailbox {

@@ -17,14 +17,13 @@ use crate::hand::events::EventSource;
 use crate::hand::opening::Reached;
 use crate::model::configuration::{Configuration, ConfiguredFinger};
 use crate::model::{FingerNumber, Fingers};
-use crate::realtime::{CycleStage, Distribution, Histograms, Priority, spawn};
+use crate::realtime::{CycleStage, Distribution, Histograms, Mutex, Priority, RwLock, spawn};
 use crate::simulated::ObjectView;
 use crossbeam_channel::{Sender, bounded};
 use nalgebra::Vector3;
-use parking_lot::{Mutex, MutexGuard, RwLock};
 use std::io;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, MutexGuard};
 use std::thread::JoinHandle;
 
 /// Passes commands to the fingers, and collects their timings and black boxes.

@@ -3,9 +3,8 @@
 use crate::hand::port_repair::PortRepair;
 use crate::model::FingerNumber;
 use crate::model::configuration::FINGERS;
-use crate::realtime::{Priority, spawn};
+use crate::realtime::{Mutex, Priority, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
-use parking_lot::Mutex;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU32;

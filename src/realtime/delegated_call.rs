@@ -4,9 +4,9 @@
 
 use super::cancellation::NoCancellation;
 use super::futex;
+use super::locks::Mutex;
 use super::signals::SignalsBlocked;
 use super::threads::spawn_alike;
-use parking_lot::Mutex;
 use std::cell::RefCell;
 use std::io;
 use std::sync::Arc;

@@ -2,10 +2,10 @@
 #![allow(unsafe_code)]
 
 use super::floating_point::use_default_environment;
+use super::locks::Mutex;
 use super::memory::every_page_is_locked;
 use super::signals::SignalsBlocked;
 use super::thread_local_data::taken_by_the_c_library;
-use parking_lot::Mutex;
 use std::io;
 use std::mem::MaybeUninit;
 use std::thread::{Builder, JoinHandle};

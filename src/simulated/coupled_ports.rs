@@ -5,14 +5,13 @@
 
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, FINGERS};
-use crate::realtime::{self, Input, Output, Priority, spawn, triple_buffer};
+use crate::realtime::{self, Input, Mutex, Output, Priority, spawn, triple_buffer};
 use crate::simulated::board::{STEP, SimulatedBoard, SimulatedBoardError};
 use crate::simulated::finger::SimulatedFinger;
 use crate::simulated::pseudo_terminal::{Closed, PseudoTerminal};
 use crate::simulated::scene::{ObjectState, Scene};
 use crate::simulated::shared_time::SharedTime;
 use nalgebra::Vector3;
-use parking_lot::Mutex;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;

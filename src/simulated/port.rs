@@ -5,13 +5,12 @@
 //! host's servo, would trip a watchdog that no real board would trip. The finger would also move for 50 ms without its
 //! controller.
 
-use crate::realtime::{self, Priority, spawn};
+use crate::realtime::{self, Mutex, Priority, spawn};
 use crate::simulated::board::SimulatedBoard;
 use crate::simulated::finger::SimulatedFinger;
 use crate::simulated::line::{LineFault, SimulatedLine};
 use crate::simulated::pace::{Pace, PacedTime};
 use crate::simulated::pseudo_terminal::{Closed, PseudoTerminal};
-use parking_lot::Mutex;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -39,10 +39,9 @@ int posix_memalign(void **block, size_t alignment, size_t size)
         CHECK(strstr(HandError(), Words) != NULL); \
     } while (0)
 
-static float Pos[3] = {0.1f, 0.5f, 0.9f};
-
 static void quick_calls(void)
 {
+    float Pos[3] = {0.1f, 0.5f, 0.9f};
     double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}}, Tip[3] = {0.0, -6.0, 8.0};
     struct sun2xp_status Status;
     struct sun2xp_timing Timing;
@@ -71,37 +70,47 @@ static void quick_calls(void)
     REFUSED(SendPos(1, (float *)NULL), EFAULT, "null pointer");
     Pos[0] = 9;
     REFUSED(SendPos(1, Pos), ERANGE, "outside the limits");
-    Pos[0] = 0.1f;
 }
 
+#define THREADS 8
+#define TURNS 2000
 static volatile int go;
 
+/* The threads wait for the same locks. */
 static void *another_thread(void *own)
 {
+    int turn;
+
     while (!go)
         PAUSE_MS(1);
-    quick_calls();
+    for (turn = 0; turn < TURNS; turn++)
+        quick_calls();
     return own;
 }
 
 int main(void)
 {
-    pthread_t thread;
+    pthread_t threads[THREADS];
+    float Pos[3] = {0.1f, 0.5f, 0.9f};
     struct sun2xp_fault Fault;
-    void *end = NULL;
+    int number;
     Fault.size = sizeof Fault;
 
     is_out = 1;
     REFUSED(OpenHand(), ENOMEM, "memory");
     is_out = 0;
     CHECK(OpenHand() == 0);
-    CHECK(pthread_create(&thread, NULL, another_thread, Pos) == 0);
+    for (number = 0; number < THREADS; number++)
+        CHECK(pthread_create(&threads[number], NULL, another_thread, Pos) == 0);
     PAUSE_MS(50);
 
     is_out = 1;
     quick_calls();
     go = 1;
-    CHECK(pthread_join(thread, &end) == 0 && end == Pos);
+    for (number = 0; number < THREADS; number++) {
+        void *end = NULL;
+        CHECK(pthread_join(threads[number], &end) == 0 && end == Pos);
+    }
     REFUSED(sun2xp_adjust(HAND, 1, "tendon.minimum = 6"), ENOMEM, "memory");
     REFUSED(sun2xp_write_black_box(HAND, 1, "no_memory.jsonl"), ENOMEM, "memory");
     REFUSED(sun2xp_zero(HAND, 1), ENOMEM, "memory");

@@ -1,6 +1,5 @@
 //! Hardware for the tests: the physics of a finger, and a switchboard that makes it fail.
 
-use parking_lot::Mutex;
 use std::f64::consts::TAU;
 use std::io;
 use std::sync::Arc;
@@ -11,6 +10,7 @@ use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::nalgebra::Vector3;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant};
+use sun2xp::realtime::Mutex;
 
 /// What the tests set and see. The servo's calls lock it, which real hardware must not do.
 #[derive(Default)]

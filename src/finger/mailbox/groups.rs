@@ -5,7 +5,7 @@ use crate::control::SetPoint;
 use crate::finger::{Fault, GroupGate, Replaced, Validity};
 use crate::model::configuration::FINGERS;
 use crate::realtime::LockedMemory;
-use parking_lot::MutexGuard;
+use std::sync::MutexGuard;
 
 /// The set point of one finger of a group, before the group is sent. No other planner can change the finger's set point
 /// meanwhile. Dropping this value changes nothing.

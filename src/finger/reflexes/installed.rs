@@ -5,8 +5,7 @@ use super::rule::Reflex;
 use super::rule_set::Rules;
 use super::server::ReflexServer;
 use crate::model::FingerNumber;
-use crate::realtime::{Input, LockedMemory, triple_buffer};
-use parking_lot::Mutex;
+use crate::realtime::{Input, LockedMemory, Mutex, triple_buffer};
 
 /// The planners' end.
 pub struct Reflexes(Mutex<Installed>);

@@ -3,7 +3,7 @@
 use crate::finger::{Elements, Mailbox, Reflexes};
 use crate::hand::admission::Admission;
 use crate::model::FingerNumber;
-use parking_lot::RwLock;
+use crate::realtime::RwLock;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 

@@ -7,10 +7,9 @@ use crate::hand::dispatcher::member::Member;
 use crate::hand::events::{EventSource, MergedEvents, Next};
 use crate::hand::notice::print_notice;
 use crate::model::configuration::{Configuration, ConfiguredHand};
-use crate::realtime::{CycleStage, is_memory_free, now};
+use crate::realtime::{CycleStage, Mutex, is_memory_free, now};
 use crate::simulated::ObjectView;
 use crate::telemetry::{Outgoing, Publisher, Serving, Status};
-use parking_lot::Mutex;
 use std::io;
 use std::sync::Arc;
 

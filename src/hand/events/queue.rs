@@ -7,10 +7,9 @@ use super::source::EventSource;
 use crate::finger::events::Event;
 #[cfg(feature = "internals")]
 use crate::finger::events::EventLog;
-use crate::realtime::now;
 #[cfg(feature = "internals")]
 use crate::realtime::{EventCount, SharedPages};
-use parking_lot::Mutex;
+use crate::realtime::{Mutex, now};
 use std::io;
 use std::os::fd::RawFd;
 use std::sync::Arc;

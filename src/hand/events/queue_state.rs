@@ -3,8 +3,7 @@
 use super::merging::{MergedEvents, Next};
 use super::source::EventSource;
 use crate::finger::events::Event;
-use crate::realtime::now;
-use parking_lot::Mutex;
+use crate::realtime::{Mutex, now};
 use std::sync::Arc;
 
 /// Interval at which a waiting thread checks whether another finger has finished its cycle, ns.

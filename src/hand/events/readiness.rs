@@ -4,12 +4,11 @@
 
 use super::queue_state::QueueState;
 use crate::board::descriptor::Descriptor;
-use crate::realtime::{Priority, spawn};
-use parking_lot::{Condvar, Mutex};
+use crate::realtime::{Mutex, Priority, spawn};
 use std::io;
 use std::os::fd::RawFd;
 use std::process::id;
-use std::sync::Arc;
+use std::sync::{Arc, Condvar, PoisonError};
 use std::thread::JoinHandle;
 
 /// The descriptor and its thread.
@@ -96,7 +95,7 @@ impl Shared {
                 return;
             }
             while state.readable && !state.stop {
-                self.changed.wait(&mut state);
+                state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
             }
         }
     }
