@@ -176,14 +176,20 @@ def test_a_hand_that_does_not_answer_is_named(double):
         sun2xp.remote.open("hand", double.endpoint, client="a/b")
 
 
-def test_events_reach_every_queue_and_end_a_wait(double, hand):
+def test_a_wait_ends_when_the_newest_record_says_so(double, hand):
+    for condition, bit in [("arrived", 4), ("settled", 8)]:
+        hand.send_position(1, HOME)
+        hand.wait(1, "applied", timeout=5)
+        double.records["bits"][0] = 15 - bit
+        with pytest.raises(sun2xp.TimedOut):
+            hand.wait(1, condition, timeout=0.05)
+        double.records["bits"][0] = bit
+        hand.wait(1, condition, timeout=5)
+
+
+def test_events_reach_every_queue(double, hand):
     first, second = hand.events(), hand.events()
-    hand.send_position(1, HOME)
-    hand.wait(1, "applied", timeout=5)
-    with pytest.raises(sun2xp.TimedOut):
-        hand.wait(1, "arrived", timeout=0.05)
     double.put_event(1, 11, int(double.records["cycle"][0]) + 1)
-    hand.wait(1, "arrived", timeout=5)
     for queue in (first, second):
         event = queue.wait(5)
         assert (event.finger, event.kind) == (1, sun2xp.EventKind.ARRIVED)

@@ -95,8 +95,9 @@ def test_a_finger_is_moved_held_and_read(endpoint):
             hand.wait(3, timeout=10)
         hand.recover(3)
         assert hand.status().owner == "planner" and hand.status().counts.malformed == 0
-        hand.send_position(3, HOME)
-        hand.wait(3, timeout=30)
+        for _ in range(2):  # The second time the finger is already there.
+            hand.send_position(3, HOME)
+            hand.wait(3, timeout=30)
 
 
 def test_a_planner_that_is_stopped_loses_the_hand(endpoint):

@@ -69,7 +69,9 @@ def test_a_state_is_read(vector):
         for name in ("finger", "stage", "fault", "command", "cycle"):
             assert record[name] == fields[name], name
         assert bool(record["bits"] & _messages.TOUCHING) == fields["touching"]
-        assert bool(record["bits"] & _messages.INVALID) == fields["caught"]
+        assert bool(record["bits"] & _messages.CAUGHT) == fields["caught"]
+        assert bool(record["bits"] & _messages.ARRIVED) == fields["arrived"]
+        assert bool(record["bits"] & _messages.SETTLED) == fields["settled"]
         for name, field in [("joints",) * 2, ("tip",) * 2, ("force", "tip_force"), ("tensions",) * 2]:
             assert record[field].tolist() == fields[name], name
         expected = [math.nan] * 3 if fields["set_point"] is None else fields["set_point"]

@@ -2,6 +2,7 @@
 
 use crate::goal::Goal;
 use std::sync::Arc;
+use sun2xp::control::events::Arrival;
 use sun2xp::finger::{CycleRecord, FingerReport};
 use sun2xp::telemetry::View;
 use sun2xp::{Hand, Stage};
@@ -42,14 +43,22 @@ impl Cycles {
         Self { view, controllers: [0; FINGERS], last, caught: [false; FINGERS], records: Vec::new(), hand }
     }
 
-    /// Takes the cycles since the last call. `goals` have the command numbers.
-    pub fn take(&mut self, goals: &Goals) -> Taken {
+    /// Takes the cycles since the last call. `goals` have the command numbers. `progress` is that of the fingers toward
+    /// these goals. The newest cycle of a finger has it.
+    pub fn take(&mut self, goals: &Goals, progress: &[Arrival; FINGERS]) -> Taken {
         let mut taken = Taken::default();
         for finger in Finger::ALL {
             // A finger that the hand does not have has no report.
             let Ok(report) = self.hand.report(i32::from(finger.number())) else { continue };
             self.note_controller(finger, &report);
+            let first = taken.records.len();
             self.take_finger(finger, &report, goals, &mut taken);
+            if let Some(newest) = taken.records[first..].last_mut()
+                && newest.command == goals[finger.index()].command
+            {
+                let Arrival { arrived, settled } = progress[finger.index()];
+                (newest.arrived, newest.settled) = (arrived, settled);
+            }
         }
         let most = MOST_RECORDS.min(taken.records.len());
         let dropped = taken.records.len() - most;
@@ -105,6 +114,8 @@ impl Cycles {
             begin: record.began,
             touching: sample.touching,
             caught: false,
+            arrived: false,
+            settled: false,
             joints: sample.joints,
             set_point: sample.joint_set_point,
             tip: self.hand.tip_at(number, sample.joints).unwrap_or_default(),
@@ -123,6 +134,8 @@ impl Cycles {
             begin: report.last,
             touching: false,
             caught: report.expired,
+            arrived: false,
+            settled: false,
             joints,
             set_point: None,
             tip: self.hand.tip_at(i32::from(finger.number()), joints).unwrap_or_default(),

@@ -10,6 +10,7 @@ use crate::settings::Limits;
 use crate::silence::{MILLISECOND, Silence};
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use sun2xp::control::events::Arrival;
 use sun2xp::{Hand, HandError, Stage};
 use sun2xp_remote_protocol::{Answer, ClientName, Code, Counts, DecodeError, FINGERS, Target};
 
@@ -80,6 +81,12 @@ impl Desk {
     #[must_use]
     pub fn goals(&self) -> [Goal; FINGERS] {
         *self.fingers.goals()
+    }
+
+    /// Returns the progress of each finger toward where the owner wants it.
+    #[must_use]
+    pub fn progress(&self) -> [Arrival; FINGERS] {
+        self.fingers.progress()
     }
 
     /// Notes that this client has asked for something.

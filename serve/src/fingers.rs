@@ -5,6 +5,7 @@ use crate::goal::{Destination, Goal, is_path, matrix, rows};
 use crate::lead::admitted_part;
 use crate::silence::Silence;
 use std::sync::Arc;
+use sun2xp::control::events::Arrival;
 use sun2xp::finger::FingerReport;
 use sun2xp::groups::FingerCommand;
 use sun2xp::hand::plan_path;
@@ -47,6 +48,24 @@ impl Fingers {
     #[must_use]
     pub fn goals(&self) -> &[Goal; FINGERS] {
         &self.goals
+    }
+
+    /// Returns the progress of each finger toward where the owner wants it. A finger that is caught, or that has only a
+    /// set point on the way there, has not arrived.
+    #[must_use]
+    pub fn progress(&self) -> [Arrival; FINGERS] {
+        std::array::from_fn(|index| {
+            let number = index as i32 + 1;
+            let (Ok(arrival), Ok(report)) = (self.hand.arrival(number), self.hand.report(number)) else {
+                return Arrival::default();
+            };
+            let goal = &self.goals[index];
+            let follows = report.stage == Stage::Running && !report.expired;
+            Arrival {
+                arrived: follows && arrival.arrived && (goal.whole || !goal.is_commanded()),
+                settled: follows && arrival.settled,
+            }
+        })
     }
 
     /// The numbers of the fingers of the hand.

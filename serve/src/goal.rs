@@ -62,6 +62,18 @@ impl Goal {
         self.is_commanded() && report.expired && self.springs != report.springs
     }
 
+    /// Returns whether a finger at `joints`, rad, is where the owner wants it, within `tolerance`, rad. A finger that
+    /// the owner wants nowhere is.
+    #[must_use]
+    pub fn is_reached(&self, joints: &Vector3<f64>, tolerance: f64) -> bool {
+        match self.destination {
+            Destination::None => true,
+            Destination::Joints(end) | Destination::Tip(end) | Destination::Path(end) => {
+                (joints - end).amax() <= tolerance
+            }
+        }
+    }
+
     /// Notes that something was sent to the finger that had this report.
     pub fn note_sent(&mut self, report: &FingerReport, whole: bool) {
         (self.springs, self.whole) = (report.springs, whole);

@@ -3,13 +3,16 @@
 
 use crate::ServeError;
 use crate::cycles::{Cycles, Taken};
+use crate::goal::Goal;
 use crate::shared::Shared;
 use crate::status::status;
+use std::iter::from_fn;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use sun2xp::events::EventQueue;
+use sun2xp::events::{Event, EventKind, EventQueue};
+use sun2xp::nalgebra::Vector3;
 use sun2xp::realtime::{Clock, MonotonicClock, now};
-use sun2xp_remote_protocol::{Event, FieldError, Finger, State};
+use sun2xp_remote_protocol::{Event as Message, FINGERS, FieldError, Finger, State};
 use zenoh::pubsub::Publisher;
 use zenoh::qos::CongestionControl;
 use zenoh::{Session, Wait};
@@ -75,8 +78,11 @@ impl Publishing {
     }
 
     fn publish(&mut self) {
-        let goals = self.shared.desk.lock().goals();
-        let Taken { records, missing } = self.cycles.take(&goals);
+        let (goals, progress) = {
+            let desk = self.shared.desk.lock();
+            (desk.goals(), desk.progress())
+        };
+        let Taken { records, missing } = self.cycles.take(&goals, &progress);
         self.states += 1;
         let (time, owner) = {
             // The time is read while the desk is locked, so that no later Answer has an earlier epoch.
@@ -85,9 +91,13 @@ impl Publishing {
         };
         let missing = u32::try_from(missing).unwrap_or(u32::MAX);
         send(&self.state, State { missing, number: self.states, time, owner, records }.encode());
-        for _ in 0..MOST_EVENTS {
-            let Some(event) = self.events.next() else { break };
-            self.publish_event(&event);
+        let events: Vec<Event> = from_fn(|| self.events.next()).take(MOST_EVENTS).collect();
+        // Read after the events, because the owner may have sent a new destination since the State.
+        let goals = self.shared.desk.lock().goals();
+        for event in &events {
+            if self.is_of_destination(event, &goals) {
+                self.publish_event(event);
+            }
         }
         if self.states % STATES_PER_STATUS == 1 {
             let shared = &self.shared;
@@ -96,11 +106,23 @@ impl Publishing {
         }
     }
 
-    fn publish_event(&mut self, event: &sun2xp::events::Event) {
+    /// Returns false for the arrival at another place than the owner wants: a set point on the way, which the bound of
+    /// the lead makes, or the place of a catch.
+    fn is_of_destination(&self, event: &Event, goals: &[Goal; FINGERS]) -> bool {
+        if event.kind != EventKind::Arrived {
+            return true;
+        }
+        let index = event.finger.index();
+        let tolerance = self.shared.hand.configuration().fingers[index].events.arrived_degrees.to_radians();
+        let [first, second, third, _] = event.values;
+        goals[index].is_reached(&Vector3::new(first, second, third), tolerance)
+    }
+
+    fn publish_event(&mut self, event: &Event) {
         // Clients detect the Events that the queue has lost by their numbers.
         self.sent_events += 1;
         let Some(finger) = Finger::new(event.finger.get()) else { return };
-        let sent = Event {
+        let sent = Message {
             finger,
             part: event.part.number(),
             kind: u16::from(event.kind.number()),

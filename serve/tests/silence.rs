@@ -5,13 +5,15 @@ mod common;
 
 use common::child::{WANTED, run_if_child, start};
 use common::client::{part, request};
-use common::{Rig, wait_for};
+use common::{Client, Rig, wait_for};
 use std::process::Child;
 use std::time::Duration;
+use sun2xp::events::EventKind;
 use sun2xp::finger::FingerReport;
+use sun2xp::nalgebra::Vector3;
 use sun2xp::realtime::now;
 use sun2xp::{FaultKind, Stage};
-use sun2xp_remote_protocol::{Action, Code, Place};
+use sun2xp_remote_protocol::{Action, Code, Event, Place};
 
 /// Longest time from the last life sign of a client until its fingers are caught, cycles.
 const CAUGHT: u64 = 120;
@@ -140,10 +142,44 @@ fn a_far_target_pulls_with_the_force_of_the_lead_only() {
     alice.repeat_until(&[wanted], "arrival", |_| {
         let report = report(&rig);
         led |= report.set_point_number > 0 && rig.set_point() != far;
-        let near = (report.cycle.joints - sun2xp::nalgebra::Vector3::from(far)).amax() < 0.05;
+        let near = (report.cycle.joints - Vector3::from(far)).amax() < 0.05;
         (near && rig.set_point() == far).then_some(())
     });
     assert!(led, "the set point went ahead of the finger in steps");
+    rig.server.end();
+}
+
+/// The lead is shorter than the tolerance of an arrival, so the finger is at each set point as soon as it is sent.
+#[test]
+fn only_the_arrival_at_the_destination_is_published() {
+    let rig = Rig::new("lead_force = 0.5\nend_ms = 20000");
+    let mut alice = rig.connect("alice");
+    alice.acquire_with(request(Action::Acquire));
+    let of_hand = rig.hand().events();
+    let from = report(&rig).cycle.joints;
+    let far = Vector3::new(from[0] + 0.5, from[1] + 0.3, from[2] + 0.4);
+    let mut wanted = part(1, far.into());
+    wanted.stiffness = Some([[5.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 5.0]]);
+    let published = alice.repeat_until(&[wanted], "arrival", |alice| {
+        let arrived = |event: &&Event| event.kind == u16::from(EventKind::Arrived.number());
+        alice.events().iter().find(arrived).cloned()
+    });
+    let [first, second, third, _] = published.values;
+    let distance = (Vector3::new(first, second, third) - far).amax();
+    assert!(distance <= 2f64.to_radians(), "{distance} rad from the destination");
+    let on_the_way = std::iter::from_fn(|| of_hand.next()).filter(|event| event.kind == EventKind::Arrived).count();
+    assert!(on_the_way > 1, "the finger was at several set points on the way: {on_the_way}");
+
+    let records = |alice: &Client| alice.states().into_iter().flat_map(|state| state.records);
+    let early = records(&alice).find(|record| {
+        record.command == 1 && record.arrived && (Vector3::from(record.joints) - far).amax() > 2f64.to_radians()
+    });
+    assert_eq!(early, None, "a record says that the finger has arrived, and it is on the way");
+    // The finger is already where the next command wants it. There is no second Event.
+    let again = sun2xp_remote_protocol::Part { command: 2, ..part(1, far.into()) };
+    alice.repeat_until(&[again], "arrival", |alice| {
+        records(alice).any(|record| record.command == 2 && record.arrived).then_some(())
+    });
     rig.server.end();
 }
 

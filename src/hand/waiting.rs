@@ -80,6 +80,16 @@ impl Waiting {
 }
 
 impl Hand {
+    /// The progress of finger 1, 2 or 3 toward the set point that was sent last. The finger has neither arrived nor
+    /// settled while this set point is not in force.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger.
+    pub fn arrival(&self, finger: i32) -> Result<Arrival, HandError> {
+        let (in_force, report) = self.dispatcher.member(finger.try_into()?)?.mailbox.newest_in_force();
+        Ok(if in_force { report.arrival } else { Arrival::default() })
+    }
+
     /// Waits until the condition holds for every one of these fingers at the same time, for the set points that were
     /// sent last. Returns at once if it holds already.
     ///

@@ -21,6 +21,7 @@ mod exchange;
 mod hand;
 mod link;
 mod outbox;
+mod progress;
 mod server_clock;
 mod slot;
 mod spring;
@@ -34,6 +35,7 @@ pub use discovery::{Discovered, discover};
 pub use error::{Loss, RemoteError, RemoteErrorKind};
 pub use events::RemoteEvents;
 pub use hand::{RemoteFingerTip, RemoteHand};
+pub use progress::RemoteProgress;
 pub use sun2xp_remote_protocol::{
     ClientName, Counts, Event, FINGERS, Finger, FingerStatus, HandName, PathPose, Record, Stage, Status,
 };

@@ -94,6 +94,11 @@ impl Outbox {
         self.slots[finger.index()].confirm(command);
     }
 
+    /// Whether a record has shown everything that was sent to this finger.
+    pub fn is_applied(&self, finger: Finger) -> bool {
+        self.slots[finger.index()].is_applied()
+    }
+
     /// Notes that the server has refused a Target. Its values are not sent again.
     pub fn refused(&mut self, answer: &Answer) {
         self.seen = self.seen.max(answer.time);

@@ -32,6 +32,11 @@ impl Slot {
         !self.pending.is_nothing()
     }
 
+    /// Whether a record has shown everything that was sent.
+    pub fn is_applied(&self) -> bool {
+        !self.waits() && self.part.as_ref().is_none_or(|part| part.confirmed)
+    }
+
     /// Whether the waiting changes must not be sent yet: a path was sent and is not confirmed. To repeat it with the
     /// changes would let it begin twice, and to leave it out could lose it.
     pub fn is_blocked(&self) -> bool {

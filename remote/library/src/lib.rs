@@ -11,7 +11,6 @@ mod opening;
 mod refusals;
 mod results;
 mod stop_calls;
-mod waiting;
 
 /// Runs when the library is loaded.
 #[allow(unsafe_code, reason = "the loader calls the functions of this section")]

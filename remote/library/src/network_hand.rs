@@ -3,9 +3,8 @@
 use crate::refusals::{closed, refusal};
 use crate::results;
 use crate::stop_calls::{StopCalls, Stoppable};
-use crate::waiting::FingerWait;
 use std::array::from_fn;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock};
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 use sun2xp::calibration::Task;
@@ -26,10 +25,8 @@ const EVENT_CHECK: Duration = Duration::from_millis(100);
 pub(crate) struct NetworkHand {
     /// None when the hand is closed.
     connection: RwLock<Option<Arc<Connection>>>,
-    /// `[hand]` and `[finger.events]` of the planner's configuration.
+    /// `[hand]` of the planner's configuration.
     configuration: Configuration,
-    /// The joint angles of each finger that were sent last; none if another pose was sent last.
-    sent: Mutex<[Option<[f64; 3]>; 3]>,
 }
 
 /// What ends when the hand is closed.
@@ -54,11 +51,7 @@ impl NetworkHand {
         hand: client::RemoteHand,
         configuration: &Configuration,
     ) -> Result<Arc<dyn RemoteHand>, RemoteRefusal> {
-        let own = Arc::new(Self {
-            connection: RwLock::new(None),
-            configuration: configuration.clone(),
-            sent: Mutex::new([None; 3]),
-        });
+        let own = Arc::new(Self { connection: RwLock::new(None), configuration: configuration.clone() });
         let _stop_calls = StopCalls::watch(Arc::downgrade(&own))?;
         let events = hand.events();
         let connection = Connection { hand, events, first: from_fn(|_| Mutex::new(None)), _stop_calls };
@@ -104,10 +97,6 @@ impl NetworkHand {
         Ok(admitted)
     }
 
-    fn sent(&self) -> MutexGuard<'_, [Option<[f64; 3]>; 3]> {
-        self.sent.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     fn newest(&self, finger: i32) -> Result<(Arc<Connection>, client::Record), RemoteRefusal> {
         let connection = self.connection()?;
         let finger = member(&connection.hand, finger)?;
@@ -139,18 +128,7 @@ impl RemoteHand for NetworkHand {
         let connection = self.connection()?;
         let admitted: Vec<_> =
             commands.iter().map(|command| self.admitted(&connection.hand, command)).collect::<Result<_, _>>()?;
-        connection.hand.send_group(&admitted).map_err(refusal)?;
-        let mut sent = self.sent();
-        for command in &admitted {
-            // `admitted` has found the finger.
-            if let (Some(pose), Some(place)) = (&command.pose, sent.get_mut(command.finger as usize - 1)) {
-                *place = match pose {
-                    client::Pose::Joints(joints) => Some(*joints),
-                    _ => None,
-                };
-            }
-        }
-        Ok(())
+        connection.hand.send_group(&admitted).map_err(refusal)
     }
 
     fn position(&self, finger: i32) -> Result<[f64; 3], RemoteRefusal> {
@@ -219,32 +197,21 @@ impl RemoteHand for NetworkHand {
                 None => connection.hand.fingers().iter().map(|finger| finger.number().into()).collect(),
             }
         };
-        let sent = *self.sent();
-        let place = |finger: i32| finger as usize - 1;
-        let mut waits: Vec<(i32, FingerWait)> = asked
-            .into_iter()
-            .map(|finger| {
-                let events = &self.configuration.fingers[place(finger)].events;
-                (finger, FingerWait::begin(events, sent[place(finger)], begun))
-            })
-            .collect();
         loop {
-            let now = Instant::now();
             let mut missing = None;
-            for (finger, wait) in &mut waits {
+            for &finger in &asked {
                 // Refuses a finger that has stopped, and records that are too old.
-                let (connection, newest) = self.newest(*finger)?;
-                connection.hand.position(*finger).map_err(refusal)?;
+                let progress = self.connection()?.hand.progress(finger).map_err(refusal)?;
                 let there = match until {
-                    Until::Arrived => wait.has_arrived(&newest, now),
-                    _ => wait.has_settled(&newest, now),
+                    Until::Arrived => progress.arrived,
+                    _ => progress.settled,
                 };
                 if !there {
-                    missing = FingerNumber::new(*finger);
+                    missing = FingerNumber::new(finger);
                 }
             }
             let Some(missing) = missing else { return Ok(()) };
-            if now.duration_since(begun) >= limit {
+            if begun.elapsed() >= limit {
                 return Err(HandError::NotThereInTime(missing).into());
             }
             sleep(LOOK);

@@ -21,6 +21,10 @@ pub struct Record {
     pub touching: bool,
     /// Whether the finger is caught: its last Target has become invalid.
     pub caught: bool,
+    /// Whether the finger has arrived where the owner wants it, since the server applied `command`.
+    pub arrived: bool,
+    /// Whether the joints have come to rest since the server applied `command`.
+    pub settled: bool,
     /// Measured joint angles, rad.
     pub joints: [f64; 3],
     /// Joint angles of the set point, rad; none if the finger is not a spring.
@@ -35,6 +39,8 @@ pub struct Record {
 
 const TOUCHING: u8 = 1;
 const CAUGHT: u8 = 2;
+const ARRIVED: u8 = 4;
+const SETTLED: u8 = 8;
 
 impl Record {
     /// Bytes of a record.
@@ -42,7 +48,7 @@ impl Record {
 
     pub(crate) fn decode(bytes: Bytes<'_>) -> Result<Self, FieldError> {
         let bits = bytes.u8(24);
-        if bits & !(TOUCHING | CAUGHT) != 0 {
+        if bits & !(TOUCHING | CAUGHT | ARRIVED | SETTLED) != 0 {
             return Err(FieldError::new("bits", Reason::Bits(bits)));
         }
         let set_point = bytes.f64s::<3>(56);
@@ -54,6 +60,8 @@ impl Record {
             begin: bytes.u64(16),
             touching: bits & TOUCHING != 0,
             caught: bits & CAUGHT != 0,
+            arrived: bits & ARRIVED != 0,
+            settled: bits & SETTLED != 0,
             joints: bytes.f64s(32),
             set_point: (!set_point.iter().all(|angle| angle.is_nan())).then_some(set_point),
             tip: bytes.f64s(80),
@@ -75,7 +83,8 @@ impl Record {
 
     pub(crate) fn encode(&self, to: &mut Written) {
         let (stage, fault) = self.stage.numbers();
-        let bits = if self.touching { TOUCHING } else { 0 } | if self.caught { CAUGHT } else { 0 };
+        let bits = [(self.touching, TOUCHING), (self.caught, CAUGHT), (self.arrived, ARRIVED), (self.settled, SETTLED)];
+        let bits = bits.iter().filter(|(set, _)| *set).fold(0, |bits, (_, bit)| bits | bit);
         to.u8(self.finger.number()).u8(stage).u16(fault).u32(self.command);
         to.u64(self.cycle).u64(self.begin).u8(bits).zeros(7);
         to.f64s(&self.joints).f64s(&self.set_point.unwrap_or([f64::NAN; 3]));

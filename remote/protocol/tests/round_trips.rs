@@ -63,10 +63,25 @@ fn target() -> impl Strategy<Value = Target> {
 
 fn record() -> impl Strategy<Value = Record> {
     let places = (numbers(), prop::option::of(numbers()), numbers(), numbers(), numbers());
-    (finger(), stage(), any::<(u32, u64, bool, bool)>(), places).prop_map(|(finger, stage, rest, places)| {
-        let ((command, begin, touching, caught), (joints, set_point, tip, force, tensions)) = (rest, places);
-        let cycle = 0;
-        Record { finger, stage, command, cycle, begin, touching, caught, joints, set_point, tip, force, tensions }
+    (finger(), stage(), any::<(u32, u64, [bool; 4])>(), places).prop_map(|(finger, stage, rest, places)| {
+        let (command, begin, [touching, caught, arrived, settled]) = rest;
+        let (joints, set_point, tip, force, tensions) = places;
+        Record {
+            finger,
+            stage,
+            command,
+            cycle: 0,
+            begin,
+            touching,
+            caught,
+            arrived,
+            settled,
+            joints,
+            set_point,
+            tip,
+            force,
+            tensions,
+        }
     })
 }
 

@@ -4,7 +4,7 @@ use super::{PATIENCE, wait_for};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use sun2xp_remote_protocol::{
-    Action, Answer, ClientName, Code, Finger, HandKeys, Part, Place, Request, State, Status, Target,
+    Action, Answer, ClientName, Code, Event, Finger, HandKeys, Part, Place, Request, State, Status, Target,
 };
 use zenoh::{Session, Wait};
 
@@ -21,6 +21,7 @@ struct Heard {
     seen: u64,
     states: Vec<State>,
     refusals: Vec<Answer>,
+    events: Vec<Event>,
 }
 
 /// A client.
@@ -86,6 +87,12 @@ impl Client {
             heard.states.push(state);
         };
         session.declare_subscriber(keys.state()).callback(on_state).background().wait().expect("subscribed");
+        let of_events = heard.clone();
+        let on_event = move |sample: zenoh::sample::Sample| {
+            let event = Event::decode(&sample.payload().to_bytes()).expect("an Event");
+            of_events.lock().expect("heard").events.push(event);
+        };
+        session.declare_subscriber(keys.events()).callback(on_event).background().wait().expect("subscribed");
         let of_refusals = heard.clone();
         let on_refusal = move |sample: zenoh::sample::Sample| {
             let answer = Answer::decode(&sample.payload().to_bytes()).expect("an Answer");
@@ -103,6 +110,11 @@ impl Client {
     /// All States so far.
     pub fn states(&self) -> Vec<State> {
         self.heard.lock().expect("heard").states.clone()
+    }
+
+    /// All Events so far.
+    pub fn events(&self) -> Vec<Event> {
+        self.heard.lock().expect("heard").events.clone()
     }
 
     /// The newest refusal of a Target.

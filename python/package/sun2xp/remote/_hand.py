@@ -9,7 +9,7 @@ from typing import Iterable, List, Optional, Sequence, Union
 import numpy.typing
 
 from .._errors import Error, ErrorNumber, Fault, Refused, TimedOut
-from .._types import EventKind, SetPoint
+from .._types import SetPoint
 from . import _messages, _parts
 from ._errors import error_of
 from ._messages import STAGES, Answer, Part
@@ -26,8 +26,8 @@ _RECOVERY_TIME = 30.0
 #: Longest time of a calibration, s.
 _CALIBRATION_TIME = 600.0
 
-#: Events that end the waits of `wait`.
-_CONDITIONS = {"arrived": EventKind.ARRIVED, "settled": EventKind.SETTLED}
+#: Bits of a record for the conditions of `wait`.
+_CONDITIONS = {"arrived": _messages.ARRIVED, "settled": _messages.SETTLED}
 
 
 class RemoteHand(Reading):
@@ -223,10 +223,10 @@ class RemoteHand(Reading):
 
     def _holds(self, finger: int, condition: str) -> bool:
         pending = self._owner.pending(finger)
-        command, cycle = self._receiver.applied(finger)
+        command, bits = self._receiver.applied(finger)
         if pending is None or command != pending:
             return False
-        return condition == "applied" or self._receiver.latest(finger, _CONDITIONS[condition]) >= cycle
+        return condition == "applied" or bool(bits & _CONDITIONS[condition])
 
     def _check_fault(self, finger: int) -> None:
         # A wait goes on during a short pause of the line.

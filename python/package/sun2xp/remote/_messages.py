@@ -69,7 +69,7 @@ RECORD = numpy.dtype([
 ])
 
 #: Bits of a record.
-TOUCHING, INVALID = 1, 2
+TOUCHING, CAUGHT, ARRIVED, SETTLED = 1, 2, 4, 8
 
 
 @dataclasses.dataclass
@@ -208,7 +208,7 @@ def _sound(records: numpy.typing.NDArray[numpy.void]) -> bool:
         ((records["finger"] - 1) < 3).all()
         and (records["stage"] < len(STAGES)).all()
         and ((records["fault"] == 0) == (records["stage"] != _FAULTED)).all()
-        and (records["bits"] <= TOUCHING | INVALID).all()
+        and (records["bits"] <= TOUCHING | CAUGHT | ARRIVED | SETTLED).all()
         and (set_points.all(axis=1) == set_points.any(axis=1)).all()
         and not numpy.isinf(records["joint_set_point"]).any()
         and all(numpy.isfinite(values).all() for values in finite)

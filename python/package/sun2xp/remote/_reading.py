@@ -61,7 +61,7 @@ class Reading:
             stage=STAGES[record["stage"]],
             fault=int(record["fault"]),
             command=int(record["command"]),
-            caught=bool(record["bits"] & _messages.INVALID),
+            caught=bool(record["bits"] & _messages.CAUGHT),
             touching=bool(record["bits"] & _messages.TOUCHING),
             position=record["joints"].copy(),
             set_point=None if numpy.isnan(set_point).any() else set_point,

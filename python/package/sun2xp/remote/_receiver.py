@@ -52,8 +52,6 @@ class Receiver:
         self.missing = [0, 0]
         self.closed = False
         self._newest: Dict[int, numpy.void] = {}
-        self._applied: Dict[int, tuple] = {}
-        self._latest_event: Dict[tuple, int] = {}
         self._states: Deque[Records] = collections.deque(maxlen=_KEPT_STATES)
         self._queues: List[Deque[Event]] = []
         self._number = 0
@@ -86,12 +84,7 @@ class Receiver:
     def _note_finger(self, finger: int, records: Records) -> None:
         if len(records) == 0:
             return
-        last = records[-1]
-        command = int(last["command"])
-        if self._applied.get(finger, (None, 0))[0] != command:
-            first = records[records["command"] == command][0]
-            self._applied[finger] = (command, int(first["cycle"]))
-        self._newest[finger] = last
+        self._newest[finger] = records[-1]
 
     def _note_restart(self, published: int) -> None:
         """Begins anew if the server's clock does: its machine was started again."""
@@ -126,7 +119,6 @@ class Receiver:
         text = f"finger {message.finger}, {part}: {kind.name.lower().replace('_', ' ')}"
         event = Event(message.finger, message.cycle, message.time, kind, part, message.values, text)
         with self.changed:
-            self._latest_event[message.finger, kind] = message.cycle
             for queue in self._queues:
                 queue.append(event)
             self.changed.notify_all()
@@ -172,13 +164,10 @@ class Receiver:
         return record
 
     def applied(self, finger: int) -> tuple:
-        """Returns the number of the command that the server has applied last to a finger, and the first cycle in which
-        a State has shown it."""
-        return self._applied.get(finger, (0, 0))
-
-    def latest(self, finger: int, kind: EventKind) -> int:
-        """Returns the cycle of the latest event of this kind; 0 if there was none."""
-        return self._latest_event.get((finger, kind), 0)
+        """Returns the number of the command that the server has applied last to a finger, and the bits of the newest
+        record."""
+        record = self._newest.get(finger)
+        return (0, 0) if record is None else (int(record["command"]), int(record["bits"]))
 
     def take(self) -> List[Records]:
         """Returns the records of the States that have arrived since the last call."""

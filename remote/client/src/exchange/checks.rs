@@ -5,6 +5,7 @@ use crate::admission::{admit, admit_path, by_finger};
 use crate::change::Change;
 use crate::command::FingerCommand;
 use crate::error::RemoteError;
+use crate::progress::RemoteProgress;
 use sun2xp_remote_protocol::{FINGERS, Finger, FingerStatus, PathPose, Place, Record, Stage, Status};
 
 const MS: u64 = 1_000_000;
@@ -35,6 +36,14 @@ impl Exchange {
         let record = self.record(number, now)?;
         self.refuse_faulted(record)?;
         Ok(record)
+    }
+
+    /// What a finger has done since the newest command. A refusal that no call has reported is reported here.
+    pub fn progress(&mut self, number: i32, now: u64) -> Result<RemoteProgress, RemoteError> {
+        self.outbox.take_refusal().map_or(Ok(()), |text| Err(RemoteError::Refused(text)))?;
+        let &Record { finger, arrived, settled, .. } = self.moving(number, now)?;
+        let applied = self.outbox.is_applied(finger);
+        Ok(RemoteProgress { applied, arrived: applied && arrived, settled: applied && settled })
     }
 
     /// The status of a finger in the newest Status.

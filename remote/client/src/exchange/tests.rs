@@ -47,6 +47,8 @@ fn state(number: u64, now: u64, stage: Stage) -> State {
         begin: SERVER + now,
         touching: false,
         caught: false,
+        arrived: false,
+        settled: false,
         joints: [0.25; 3],
         set_point: None,
         tip: [0.0; 3],
@@ -252,10 +254,17 @@ fn records_confirm_what_was_sent() {
     send(&mut exchange, good(1), 10 * MS).expect("sent");
     let command = exchange.outbox.next(10 * MS).expect("a Target").parts[0].command;
     let mut confirming = state(2, 11 * MS, Stage::Running);
-    confirming.records[0].command = command;
+    confirming.records[0].arrived = true;
     exchange.take_state(&confirming, 11 * MS);
-    send(&mut exchange, FingerCommand::new(1).damping(0.5), 11 * MS).expect("sent");
-    let target = exchange.outbox.next(12 * MS).expect("a Target");
+    let progress = exchange.progress(1, 11 * MS).expect("running");
+    assert!(!progress.applied && !progress.arrived, "the record is of an earlier command");
+    confirming = state(3, 12 * MS, Stage::Running);
+    (confirming.records[0].command, confirming.records[0].arrived) = (command, true);
+    exchange.take_state(&confirming, 12 * MS);
+    let progress = exchange.progress(1, 12 * MS).expect("running");
+    assert!(progress.applied && progress.arrived && !progress.settled);
+    send(&mut exchange, FingerCommand::new(1).damping(0.5), 12 * MS).expect("sent");
+    let target = exchange.outbox.next(13 * MS).expect("a Target");
     assert_eq!(target.parts[0].place, sun2xp_remote_protocol::Place::Kept);
 }
 

@@ -4,6 +4,7 @@ use crate::RemoteHand;
 use crate::clock::now;
 use crate::error::RemoteError;
 use crate::events::RemoteEvents;
+use crate::progress::RemoteProgress;
 use crate::view::RemoteStatistics;
 use sun2xp_remote_protocol::{FingerStatus, Record, Status};
 
@@ -47,6 +48,14 @@ impl RemoteHand {
     /// Returns an error if there is no such finger, or if the cycle is older than `stale_ms`.
     pub fn record(&self, finger: i32) -> Result<Record, RemoteError> {
         self.link.shared.lock().record(finger, now()).copied()
+    }
+
+    /// What finger 1, 2 or 3 has done since the newest command of this client.
+    ///
+    /// # Errors
+    /// Returns the errors of [`RemoteHand::position`], and the refusal of a command that no call has reported yet.
+    pub fn progress(&self, finger: i32) -> Result<RemoteProgress, RemoteError> {
+        self.link.shared.lock().progress(finger, now())
     }
 
     /// The newest Status. The server sends one each second.

@@ -136,6 +136,8 @@ impl FakeHand {
             begin: time,
             touching: false,
             caught: false,
+            arrived: true,
+            settled: false,
             joints: self.joints[index],
             set_point: Some(self.joints[index]),
             tip: [1.0, 2.0, 3.0],

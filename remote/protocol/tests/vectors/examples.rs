@@ -55,6 +55,8 @@ pub fn record(finger: Finger, cycle: u64) -> Record {
         begin: 5_000_000_000 + 1_000_000 * cycle,
         touching: false,
         caught: false,
+        arrived: false,
+        settled: false,
         joints: [-0.1, 0.5, 0.8],
         set_point: Some([-0.1, 0.5, 0.8125]),
         tip: [1.5, -0.25, 6.75],

@@ -144,7 +144,7 @@ fn states() -> Vec<String> {
             ("stage 7", RECORD + 1, &[7]),
             ("faulted without a fault", RECORD + 1, &[6]),
             ("running with a fault", RECORD + 2, &[1]),
-            ("bit 2", RECORD + 24, &[4]),
+            ("bit 4", RECORD + 24, &[16]),
             ("a joint angle is NaN", RECORD + 32, &NAN),
             ("a part of the set point is NaN", RECORD + 64, &NAN),
             ("the position of the tip is infinite", RECORD + 80, &INFINITY),

@@ -73,6 +73,8 @@ fn record_fields(record: &Record) -> String {
         ("begin", record.begin.to_string()),
         ("touching", record.touching.to_string()),
         ("caught", record.caught.to_string()),
+        ("arrived", record.arrived.to_string()),
+        ("settled", record.settled.to_string()),
         ("joints", numbers(&record.joints)),
         ("set_point", option(record.set_point, |angles| numbers(&angles))),
         ("tip", numbers(&record.tip)),
@@ -188,10 +190,11 @@ fn targets() -> Vec<String> {
 fn states() -> Vec<String> {
     let faulted = Record { stage: Stage::Faulted(10), set_point: None, command: 0, ..record(ONE, 1) };
     let touching = Record { touching: true, caught: true, ..record(TWO, 8) };
+    let settled = Record { arrived: true, settled: true, ..record(TWO, 9) };
     vec![
         state_line("no cycle, no owner", &State { owner: 0, number: 0, missing: u32::MAX, ..state(vec![]) }),
         state_line("a finger that has stopped", &state(vec![faulted])),
-        state_line("two cycles of two fingers", &state(vec![record(ONE, 7), touching, record(ONE, 8), record(TWO, 9)])),
+        state_line("two cycles of two fingers", &state(vec![record(ONE, 7), touching, record(ONE, 8), settled])),
     ]
 }
 
