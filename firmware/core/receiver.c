@@ -10,7 +10,7 @@ static void collect(struct receiver *receiver, uint8_t byte)
     receiver->collected = place + 1;
     if (place == STUFFED_MOST)
         return;
-    /* The first byte is a distance, but stands for nothing. */
+    /* The first byte is the distance to the first zero. It replaces no byte of the frame. */
     if (place == 0) {
         receiver->next_zero = byte;
         receiver->crc = CRC32_START;
@@ -36,7 +36,7 @@ enum received receiver_take(struct receiver *receiver, uint8_t byte)
     /* An empty run between two delimiters is no damage: the host sends delimiters to resynchronise. */
     if (collected == 0)
         return RECEIVED_NOTHING;
-    /* One byte is the first distance. The last distance must lead to the delimiter. */
+    /* The first distance is not a byte of the frame, hence the 1. The last distance must lead to the delimiter. */
     if (collected < 1 + FRAME_LEAST || collected > STUFFED_MOST || receiver->next_zero != collected ||
         receiver->crc != CRC32_WITH_CHECK)
         return RECEIVED_DAMAGE;

@@ -1,8 +1,8 @@
-/* The processor of the emulated board: netduinoplus2 in QEMU. Four differences to the real board:
+/* The processor of the emulated board: netduinoplus2 in QEMU. It differs from the real board in four ways:
 
    - The emulator has no clock tree. The processor runs at 168 MHz from the start.
-   - The board sleeps between bytes, to leave the machine to others. SysTick ends the sleep. It cannot be the clock as
-     well: on a busy machine the emulator loses some of its interrupts. TIM2 is the clock.
+   - The board sleeps between bytes, to leave the machine to others. SysTick ends the sleep. SysTick cannot be the clock
+     as well: on a busy machine the emulator loses some of its interrupts. TIM2 is the clock.
    - The emulated USART always has room and does not interrupt when it has. Output writes without a look at the status,
      because every look costs the emulator a round through its main loop.
    - The plant replaces encoders, converter and drivers. */
@@ -48,7 +48,7 @@ void uart_transmit(void)
         USART1->DR = byte;
 }
 
-/* Ends line_sleep, which is its only purpose. */
+/* The only purpose of this interrupt is to end line_sleep. */
 void systick_interrupt(void)
 {
 }

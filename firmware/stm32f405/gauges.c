@@ -8,7 +8,8 @@
 #include "registers.h"
 #include <string.h>
 
-/* Rounds of at least 14 cycles that a wait may take: 16 us. The conversion takes 4.15 us and a word 1.6 us. */
+/* Largest number of rounds of a wait. A round takes at least 14 cycles, so a wait may take 16 us. The conversion takes
+   4.15 us and a word 1.6 us. */
 enum { ROUNDS = 200 };
 
 /* Conversions in a row that may fail: 6 ms at 500 Hz. */

@@ -137,7 +137,7 @@ mod telemetry {
     pub mod block_ring_checks;
 
     mod marks {
-        /// Fewer than in the library, whose blocks would take loom too long.
+        /// Smaller than the number in the library, because loom would take too long for a block of the library.
         pub const MARKS: usize = 1;
     }
 }

@@ -4,7 +4,8 @@ use crate::realtime::triple_buffer;
 use crate::tracked::Tracked;
 use loom::thread;
 
-/// A reader gets whole values, never an older value after a newer one, and after the last publication the last value.
+/// A reader gets whole values. It never gets an older value after a newer one. After the last publication, it gets the
+/// last value.
 pub fn values_are_whole_and_in_order() {
     const LAST: u32 = 3;
     let (mut input, mut output) = triple_buffer(&[Tracked::new(0), Tracked::new(0)]);

@@ -21,13 +21,13 @@ struct Arguments {
     /// Rate of the servos, Hz.
     #[arg(long, default_value_t = 1000.0)]
     rate: f64,
-    /// With three fingers. Their simulated boards need time of the processor that real boards do not need.
+    /// With three fingers. Their simulated boards need processor time that real boards do not need.
     #[arg(long)]
     whole_hand: bool,
     /// Without TLS.
     #[arg(long)]
     plain: bool,
-    /// The endpoint to which the client connects. The benchmark starts itself with it.
+    /// The endpoint to which the client connects. The benchmark uses it when it starts itself as the client.
     #[arg(long, hide = true)]
     client: Option<String>,
     /// The folder with the certificates of the client.

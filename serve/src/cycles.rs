@@ -43,12 +43,12 @@ impl Cycles {
         Self { view, controllers: [0; FINGERS], last, caught: [false; FINGERS], records: Vec::new(), hand }
     }
 
-    /// Takes the cycles since the last call. `goals` have the command numbers. `progress` is that of the fingers toward
-    /// these goals. The newest cycle of a finger has it.
+    /// Takes the cycles since the last call. `goals` contain the command numbers. `progress` is the progress of the
+    /// fingers toward these goals. It becomes part of the newest record of each finger.
     pub fn take(&mut self, goals: &Goals, progress: &[Arrival; FINGERS]) -> Taken {
         let mut taken = Taken::default();
         for finger in Finger::ALL {
-            // A finger that the hand does not have has no report.
+            // There is no report for a finger that is not in the hand.
             let Ok(report) = self.hand.report(i32::from(finger.number())) else { continue };
             self.note_controller(finger, &report);
             let first = taken.records.len();
@@ -104,7 +104,7 @@ impl Cycles {
 
     fn record(&mut self, finger: Finger, record: &CycleRecord, goals: &Goals) -> Record {
         let number = i32::from(finger.number());
-        let known = sun2xp::FingerNumber::try_from(number).expect("every finger of the protocol is one of the hand");
+        let known = sun2xp::FingerNumber::try_from(number).expect("the protocol and the hand number fingers alike");
         let sample = self.view.sample(known, record);
         Record {
             finger,

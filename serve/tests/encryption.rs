@@ -54,7 +54,7 @@ fn a_client_uses_only_the_keys_of_its_certificate() {
     let stop = mallory.keys.request(Action::Stop, &mallory.name);
     assert!(mallory.ask(&stop, request(Action::Stop).encode().expect("a Request")).is_none());
     assert!(mallory.status().is_none());
-    // Carol may read and stop, and not acquire.
+    // Carol may read and stop, but not acquire.
     let carol = connected("carol", "carol");
     let acquire = carol.keys.request(Action::Acquire, &carol.name);
     assert!(carol.ask(&acquire, request(Action::Acquire).encode().expect("a Request")).is_none());

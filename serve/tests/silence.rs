@@ -1,5 +1,5 @@
-//! The dead man's handle: clients that are killed, stopped or silent. The times are those of the servo's cycles, which
-//! are 1 ms long: a simulated finger slows down with a busy machine.
+//! The dead man's handle: clients that are killed, stopped or silent. The tests count times in
+//! servo cycles of 1 ms, because a simulated finger slows down on a busy machine.
 
 mod common;
 
@@ -25,7 +25,7 @@ fn report(rig: &Rig) -> FingerReport {
     rig.hand().report(1).expect("a report")
 }
 
-/// The process of a client, which the tests start. Without the variable it does nothing.
+/// The process of a client, which the tests start. It does nothing unless the tests have set its environment variable.
 #[test]
 fn client() {
     run_if_child();
@@ -39,7 +39,7 @@ fn signal(child: &Child, signal: i32) {
     assert_eq!(sent, 0);
 }
 
-/// Commands finger 1 from a process, lets `fall_silent` happen to it, and checks what the fingers do.
+/// Commands finger 1 from a process, makes this process silent with `fall_silent`, and checks what the fingers do.
 fn falls_silent(fall_silent: impl FnOnce(&mut Child)) {
     let rig = Rig::new("");
     let mut child = start("client", &rig.endpoint);
@@ -122,7 +122,7 @@ fn an_owner_that_returns_leads_its_finger_on() {
         let state = alice.state()?;
         state.records.iter().any(|record| record.finger.number() == 1 && record.caught).then_some(())
     });
-    // The same command number: the part is not new, but the finger was caught.
+    // The part has the same command number, so it is not new. It takes effect because the finger was caught.
     wanted.stiffness = None;
     alice.repeat_until(&[wanted], "set point", |_| in_force(&rig));
     assert!(!report(&rig).expired);
@@ -174,7 +174,7 @@ fn only_the_arrival_at_the_destination_is_published() {
     let early = records(&alice).find(|record| {
         record.command == 1 && record.arrived && (Vector3::from(record.joints) - far).amax() > 2f64.to_radians()
     });
-    assert_eq!(early, None, "a record says that the finger has arrived, and it is on the way");
+    assert_eq!(early, None, "a record says that the finger has arrived while it is still on the way");
     // The finger is already where the next command wants it. There is no second Event.
     let again = sun2xp_remote_protocol::Part { command: 2, ..part(1, far.into()) };
     alice.repeat_until(&[again], "arrival", |alice| {

@@ -1,11 +1,11 @@
 //! Checks the wiring of a calibrated finger within two seconds: each motor moves its own encoder and pulls its own
 //! tendon, in the configured directions, and every gauge shows the tension.
 //!
-//! First each motor alone pulls until an encoder moves. Then all motors are held in place and wind in until the tendons
-//! are tight. Each one pulls for some milliseconds, which its own gauge shows first, because the links delay the pull
-//! at the other gauges. At last all motors wind in a little more. The tensions of a finger that nothing touches rise
-//! along the null vector of R, whatever the friction of the motors, so the rises of the gauges show whether their
-//! scales agree.
+//! First each motor alone pulls until an encoder moves. Then the positions of all motors are controlled. All motors
+//! wind in until the tendons are tight. Each one then pulls for some milliseconds. Its own gauge shows this pull first,
+//! because the links delay the pull at the other gauges. At last all motors wind in a little more. The tensions of a
+//! finger that nothing touches rise along the null vector of R, whatever the friction of the motors. So the rises of
+//! the gauges show whether their scales agree.
 
 mod holding;
 mod pushing;

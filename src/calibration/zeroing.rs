@@ -54,7 +54,7 @@ enum Phase {
         guide: JointGuide,
         swing: Swing,
     },
-    /// Checks whether something holds it in its pose.
+    /// Checks whether something holds the finger in its pose.
     Try(Grip),
     ReadPose {
         grip: Grip,

@@ -1,6 +1,6 @@
 //! The C interface: the five calls of 1990, on one default hand, and the calls with handles. It checks pointers,
-//! catches panics and converts refusals to numbers and errno; the hand makes all other checks. From the files that
-//! `tests/header/main.rs` lists, `include/Sun2Xp.h` and `include/sun2xp.h` are generated.
+//! catches panics and converts refusals to numbers and errno; the hand makes all other checks. `include/Sun2Xp.h` and
+//! `include/sun2xp.h` are generated from the files that `tests/header/main.rs` lists.
 //!
 //! If several reasons apply to a call, it reports the first one in this order: forked child (EPERM), null pointer
 //! (EFAULT), no hand (ENODEV), a struct whose size is too small (EINVAL), then the reasons that the hand finds: finger

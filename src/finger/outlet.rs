@@ -4,7 +4,8 @@ use crate::control::State;
 use crate::finger::CycleRecord;
 use std::collections::TryReserveError;
 
-/// Capacity, s. The records are taken out twenty times a second. A planner's calls may collect more in between.
+/// Capacity, s. The records are taken out twenty times a second. Between these times, calls of planners may collect
+/// records too.
 const CAPACITY: f64 = 1.0;
 
 /// The controller's state before a cycle.
@@ -16,8 +17,8 @@ pub struct Keyframe {
     pub state: State,
 }
 
-/// Records and keyframes in the order of their cycles. If it is full, further ones are dropped. The numbers of the
-/// cycles then show that some are missing.
+/// Records and keyframes in the order of their cycles. If the outlet is full, further records and keyframes are
+/// dropped. The numbers of the cycles then show that some are missing.
 #[derive(Default)]
 pub struct Outlet {
     /// The records.

@@ -1,16 +1,16 @@
-//! How long what was sent to a finger is valid.
+//! The time for which a set point is valid.
 
 use std::time::Duration;
 
-/// How long what was sent last to a finger is valid. Both times count from `since`. A time that is none is the
-/// configured one.
+/// The time for which the set point or path that was sent last to a finger is valid. Both times count from `since`. If
+/// a time is none, the configured time applies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Validity {
     /// After this time the finger reacts as `finger.motion.on_expiry` says. The configured time is
     /// `finger.motion.valid_ms`, which may be absent: then a set point does not expire.
     pub hold_after: Option<Duration>,
-    /// After this time the finger faults, and its board goes to the end state. The configured time is that of
-    /// `hold_after`, and `finger.motion.end_state_ms` in addition, which may be absent.
+    /// After this time the finger faults, and its board goes to the end state. The configured time is the time of
+    /// `hold_after` plus `finger.motion.end_state_ms`, which may be absent.
     pub end_after: Option<Duration>,
     /// The time from which both times count, ns of the clock CLOCK_MONOTONIC. If it is none, they count from the cycle
     /// in which the servo takes what was sent. A program that only passes on what others send gives the time, so that a

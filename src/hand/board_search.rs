@@ -138,7 +138,7 @@ fn ask(path: &Path, rates: &[u32]) -> Result<Vec<FoundFinger>, LinkError> {
     Err(refusal)
 }
 
-/// The serial devices that processes have open, as far as this user may see it. Such a port is not opened, even if it
+/// The serial devices that processes have open, as far as this user can see them. Such a port is not opened, even if it
 /// is not locked: settings and bytes would disturb its user. Pseudo-terminals are not among them, because the board
 /// behind a pseudo-terminal may hold both ends.
 fn used_terminals() -> BTreeSet<PathBuf> {

@@ -122,7 +122,8 @@ impl Calibrating {
         let report = hand.dispatcher.report(finger)?;
         if report.recoveries != self.recoveries {
             // The finger has faulted and recovered between two polls, so this calibration is over. If the report has a
-            // verdict, it is not that of this calibration. Without this return, progress would be reported without end.
+            // verdict, the verdict is of another calibration. Without this return, progress would be reported without
+            // end.
             return Err(HandError::Interrupted(finger));
         }
         if report.orders != self.order {

@@ -28,7 +28,7 @@ pub struct Configured {
     pub configuration: Configuration,
     /// The file; `None` if no file was found.
     pub file: Option<PathBuf>,
-    /// What the file says, apart from the values.
+    /// Which keys and tables the file contains.
     said: Said,
 }
 

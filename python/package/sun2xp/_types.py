@@ -17,17 +17,17 @@ Array = numpy.typing.NDArray[numpy.float64]
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class SetPoint:
-    """A set point of one finger for `Hand.send_group`. What is None keeps its value."""
+    """A set point of one finger for `Hand.send_group`. The finger keeps the values whose fields are None."""
 
     #: Number of the finger, 1 to 3.
     finger: int
-    #: Desired angles of joints 0, 1 and 2, rad: shape (3,). Not together with `tip`.
+    #: Desired angles of joints 0, 1 and 2, rad: shape (3,). Do not set it together with `tip`.
     position: Optional[numpy.typing.ArrayLike] = None
     #: Desired position of the tip in the finger's frame, cm: shape (3,).
     tip: Optional[numpy.typing.ArrayLike] = None
     #: Kx in the finger's frame, N/cm: shape (3, 3).
     stiffness: Optional[numpy.typing.ArrayLike] = None
-    #: Damping relative to the one that the controller chooses.
+    #: Damping, relative to the damping that the controller chooses.
     damping: Optional[float] = None
 
 
@@ -142,7 +142,7 @@ class JointState:
     position: Array
     #: Measured rates, rad/s: shape (3,).
     rate: Array
-    #: Torques from the measured tensions, N cm: shape (3,). They may be those of the next cycle.
+    #: Torques from the measured tensions, N cm: shape (3,). They may belong to the next cycle.
     torque: Array
 
 

@@ -10,7 +10,7 @@ pub enum Pose {
     Tip([f64; 3]),
 }
 
-/// The part of a group that commands one finger. What is none keeps its value.
+/// The part of a group that commands one finger. The finger keeps the values whose fields are none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct FingerCommand {

@@ -7,11 +7,11 @@ use std::sync::mpsc;
 use std::time::Duration;
 use zenoh::{Config, Session, Wait};
 
-/// The time in which a connection must be there.
+/// The time limit for making a connection, ms.
 const CONNECT_MS: u64 = 3000;
 
-/// The time for which a message waits for its connection to be found dead, ms. It only decides when the connection is
-/// made again; the hand is protected by the age of Targets.
+/// The lease of a connection, ms. Zenoh considers a connection dead after this time without a message. The lease only
+/// decides when the connection is made again. The age of Targets protects the hand.
 const LEASE_MS: u64 = 4000;
 
 /// The largest message that is accepted, bytes. A State with all its records has 48 032.

@@ -45,7 +45,7 @@ pub enum RemoteError {
         /// The beginning of the text of the fault; empty if no Status had it yet.
         text: String,
     },
-    /// The finger is not a spring.
+    /// The finger does not act as a spring now.
     #[error("finger {finger} is {stage}: wait until it is running")]
     Busy {
         /// The finger.
@@ -56,7 +56,7 @@ pub enum RemoteError {
     /// There is no connection to the hand.
     #[error("{0}")]
     NotConnected(String),
-    /// What is known of the finger is too old.
+    /// The newest cycle that the client has received from the finger is too old.
     #[error(
         "the newest cycle of finger {finger} is {age_ms} ms old, and remote.stale_ms is {stale_ms}: check the line to \
          {endpoint} and the server, or raise remote.stale_ms"

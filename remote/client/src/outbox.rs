@@ -8,8 +8,8 @@ use sun2xp_remote_protocol::{Answer, FINGERS, Finger, LONGEST_VALIDITY_MS, Targe
 /// Interval at which a Target is repeated, ns. The protocol demands at most 25 ms.
 pub const REPETITION: u64 = 20_000_000;
 
-/// Smallest interval of two Targets, ns. It is below the period of a servo, and bounds what a planner that sends
-/// without a pause puts on the line.
+/// Smallest interval of two Targets, ns. It is below the period of a servo. It limits the number of Targets if a
+/// planner sends without a pause.
 const LEAST_INTERVAL: u64 = 500_000;
 
 /// The ownership of the hand.
@@ -150,7 +150,7 @@ impl Outbox {
                 slot.renew(self.command);
             }
         }
-        // The time sent must not go back.
+        // The time stamps of Targets must never decrease.
         let stamp = stamp.max(self.sent.map_or(0, |(_, before)| before));
         self.sequence += 1;
         self.sent = Some((now, stamp));

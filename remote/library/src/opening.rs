@@ -18,7 +18,7 @@ pub(crate) fn open(source: RemoteSource, configuration: &Configuration) -> Resul
     // The caller has found the table already. The file may have been replaced since then.
     let remote = read.map_err(refusal)?.ok_or_else(|| system("the table [remote] is no longer there: open again"))?;
     let hand = client::RemoteHand::open(&remote).map_err(|error| match error.kind() {
-        // The server answers a client that may only read as one that does not own the hand.
+        // A client that may only read gets the same answer as a client that does not own the hand.
         client::RemoteErrorKind::NotOwner => forbidden(&remote.hand),
         _ => refusal(error),
     })?;

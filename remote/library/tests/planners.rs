@@ -38,7 +38,7 @@ fn assert_alike(planner: &str, way: Way, local: &(ExitStatus, String), remote: &
     assert!(!here.is_empty(), "{planner} says something");
 }
 
-/// Runs a planner here, and then in one way there.
+/// Runs a planner on the simulated hand of this machine, and then on the hand of the server in each of these ways.
 fn alike(planner: &str, flags: &[&str], ways: &[Way]) {
     let rig = Rig::start();
     let program = rig.planners.compile(planner, flags);
@@ -49,7 +49,8 @@ fn alike(planner: &str, flags: &[&str], ways: &[Way]) {
     }
 }
 
-/// Both ways to the same code are tested by a few planners; the others take the one that needs both libraries.
+/// A few planners test both ways to the hand of the server. Each of the other planners tests one way, because both lead
+/// to the same code.
 const BY_BOTH: &[Way] = &[Way::Configured, Way::Path];
 const BY_CONFIGURATION: &[Way] = &[Way::Configured];
 const BY_PATH: &[Way] = &[Way::Path];
@@ -139,7 +140,7 @@ fn one_with_events_and_an_emergency_stop() {
     alike("events.c", &["-std=gnu99"], BY_BOTH);
 }
 
-/// Nobody may command a hand whose server does not list him, and the text names the key.
+/// A client that the server does not list may not command the hand. The text names the key.
 #[test]
 fn one_that_may_not_command() {
     let rig = Rig::start();
@@ -152,7 +153,7 @@ fn one_that_may_not_command() {
     }
 }
 
-/// The calls that do not reach the hand are refused with ENOTSUP, and the hand stays open.
+/// Calls that a hand on another machine does not support are refused with ENOTSUP, and the hand stays open.
 #[test]
 fn calls_that_do_not_reach_the_hand_say_so() {
     let rig = Rig::start();

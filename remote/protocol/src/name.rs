@@ -1,4 +1,5 @@
-//! The names of hands and clients. A name is part of keys, so it has no character with a meaning there.
+//! The names of hands and clients. A name is part of keys, so it must not contain a character that has a meaning in
+//! a key.
 
 use std::fmt;
 use std::str::FromStr;

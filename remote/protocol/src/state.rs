@@ -21,7 +21,7 @@ pub struct State {
     pub time: u64,
     /// The number of the owner's epoch; 0 if there is no owner.
     pub owner: u64,
-    /// The cycles. Those of a finger are in their order.
+    /// The cycles. The cycles of each finger are in the order of their numbers.
     pub records: Vec<Record>,
 }
 
@@ -29,7 +29,7 @@ impl State {
     /// Decodes a payload.
     ///
     /// # Errors
-    /// Returns the field that the page does not allow, and the reason.
+    /// Returns the field that docs/remote-protocol.md does not allow, and the reason.
     pub fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
         let bytes = Bytes::of_message(payload, KIND, FIXED)?;
         let count = usize::from(bytes.u16(2));
@@ -62,7 +62,7 @@ impl State {
     /// Encodes the State.
     ///
     /// # Errors
-    /// Returns the field that the page does not allow, and the reason.
+    /// Returns the field that docs/remote-protocol.md does not allow, and the reason.
     pub fn encode(&self) -> Result<Vec<u8>, FieldError> {
         self.check_order()?;
         for (number, record) in self.records.iter().enumerate() {

@@ -23,7 +23,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments.engine {
         Engine::Tcp | Engine::Rustls => {
             println!("{port}");
-            // Standard input ends while this thread waits for messages, so it does not hold the process.
+            // When standard input ends, the new thread still waits for messages. The process does not wait for it.
             std::thread::spawn(move || {
                 let served = if encrypted {
                     stream::serve_encrypted(&listener, &certificates)

@@ -26,7 +26,7 @@ impl Engine {
         }
     }
 
-    /// Returns the engine that the same protection of the messages costs without Zenoh.
+    /// Returns the engine without Zenoh that protects the messages in the same way.
     pub fn baseline(self) -> Self {
         match self {
             Self::Tcp | Self::ZenohTcp => Self::Tcp,
@@ -48,9 +48,9 @@ impl Engine {
 /// When a message of a flood is sent.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Sending {
-    /// At once, as a target.
+    /// At once and separately, like a Target.
     AtOnce,
-    /// With others that wait, as the engine likes.
+    /// The engine may collect several messages and send them together.
     Together,
 }
 

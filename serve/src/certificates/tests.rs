@@ -92,7 +92,7 @@ fn a_certificate_that_is_not_that_of_the_authority_is_refused() {
     make(other, &client("planner")).expect("made");
     copy(other.join("ca.pem"), folder.join("ca.pem")).expect("copied");
     assert!(refusal(folder).contains("another key"));
-    // A client that plays the authority with its own certificate and key.
+    // A client puts its own certificate and key in place of those of the authority.
     copy(folder.join("planner.pem"), folder.join("ca.pem")).expect("copied");
     copy(folder.join("planner.key"), folder.join("ca.key")).expect("copied");
     assert!(refusal(folder).contains("not the certificate of an authority"));

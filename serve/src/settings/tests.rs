@@ -52,7 +52,7 @@ fn what_other_machines_can_reach_needs_tls() {
     let files = settings.tls.expect("TLS");
     assert_eq!(files.authority, Path::new("folder/ca.pem"), "relative to the file");
     assert_eq!(files.certificate, Path::new("/etc/c.pem"));
-    // With TLS configured, a plain endpoint would let in everybody without a certificate.
+    // Although TLS is configured, a plain endpoint would admit clients that have no certificate.
     assert!(refusal(&format!("[serve]\nlisten = ['tcp/127.0.0.1:7447']\n{tls}")).contains("tls/"));
 }
 

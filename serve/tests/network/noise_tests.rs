@@ -14,7 +14,7 @@ use sun2xp_serve::server::Server;
 /// The owner's only command, rad.
 const HELD: [f64; 3] = [0.1, 0.7, 0.8];
 
-/// Largest motion of a finger that only holds its pose: noise of its gauges and rubbing, rad.
+/// Largest motion of a finger that only holds its pose, rad. The noise of its gauges and friction cause this motion.
 const STILL: f64 = 0.02;
 
 /// Interval between two good Targets of the owner.
@@ -133,7 +133,7 @@ fn noise_over_the_wire(count: u64) {
     let after = raw.until(|status| counts(&status.counts) - counts(&counted) >= count);
     let good = raw.good - good;
     assert_eq!(counts(&after.counts) - counts(&counted), count + good, "{:?}", after.counts);
-    // A good Target may be late if the machine is busy, but no other one is taken.
+    // A good Target may be late if the machine is busy. No payload except good Targets is taken.
     assert!(after.counts.taken - counted.taken <= good, "noise was taken: {:?}", after.counts);
     assert_still(server.hand(), &before);
     assert_eq!(after.owner.map(|owner| owner.to_string()), Some("planner".into()), "the owner has lost the hand");

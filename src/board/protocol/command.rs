@@ -8,7 +8,7 @@ use super::fields::{FieldReader, FieldWriter};
 /// | 3..11 | torques of motors 1 to 4, i16 each |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Command {
-    /// The handshake bit of the report. The servo toggles it every cycle, and the board outputs it on a pin.
+    /// The handshake bit of COINS TR 90-48. The servo toggles it every cycle, and the board outputs it on a pin.
     pub toggle: bool,
     /// False: the motors are off.
     pub enable: bool,

@@ -59,8 +59,8 @@ pub(super) struct JointFriction {
 pub(super) struct FreeFinger {
     /// Factors for the tensions of the gauges. Their mean is 1.
     pub gains: Vector4<f64>,
-    /// Relative uncertainty of the gains: the largest difference between those that one direction of motion gives and
-    /// those of all directions.
+    /// Relative uncertainty of the gains: the largest difference between the gains from one direction of motion and the
+    /// gains from all directions.
     pub gain_uncertainty: f64,
     /// C, N cm.
     pub coulomb: Vector3<f64>,
@@ -104,7 +104,7 @@ impl JointFriction {
             let level = |high: bool| {
                 let of = |stroke: &Stroke| stroke.direction == direction && stroke.high == high;
                 let mut strokes = self.strokes.iter().rev().filter(|(stroke, _)| of(stroke));
-                // The last stroke of a level has the same speed as the one at the other level.
+                // The last strokes of the two levels have the same speed.
                 strokes.next().map_or_else(Vector4::zeros, |(stroke, averages)| {
                     let ways = at_joint(instruments, stroke, averages, pulley);
                     (ways[0] + ways[1]) * 0.5
@@ -117,7 +117,7 @@ impl JointFriction {
             gains / gains.mean()
         };
         let gains = relative(&rises.iter().sum());
-        // Each direction alone gives all gains too.
+        // A single direction also determines all gains.
         let spread = rises.iter().map(|rise| (relative(rise).component_div(&gains)).add_scalar(-1.0).amax());
         let uncertainty = spread.fold(0.0, f64::max);
         match gains.iter().position(|gain| !GAINS.contains(gain)) {

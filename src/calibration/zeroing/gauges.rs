@@ -29,7 +29,8 @@ impl Zeroing {
         self.phase = if sample.report.desired_tensions.min() > PULLED * instruments.minimum {
             Phase::Read
         } else {
-            // The tendons must stay slack until the gauges are zeroed, because wrong gauges would pull the finger away.
+            // The tendons must stay slack until the gauges are zeroed, because a controller that uses wrong tensions
+            // would pull the finger away.
             Phase::Gauges(GaugeZero::new(None))
         };
         as_before(0.0)

@@ -79,7 +79,7 @@ impl Controller {
     }
 
     /// Returns the factor, 0 to 1, by which the stiffness must be scaled, and writes it to the report. The pose
-    /// supports the scaled stiffness of both springs together with that of the soft limits. `k_theta` is the
+    /// supports the sum of the scaled stiffness of both springs and the stiffness of the soft limits. `k_theta` is the
     /// stiffness of the tip's spring, N cm/rad.
     fn supported(&self, report: &mut Report, k_theta: &Matrix3<f64>, joint: Option<&JointSpring>, push: &Push) -> f64 {
         report.stiffness_scale = match joint {

@@ -23,7 +23,7 @@ pub(super) struct ArrivalDetector {
     tolerance: f64,
     /// Largest motion of a joint at rest, rad.
     motion: f64,
-    /// Number of cycles with a reply after which joints that stay at rest have settled.
+    /// The joints have settled after they have stayed at rest for this number of cycles with a reply.
     cycles: u32,
 }
 
@@ -124,7 +124,8 @@ mod tests {
         assert_eq!(state.arrival(), Arrival { arrived: true, settled: true });
         let observed = moves(&mut state, &mut joints, 1.0, 1);
         assert_eq!((observed, state.arrival()), (vec![], Arrival::default()));
-        // The joints need 50 cycles, and are within 2 degrees, 0.035 rad, after 47. The first cycle is over.
+        // The joints need 50 cycles, and are within 2 degrees, 0.035 rad, after 47. The first of these cycles is
+        // already over.
         let observed = moves(&mut state, &mut joints, 1.0, 500);
         assert_eq!(observed, [(45, ObservationKind::Arrived), (148, ObservationKind::Settled)]);
         assert_eq!(moves(&mut state, &mut joints, 1.0, 500), []);

@@ -12,9 +12,9 @@
 //!
 //! On a real finger the difference also changes without a fault. Wrong stiffnesses, gauge gains and moment arms change
 //! it in proportion to tensions and joint angles; `mismatch` learns by how much, and what it does not know yet is
-//! tolerated. Friction along a tendon makes the tension differ between the motor, the gauge and the joint, and thus
-//! the stretch. Its sign depends on the direction of the last motion, so it is tolerated in proportion to the tensions.
-//! A drift is not limited in this way.
+//! tolerated. Friction along a tendon makes the tension differ between the motor, the gauge and the joint, and thus the
+//! stretch. Its sign depends on the direction of the last motion, so it is tolerated in proportion to the tensions. A
+//! drift is not limited in proportion to tensions or joint angles.
 
 use super::alarm::{Alarm, Symptom};
 use super::mismatch::{DEVIATIONS, Mismatch, Terms};
@@ -28,8 +28,8 @@ use nalgebra::{Matrix3x4, Vector3, Vector4};
 /// distributed evenly and the gauge is at one end.
 pub(crate) const SHARE_OF_FRICTION: f64 = 0.4;
 
-/// Expected factor of a joint's term, as a part of the largest. The largest occurs only if the signs of the errors
-/// equal the signs of the moment arms.
+/// Expected factor of a joint's term, as a part of the largest possible factor. The largest factor occurs only if the
+/// signs of the errors equal the signs of the moment arms.
 const TYPICAL: f64 = 0.75;
 
 /// Fraction of t_min below which a tendon may hang slack. The encoders then show a negative stretch, so the difference
@@ -81,7 +81,8 @@ pub(super) struct Memory {
     disagreement: f64,
     /// The part of it that the mismatch does not explain, N.
     difference: f64,
-    /// Disagreement divided by the tolerated one.
+    /// Magnitude of `difference` divided by the tolerated magnitude. It is 0 if a slack tendon explains the
+    /// difference.
     ratio: f64,
     /// Time for which the disagreement has lasted, s.
     duration: f64,
@@ -177,8 +178,8 @@ impl Agreement {
         }
     }
 
-    /// Returns whether an error of this gauge, 0 to 3, that causes this imbalance of pull and shown tension, N, would
-    /// cause about the disagreement that there is.
+    /// Returns whether an error of this gauge, 0 to 3, explains the present disagreement approximately. `imbalance` is
+    /// the difference between pull and shown tension, N, that the error causes.
     pub fn explains(&self, memory: &Memory, gauge: usize, imbalance: f64) -> bool {
         (0.6..1.6).contains(&(memory.disagreement / self.of_tension[gauge] / imbalance))
     }

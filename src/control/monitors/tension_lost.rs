@@ -24,8 +24,8 @@ const LOW: f64 = 0.3;
 const GONE: f64 = 0.1;
 
 /// Fraction of t_min from which the tension of a low tendon counts as missing. The missing tension is the tension that
-/// the stretch indicates minus the tension that the gauge shows, less its mean before any tendon became low. On a
-/// finger that rubs or was measured badly, this mean is not zero.
+/// the stretch indicates minus the tension that the gauge shows, less its mean before any tendon became low. This mean
+/// is not zero on a finger with friction along its tendons or with inexact parameters.
 const MISSED: f64 = 0.3;
 
 /// Time constant of the mean of the missing tension before any tendon became low, s.

@@ -147,7 +147,7 @@ mod tests {
     fn equal_steps_give_a_constant_rate() {
         let all = run(2000, |cycle| Vector3::x() * (f64::from(cycle / 100) * 0.05));
         assert!(all[400..].iter().all(|(_, motion)| (motion.rates.x - 0.5).abs() < 1e-9));
-        // One and a half periods of delay, and half a period that a set point rests on average.
+        // The delay is one and a half periods, plus half a period because a set point is half a period old on average.
         assert!((all[1499].0.x - 0.5 * (1.5 - 0.15 - 0.05)).abs() < 1e-3, "{}", all[1499].0.x);
     }
 

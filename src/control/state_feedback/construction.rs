@@ -127,7 +127,7 @@ fn right_inverse(r: &Matrix3x4<f64>) -> Result<Matrix4x3<f64>, Unusable> {
     Ok(r.transpose() * (r * r.transpose()).try_inverse().ok_or_else(singular)?)
 }
 
-/// Returns the design of the spring's damping. `stiffness` is that of a tendon, N/m.
+/// Returns the design of the spring's damping. `stiffness` is the stiffness of a tendon, N/m.
 fn damping_design(numbers: &Numbers, relative_damping: f64, stiffness: f64) -> DampingDesign {
     DampingDesign {
         ratio: numbers.damping_ratio,
@@ -136,7 +136,7 @@ fn damping_design(numbers: &Numbers, relative_damping: f64, stiffness: f64) -> D
     }
 }
 
-/// Returns the dither of the tensions. `common` is the unit vector of the tensions without joint torque, and `highest`
+/// Returns the dither of the tensions. `common` is the unit vector of the tensions without joint torque. `highest` is
 /// the largest tension of each tendon, N.
 fn tension_dither(
     finger: &ConfiguredFinger,

@@ -20,13 +20,13 @@ const MOST_NOISE: f64 = 0.05;
 
 /// If the lowest sample is at least this fraction of all samples, the converter clips the noise below zero tension.
 const CLIPPED: f64 = 0.3;
-/// Standard deviation of Gaussian noise divided by that of its positive part.
+/// Standard deviation of Gaussian noise, divided by the standard deviation of its positive part.
 const UNCLIPPED: f64 = 1.75;
-/// Standard deviation of Gaussian noise divided by the one that remains when a fraction of the samples below
-/// [`CLIPPED`] is clipped: 1 plus this multiple of the fraction.
+/// If the clipped fraction of the samples is not above [`CLIPPED`], the standard deviation of the samples is multiplied
+/// by 1 plus this multiple of the fraction. The product is the standard deviation of the Gaussian noise.
 const PARTLY_CLIPPED: f64 = 1.1;
 
-/// The tare falls to a smoothed tension that is lower by this multiple of the noise.
+/// The tare is at most this multiple of the noise above the smoothed tension. It falls if the smoothed tension falls.
 const LOWER: f64 = 0.8;
 
 /// The gauge of one tendon. Tensions are in N.
@@ -65,8 +65,8 @@ impl Gauge {
         self.noise = (deviation * ratio).clamp(LEAST_NOISE * minimum, MOST_NOISE * minimum);
     }
 
-    /// Reads a sample while the motor winds in. `smoothed` is the low-pass filtered tension, `travel` that of the
-    /// motor, m. Returns the travel at which the tendon came taut, as soon as this is detected.
+    /// Reads a sample while the motor winds in. `smoothed` is the low-pass filtered tension. `travel` is the travel
+    /// of the motor, m. Returns the travel at which the tendon came taut, as soon as this is detected.
     pub fn taut_at(&mut self, tension: f64, smoothed: f64, travel: f64) -> Option<f64> {
         self.tare = self.tare.min(smoothed + LOWER * self.noise);
         let above = tension - self.tare;
@@ -87,7 +87,7 @@ impl Gauge {
         self.samples > 0.0
     }
 
-    /// Starts a new detection with the same tare. `travel` is that of the motor, m.
+    /// Starts a new detection with the same tare. `travel` is the travel of the motor, m.
     pub fn restart(&mut self, travel: f64) {
         (self.sum_above, self.onset) = (0.0, travel);
     }

@@ -17,9 +17,10 @@ pub struct PreparedSetPoint<'a> {
 }
 
 impl Mailbox {
-    /// Prepares a change of the last set point, as [`Mailbox::try_send`] makes it, for a group. `replaced` is the part
-    /// that changes, and `valid` is the time for which the set point is valid. A caller that prepares several fingers
-    /// must do this in the order of their numbers, so that two callers cannot wait for each other.
+    /// Prepares the set point of one finger for a group: changes a copy of the last set point, as [`Mailbox::try_send`]
+    /// does. `replaced` is the part that changes, and `valid` is the time for which the set point is valid. A caller
+    /// that prepares several fingers must do this in the order of their numbers, so that two callers cannot wait for
+    /// each other.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. The inner result is the refusal of `change`.
@@ -50,7 +51,8 @@ impl GroupGate {
         for PreparedSetPoint { planners, replaced, valid, set_point } in group.iter_mut().flatten() {
             let mut sent = SentSetPoint { group: number, set_point: *set_point, ..planners.sent };
             sent.replace(*replaced, *valid);
-            // The push succeeds, because the finger has room, and only its servo has made more room since.
+            // The push succeeds: the finger had room, and since then only its servo can have changed the queue. The
+            // servo only makes more room.
             if planners.grouped.push(sent).is_ok() {
                 planners.sent = sent;
             }

@@ -94,8 +94,8 @@ impl FingerServo {
         self.stage_cycles = 0;
     }
 
-    /// Resumes after a fault. The board has been configured again, and no motor has moved since. Later requests to stop
-    /// than those of `restored` stop the finger again.
+    /// Resumes after a fault. The board has been configured again, and no motor has moved since. A request to stop that
+    /// is later than the requests in `restored` stops the finger again.
     pub(in crate::finger) fn recover(&mut self, restored: &RestoredBoard) {
         let RestoredBoard { configured, stops } = restored;
         self.alarm.forget(stops.calls);

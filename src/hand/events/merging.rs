@@ -19,7 +19,7 @@ pub enum Next {
 /// Readers of the logs of all fingers.
 pub struct MergedEvents {
     fingers: Vec<FingerEvents>,
-    /// Longest time for which an event waits for those of other fingers, ns.
+    /// Longest time for which an event waits for earlier events of other fingers, ns.
     patience: u64,
 }
 
@@ -164,7 +164,7 @@ mod tests {
                     taken.push(event);
                 }
             }
-            // The patience is over.
+            // At this time no event needs to wait for an earlier one.
             let end = cycles.last().map_or(0, |last| last.ended) + merged.patience;
             while let Next::Event(event) = merged.next(end) {
                 taken.push(event);

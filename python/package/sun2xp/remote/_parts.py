@@ -1,4 +1,4 @@
-"""Set points of a planner, checked as far as the client can, in the form of the protocol."""
+"""Checks the set points of a planner, as far as the client can, and converts them to the form of the protocol."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def group(set_points: Sequence[SetPoint], fingers: Dict[int, FingerStatus]) -> L
 
     Raises:
         Refused: a wrong shape, a number that is not finite, a joint angle outside its limits, a Kx that is not
-            symmetric, two places of one finger, or two set points of one finger.
+            symmetric, both a position and a tip for one finger, or two set points for one finger.
     """
     numbers = [set_point.finger for set_point in set_points]
     if not numbers or len(set(numbers)) < len(numbers):

@@ -125,7 +125,7 @@ impl Exchange {
         let Stage::Faulted(fault) = record.stage else { return Ok(()) };
         let finger = record.finger;
         let status = self.view.status().and_then(|status| status.fingers[finger.index()].as_ref());
-        // The Status comes once a second, and may still be that of another fault.
+        // The Status comes once a second, and may still describe another fault.
         let text = status.filter(|status| status.stage == record.stage).map(|status| status.fault_text.to_string());
         Err(RemoteError::Faulted { finger, fault, text: text.unwrap_or_default() })
     }

@@ -23,7 +23,8 @@ pub enum Way {
     Path,
 }
 
-/// The hand, the same here and there. Without real time, because other programs need the machine too.
+/// The configuration of the hand. The planner's process and the server use the same one. It does not request real time,
+/// because other programs need the machine too.
 const HAND: &str = "[hand]\nreal_time = \"ignore\"\n[finger]\nport = \"simulated\"\n";
 
 /// The name of the hand.
@@ -40,7 +41,7 @@ pub struct Loading {
 }
 
 impl Loading {
-    /// `remote` is the configuration of the ways that reach a server.
+    /// `remote` is the configuration for [`Way::Configured`] and [`Way::Path`].
     pub fn new(remote: &str) -> Self {
         let loading = Self { folder: tempfile::tempdir().expect("a folder") };
         fs::write(loading.place("local.toml"), HAND).expect("a file");
@@ -64,7 +65,7 @@ impl Loading {
         self.folder.path().join(name)
     }
 
-    /// Puts another library of this C source in place of libsun2xp_remote.
+    /// Replaces libsun2xp_remote with a library that is compiled from this C source.
     pub fn replace_library(&self, source: &str) {
         let (file, library) = (self.place("other.c"), self.place("library/sun2xp-remote/libsun2xp_remote.so.0"));
         fs::write(&file, source).expect("a file");
@@ -139,7 +140,7 @@ impl Rig {
 
 impl Drop for Rig {
     fn drop(&mut self) {
-        // The server is a child for which nothing has waited yet, so its number is not that of another process.
+        // The server is a child for which nothing has waited yet, so no other process can have its number.
         let _ = self.server.kill();
         let _ = self.server.wait();
     }
@@ -161,7 +162,7 @@ fn serve_until_ready(configuration: &Path) -> Child {
     server
 }
 
-/// The folder of the libraries of this build, in which the test programs are too.
+/// The folder with the libraries and the test programs of this build.
 fn deps() -> PathBuf {
     env::current_exe().expect("the test has a path").parent().expect("a folder").to_path_buf()
 }
@@ -173,8 +174,8 @@ pub fn built(name: &str) -> PathBuf {
     library
 }
 
-/// Builds the program `sun2xp-serve` if it is out of date, and returns its path. Cargo selects the features of
-/// `cargo test --workspace`, in which Zenoh is compiled already, only for a build with an example or a test.
+/// Builds the program `sun2xp-serve` if it is out of date, and returns its path. The build includes an example, because
+/// Cargo then selects the same features as for `cargo test --workspace`. With these features Zenoh is compiled already.
 fn program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {

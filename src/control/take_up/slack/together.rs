@@ -15,16 +15,17 @@ const REACHED: f64 = 0.03;
 /// Missing fraction above which the motors move again. Up to this fraction, a completed take-up stays complete. The
 /// difference from [`REACHED`] prevents a limit cycle by friction.
 const COMPLETE: f64 = 0.1;
-/// Largest excess fraction with which the take-up is complete. At its stops a finger has other tensions.
+/// Largest excess over the pretension with which the take-up is complete, as a fraction of the pretension. A finger at
+/// its stops has other tensions than the pretension.
 const TOO_HIGH: f64 = 0.5;
-/// Fraction of t_min that no tendon may be below, even if the common tension is right.
+/// Smallest permitted tension of a tendon, as a fraction of t_min. It applies even if the common tension is right.
 const LEAST: f64 = 0.9;
 
 /// Fraction of the pretension by which a tendon must exceed its tare, so that it is not slack.
 const SLACK: f64 = 0.08;
 /// Largest stretch of tendons that pull while another tendon is slack, in multiples of the stretch at the pretension.
 const LARGEST_UNOPPOSED: f64 = 2.0;
-/// Largest common stretch while a tendon is slack, in the same multiples.
+/// Largest common stretch while a tendon is slack, in multiples of the stretch at the pretension.
 const LARGEST_COMMON: f64 = 4.0;
 
 impl SlackTakeUp {
@@ -64,7 +65,7 @@ impl SlackTakeUp {
         }
     }
 
-    /// Winds in again the tendons that seemed to be taut but are slack.
+    /// Begins again to wind in the tendons that seemed to be taut but are slack.
     fn touch_again(&self, slack: &mut Slack, taut: [bool; 4], travel: &Vector4<f64>) {
         if !slack.gauges.iter().all(Gauge::is_tared) {
             // All tendons seemed to be taut at the start, so the gauges were not read.
@@ -75,8 +76,8 @@ impl SlackTakeUp {
         slack.holds = [false; 4];
         slack.gauges.iter_mut().zip(travel).for_each(|(gauge, &travel)| gauge.restart(travel));
         // The finger may have moved since the tendons were taut, so that their travels belong to several poses. Two
-        // tendons can then hold it at a stop against each other, in every attempt again. From the second attempt on,
-        // the tendons that pull are let out from where they are now.
+        // tendons can then pull against each other and hold the finger at a stop. This could happen in every attempt.
+        // So from the second attempt on, the tendons that pull are let out from where they are now.
         let let_out = std::mem::replace(&mut slack.touches_again, true);
         for tendon in (0..4).filter(|&tendon| let_out && taut[tendon]) {
             let stretch = self.stretch[tendon] * slack.tensions[tendon] / self.pretension[tendon];
