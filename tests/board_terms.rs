@@ -83,8 +83,9 @@ fn a_limit_beyond_the_boards_is_refused() {
     assert_eq!(sent.expect("good terms").torque_limits, [23_750; 4]);
 }
 
-/// The page allows a shortest watchdog time of up to 20 ms. A board that needs more than the configured time gets its
-/// shortest time, and every other board gets the configured time. Beyond 20 ms, the configuration must permit it.
+/// docs/board-protocol.md allows a shortest watchdog time of up to 20 ms. A board that needs more than the configured
+/// time gets its shortest time, and every other board gets the configured time. Beyond 20 ms, the configuration must
+/// permit it.
 #[test]
 fn a_board_gets_the_shortest_watchdog_that_it_can_keep() {
     let terms = terms(4.75, 1.0, 2.34);
@@ -94,7 +95,7 @@ fn a_board_gets_the_shortest_watchdog_that_it_can_keep() {
         assert_eq!(terms.configure(&board).expect("good terms").watchdog_ms, agreed);
     }
     let slow = Identity { shortest_watchdog_ms: 21, ..board(2000) };
-    let error = terms.configure(&slow).expect_err("beyond the page");
+    let error = terms.configure(&slow).expect_err("above 20 ms");
     assert!(matches!(error, TermsError::Watchdog { shortest: 21, wanted: 18 }), "{error}");
     assert!(error.to_string().contains("raise hand.watchdog_ms to 21"), "{error}");
     let patient = Terms { watchdog_ms: 21, ..terms };

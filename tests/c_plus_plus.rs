@@ -33,7 +33,7 @@ fn the_example_moves_two_hands() {
     assert!(said(&run).contains("as expected: error"), "{}", said(&run));
 }
 
-/// Events, groups, paths, reflexes and moves of a hand to another variable.
+/// Uses events, groups, paths and reflexes, and moves a hand to another variable.
 #[test]
 fn every_part_of_the_header_serves() {
     let Some(compiler) = cpp_compiler() else { return };

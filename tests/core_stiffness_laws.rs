@@ -30,8 +30,9 @@ fn theta() -> impl Strategy<Value = Vector3<f64>> {
         .prop_filter("5 mm off the axis", |theta| LINKS.reach(theta).abs() > 0.5)
 }
 
-/// Within 5 mm of its axis, joint 0 is held as at a lever of 5 mm, by both laws. A spring without stiffness in that
-/// direction does not hold it, and the torque has no jump at 5 mm.
+/// If the tip is within 5 mm of the axis of joint 0, both laws hold joint 0 as if the lever were 5 mm long. A spring
+/// that has no stiffness in the direction in which joint 0 moves the tip does not hold joint 0. The torque has no jump
+/// at 5 mm.
 #[test]
 fn near_its_axis_joint_0_is_held() {
     // Joint 1 at 90 degrees; l0 = -l2 C12 puts the tip on the axis.
@@ -113,8 +114,8 @@ proptest! {
         prop_assert!(law().spring(&point.into(), &desired).amax() < 1e-12);
     }
 
-    /// Near the straight pose, where the spring that leads joint 2 through it begins and ends, the torque is continuous
-    /// in the angles of the anchor and of the finger.
+    /// A spring leads joint 2 through the straight pose. Near this pose, where the spring begins and ends, the torque
+    /// is continuous in the angles of the anchor and of the finger.
     #[test]
     fn the_exact_law_has_no_jump_at_the_straight_pose(
         theta in prop::array::uniform3(-0.3..0.3f64), desired in prop::array::uniform3(-0.3..0.3f64),
@@ -125,7 +126,7 @@ proptest! {
         let torque = |theta: &Vector3<f64>, desired: Vector3<f64>| {
             law().spring(&set_point(desired, &contact, Law::Exact).into(), theta)
         };
-        // The straight pose is at zero.
+        // The finger is straight if the angle of joint 2 is zero.
         for of_joint_2 in [(theta[2], desired[2]), (0.0, desired[2]), (theta[2], 0.0)] {
             (theta[2], desired[2]) = of_joint_2;
             let moved = [0, 3].map(|first| Vector3::from_row_slice(&moves[first..first + 3]));
@@ -134,7 +135,8 @@ proptest! {
         }
     }
 
-    /// A joint 2 that is bent to the other side than the anchor is pushed toward the anchor, although the tip is there.
+    /// If joint 2 is bent to the side opposite to the anchor's, it is pushed toward the anchor, although the tip is at
+    /// the anchor already.
     #[test]
     fn the_other_joint_solution_is_not_at_rest(theta in theta()) {
         prop_assume!(theta[2] > 0.2);
@@ -180,8 +182,8 @@ proptest! {
     }
 }
 
-/// A finger that is turned about the normal alone is turned back, which tests the torsion of a soft finger without
-/// translation.
+/// The finger is turned about the normal only, and the spring turns it back. This tests the torsion of a soft finger
+/// without translation.
 #[test]
 fn torsion_alone_turns_the_tip_back_about_the_normal() {
     let k = Matrix4::from_diagonal(&nalgebra::Vector4::new(0.0, 0.0, 0.0, 10.0));

@@ -67,7 +67,7 @@ fn one_of_three_fingers_on_a_port() {
     }
     let hand = Hand::open_limp(configuration, Some(PathBuf::from("hand.toml")), fingers(&[2])).expect("open");
     assert!(matches!(hand.report(1), Err(HandError::NotOpened(FingerNumber::ONE))));
-    // A busy machine may lose its replies soon, but the board has obeyed some commands.
+    // On a busy machine replies may be lost soon, but the board has obeyed some commands before.
     let obeyed = |finger| port.with_finger(finger, |finger| finger.commanded_at()).expect("the board has it");
     let patience = Instant::now() + Duration::from_secs(10);
     while obeyed(2).is_none() {
@@ -84,7 +84,8 @@ fn one_of_three_fingers_on_a_port() {
 fn a_hand_of_one_finger_is_a_hand() {
     let mut configuration = slow();
     configuration.hand.fingers = fingers(&[2]);
-    // Tables of fingers that the hand does not have are for later. Their threads and ports disturb nothing.
+    // The configuration may contain tables of fingers that the hand does not have yet. Their threads and ports disturb
+    // nothing.
     for absent in [0, 2] {
         (configuration.fingers[absent].port, configuration.fingers[absent].thread) = (NOWHERE.into(), 2);
         configuration.fingers[absent].priority = 1;

@@ -94,8 +94,8 @@ fn state_feedback_is_stable_at_every_rate() {
 
 #[test]
 fn the_map_is_that_of_the_requested_rate() {
-    // The usual step of the plant, 100 us, does not divide the period of 740 Hz. The map must nevertheless not be that
-    // of a neighbouring rate whose period the step divides.
+    // The usual step of the plant, 100 us, does not divide the period of 740 Hz. The map must nevertheless not be the
+    // map of a neighbouring rate whose period is a multiple of the step.
     let kx = Matrix3::identity() * 3.0;
     let rest = Rest::hard_finger(Vector3::new(0.1, 0.5, 1.0), Vector3::new(0.01, 0.01, 0.01), &kx);
     let largest = |rate| OneCycleMap::new(&finger(Scheme::Figure10), rate).unwrap().largest_eigenvalue(&rest).unwrap();

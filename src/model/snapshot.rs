@@ -1,5 +1,6 @@
 //! Serialisation of large types that is compiled once. Serde compiles the code of a type again for each format: TOML,
-//! JSON and that of telemetry. So a value is first copied to a snapshot, and only that is written in each format.
+//! JSON and the format of telemetry. So a value is first copied to a snapshot, and only the snapshot is written in each
+//! format.
 
 mod copying;
 mod value;

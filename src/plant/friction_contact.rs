@@ -33,8 +33,8 @@ impl FrictionContact {
         Self { stiffness, damping, friction, stretch: Vector3::zeros() }
     }
 
-    /// Advances the contact by `step`, s. Returns the force on the point, N. `velocity` is that of the point relative
-    /// to the surface, m/s.
+    /// Advances the contact by `step`, s. Returns the force on the point, N. `velocity` is the velocity of the point
+    /// relative to the surface, m/s.
     pub fn advance(&mut self, touched: Option<Indentation>, velocity: &Vector3<f64>, step: f64) -> Vector3<f64> {
         let Some(Indentation { depth, outward }) = touched else {
             self.stretch = Vector3::zeros();
@@ -45,7 +45,8 @@ impl FrictionContact {
         // The damper never pulls the point to the surface.
         let normal = (self.stiffness * depth - self.damping * leaving).max(0.0);
         let limit = self.friction * normal;
-        // The surface may have turned since the last step. The removed part only loses energy.
+        // The surface may have turned since the last step. Removing the stretch across the surface only reduces the
+        // energy.
         let stretch = self.stretch - outward * self.stretch.dot(&outward) + along * step;
         self.stretch = stretch.cap_magnitude(limit / self.stiffness);
         let sideways = (self.stretch * self.stiffness + along * self.damping).cap_magnitude(limit);

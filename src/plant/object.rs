@@ -1,4 +1,5 @@
-//! A free rigid body that fingertips touch, with gravity, friction and a table. Its frame is that of the palm.
+//! A free rigid body that fingertips touch, with gravity, friction and a table. Its motion is computed in the palm's
+//! frame.
 
 use super::friction_contact::{FrictionContact, Indentation};
 use super::object_shape::{CORNERS, Shape};

@@ -64,8 +64,8 @@ pub fn with_remedy(error: &io::Error) -> String {
 pub fn with_terminal_remedy(error: &io::Error) -> String {
     match error.raw_os_error() {
         // ENOENT: /dev/ptmx or the terminal under /dev/pts is missing. ENODEV: nothing is mounted on /dev/pts. EACCES:
-        // the mount does not let ordinary users open /dev/pts/ptmx, which is its default. EINVAL and ENOTTY: /dev/ptmx
-        // is another device or a file.
+        // the mount has its default mode, so ordinary users cannot open /dev/pts/ptmx. EINVAL and ENOTTY: /dev/ptmx is
+        // another device or a file.
         Some(libc::ENOENT | libc::ENODEV | libc::EACCES | libc::EINVAL | libc::ENOTTY) => format!(
             "{error}: pseudo-terminals are not available here. Mount them (mount -t devpts -o ptmxmode=666 devpts \
              /dev/pts) and make /dev/ptmx a link to /dev/pts/ptmx, or set `finger.port` to a real port"

@@ -12,8 +12,8 @@ const PULSE: f64 = 1e-3;
 /// Longest observation of the response to a pulse, s.
 const OBSERVED: f64 = 8.0;
 
-/// The response is over when its velocity stays below [`OVER`] of its largest velocity for this time, s. It is longer
-/// than a period of the slow modes of the tip.
+/// The response is over when its velocity stays below [`OVER`] times its largest velocity for this time, s. It is
+/// longer than a period of the slow modes of the tip.
 const QUIET: f64 = 0.25;
 const OVER: f64 = 1e-6;
 
@@ -70,8 +70,8 @@ impl OneCycleMap {
         Some(found.map(|(&frequency, sum)| Admittance { frequency, matrix: sum * mean }).collect())
     }
 
-    /// Returns the velocities of the tip in every plant step, m/s, after a pulse in the first cycle, minus those
-    /// without the pulse. Returns None if the tip does not come to rest.
+    /// Returns the velocities of the tip in every plant step, m/s, after a pulse in the first cycle, minus the
+    /// velocities without the pulse. Returns None if the tip does not come to rest.
     fn response(&self, settled: &Moving, still: &[Vector3<f64>], pulse: &Pulse) -> Option<Vec<Vector3<f64>>> {
         let mut finger = settled.clone();
         let mut response: Vec<Vector3<f64>> = Vec::new();

@@ -61,7 +61,8 @@ pub struct NearAxis {
 /// The reason for a bound.
 #[derive(Clone, Debug)]
 pub enum Limit {
-    /// With a larger bound the finger is unstable in this sample. Its stiffness is that of the next larger bound.
+    /// With a larger bound the finger is unstable in this sample. The sample has the stiffness for the next larger
+    /// bound.
     Unstable(Box<Rest>),
     /// With a larger bound this pose (joint angles, rad) supports less than half of it.
     Scaled(Vector3<f64>),
@@ -145,7 +146,8 @@ struct Lowered {
     uncovered: Vec<Rest>,
 }
 
-/// Returns the largest bound up to `most` at which every sample is stable that is stable at the smallest bound.
+/// Returns the largest bound up to `most` at which the covered samples are stable. The covered samples are those that
+/// are stable at the smallest bound.
 fn lower_until_stable(trial: &Trial, samples: &[Sample], most: f64) -> Lowered {
     let least = (SOFTEST / GRID).min(most);
     let mut covered: Vec<&Sample> = samples.iter().collect();

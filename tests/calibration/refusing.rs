@@ -16,7 +16,7 @@ fn a_cut_tendon() {
     for task in [Task::Zero, Task::Identify] {
         let finger = with_stops();
         let mut bench = Bench::new(&finger, &finger, 1000.0);
-        // So slack that the tendon never becomes taut.
+        // The tendon is so slack that it never becomes taut.
         bench.plant.turn_motor(2, -1e3);
         let refused = bench.calibrate(task);
         assert!(matches!(refused, Err(Obstacle::Slack { tendon: 3, .. })), "{task:?}: {refused:?}");

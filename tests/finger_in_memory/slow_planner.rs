@@ -76,7 +76,7 @@ fn a_set_point_that_expires_can_stop_the_finger() {
         configuration.fingers[0].motion.valid_ms = Some(50.0);
         configuration.fingers[0].motion.on_expiry = ExpiryReaction::EndState;
     });
-    // The time of the call takes precedence, and a path is valid until its end.
+    // The validity in the call takes precedence over the configured one. A path is valid until its end.
     let change = |set_point: &mut SetPoint| {
         set_point.joints = TARGET;
         Ok::<(), ()>(())
@@ -102,7 +102,7 @@ fn to_target(set_point: &mut SetPoint) -> Result<(), ()> {
     Ok(())
 }
 
-/// A validity in milliseconds: which are periods, because the finger runs at 1000 Hz.
+/// A validity in milliseconds. A millisecond is one period, because the finger runs at 1000 Hz.
 fn validity(hold: u64, end: u64) -> Validity {
     let [hold_after, end_after] = [hold, end].map(|time| Some(Duration::from_millis(time)));
     Validity { hold_after, end_after, since: None }

@@ -98,8 +98,8 @@ struct Emulator {
 }
 
 impl Emulator {
-    /// `processor` counts the processors on which an emulator stays, and `first` is the index of the board's first
-    /// finger.
+    /// `processor` is the index of the processor on which the emulator stays. With `None` the emulator may use every
+    /// processor. `first` is the index of the board's first finger.
     fn start(
         board: &str,
         image: &Path,
@@ -136,7 +136,7 @@ impl Emulator {
             run_first();
             serve(to_plant, from_plant, &plants[first..]);
         };
-        // The watch over pauses recognises board threads by this name.
+        // `PauseWatch` recognises board threads by this name.
         let thread = std::thread::Builder::new().name("sun2xp board".into()).spawn(serving).expect("a thread");
         Self { process, port, _end: end.expect("the terminal opens"), _folder: folder, requests, thread: Some(thread) }
     }

@@ -28,7 +28,7 @@ fn open(configuration: &Configuration, fingers: &[i32], in_step: bool) -> Result
     Hand::open_with_io(configuration.clone(), all).map(|hand| (hand, switches))
 }
 
-/// A configuration whose watchdog permits that the machine of the tests pauses.
+/// A configuration with a watchdog time that is longer than the pauses of the test machine.
 fn patient() -> Configuration {
     let mut configuration = Configuration::default();
     configuration.hand.watchdog_ms = 200;

@@ -20,7 +20,7 @@ fn stopped_fingers_of_one_port_recover_one_by_one_while_the_others_move() {
     assert_eq!(fault(&hand, 1), Some(FaultKind::FingerStopCall), "only finger 3 recovers");
     goes(&hand, 2, TARGET);
     goes(&hand, 3, START);
-    // A finger that has recovered stops again, also if the stop was requested during its recovery.
+    // A finger that has recovered stops again, even if the stop was requested during its recovery.
     let recovering = Recovering::begin(&hand, 1).expect("begun");
     hand.stop(1).expect("a finger");
     recovering.reconnect().unwrap_or_else(|error| panic!("{error}"));
@@ -35,7 +35,7 @@ fn stopped_fingers_of_one_port_recover_one_by_one_while_the_others_move() {
     close(hand);
 }
 
-/// The servo notices a request to stop at its next cycle, and the recovery begins before.
+/// The servo detects a request to stop in its next cycle. The recovery begins before this cycle.
 #[test]
 fn a_finger_recovers_right_after_it_was_stopped() {
     let _turn = turn();

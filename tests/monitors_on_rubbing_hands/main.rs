@@ -1,5 +1,5 @@
-//! Hands that rub, harden and were measured badly have no fault, and the monitors must report none. Real faults of such
-//! a hand must still be reported in time.
+//! Hands with friction along their tendons, with tendons that become stiffer under tension, and with inexact parameters
+//! have no fault. The monitors must report none. Real faults of such a hand must still be reported in time.
 
 #[allow(dead_code)]
 #[path = "../calibration/bench.rs"]
@@ -123,7 +123,8 @@ fn an_identified_hand_has_no_fault() {
 /// their conduits, and turn back when the first two are taut again.
 const SLACKENED: [[f64; 3]; 4] = [[-9.4, 6.6, 41.8], [-9.9, 1.8, 53.1], [-15.5, -4.0, 60.0], [-12.0, 3.0, 50.0]];
 
-/// The tolerance of the stiffness that identification finds is small, so that friction is what remains.
+/// The stiffness tolerance is small, as after an identification. So only the tolerance for friction can explain the
+/// difference.
 #[test]
 fn a_tendon_that_hangs_for_a_moment_on_an_identified_hand_is_no_fault() {
     for pose in SLACKENED {
@@ -149,8 +150,8 @@ fn a_tendon_that_hangs_for_a_moment_on_an_identified_hand_is_no_fault() {
     }
 }
 
-/// Injects a defect into the rubbing hand, which then moves on. Returns the fault, and the time, ms, from the moment
-/// when `begins` is first true of the finger.
+/// Injects a defect into a part of the rubbing hand, which continues to move. Returns the part, the fault, and the time
+/// to the fault, ms. The time counts from the first cycle in which `begins` returns true.
 fn report(seed: u64, defect: impl Fn(u8) -> Defect, begins: impl Fn(&Bench, u8) -> bool) -> (u8, Option<Fault>, f64) {
     let mut bench = bench(&RUBBING, seed);
     let before = 3000 + bench.random(0.0, 1000.0) as u64;
@@ -173,7 +174,7 @@ fn at_once(_: &Bench, _: u8) -> bool {
     true
 }
 
-/// Whether more is out of balance at a motor than friction may hold.
+/// Whether the pull of a motor and the tension of its tendon differ by more than friction may hold.
 fn out_of_balance(bench: &Bench, motor: u8) -> bool {
     let (motor, finger) = (usize::from(motor) - 1, bench.finger());
     let (pull, tension) = (bench.truth.pulls[motor], bench.truth.tensions[motor]);

@@ -10,7 +10,7 @@ pub struct ConfiguredEvents {
     pub arrived_degrees: f64,
     /// Largest motion of any joint at which the finger counts as settled, degrees.
     pub settled_degrees: f64,
-    /// Time for which the joints must not move more than that, ms.
+    /// Time for which no joint may move more than `settled_degrees`, ms.
     pub settled_ms: f64,
     /// Distance from its limit at which a joint counts as being at the limit, degrees.
     pub limit_margin_degrees: f64,

@@ -110,7 +110,7 @@ pub struct ConfiguredHand {
     pub black_box: Option<String>,
     /// Gravity in palm coordinates, m/s^2.
     pub gravity: [f64; 3],
-    /// Object that the fingers of a simulated hand can touch. Without it there is none.
+    /// Object that the fingers of a simulated hand can touch. If it is absent, there is no object.
     pub simulated_object: Option<ConfiguredObject>,
 }
 

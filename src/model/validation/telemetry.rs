@@ -11,7 +11,7 @@ impl ConfiguredTelemetry {
     /// Checks the name of the hand.
     ///
     /// # Errors
-    /// Returns an error if the name is empty or too long, or if it contains another character than those permitted.
+    /// Returns an error if the name is empty or too long, or if it contains a character that is not permitted.
     pub fn check(&self) -> Result<(), Unusable> {
         let permitted = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
         if (1..=LONGEST_NAME).contains(&self.name.len()) && self.name.chars().all(permitted) {
