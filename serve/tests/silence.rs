@@ -1,5 +1,5 @@
-//! The dead man's handle: clients that are killed, stopped or silent. The tests count times in
-//! servo cycles of 1 ms, because a simulated finger slows down on a busy machine.
+//! The dead man's handle: clients that are killed, stopped or silent. The tests count times in servo cycles of 1 ms,
+//! because a simulated finger slows down on a busy machine.
 
 mod common;
 

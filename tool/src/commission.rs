@@ -42,7 +42,7 @@ use sun2xp::model::{FingerNumber, ShownPath};
 use terminal::Terminal;
 pub use vitals::Vitals;
 
-/// How often `sun2xp health` repeats steps that have failed, without asking, if nobody is there.
+/// Number of times that `sun2xp health` repeats a failed step without a question, if it runs with `--yes`.
 const RETRIES: u32 = 3;
 
 /// Leads through the bring-up of a finger, and writes what it finds into the configuration file.
@@ -65,7 +65,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value = "1", value_parser = finger)]
     finger: FingerNumber,
     /// Search for the board of a new file or finger at these ports. A * in the last part of the path stands for any
-    /// text. May be repeated. The default is that of hand.search_ports.
+    /// text. May be repeated. By default these are the ports of hand.search_ports.
     #[arg(long = "port", value_name = "PATH")]
     ports: Vec<String>,
     /// Do this step, and no other, even if it has passed before. May be repeated.
@@ -137,7 +137,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     Ok(ExitStatus::SUCCESS)
 }
 
-/// A finger on two days: its measurements, and its configuration with them.
+/// The measurements of a finger at its commissioning and today, each with the configuration that belongs to them.
 pub struct Examined {
     pub before: (Vitals, ConfiguredFinger),
     pub today: (Vitals, ConfiguredFinger),
@@ -169,7 +169,7 @@ pub fn examine(file: &Path, finger: FingerNumber, yes: bool, quiet: bool) -> Res
     Ok(Examined { before: (vitals, before), today })
 }
 
-/// Does these steps. Each is repeated if it has failed, while the person or the terminal wants it.
+/// Does these steps. A step that fails is repeated as long as the person or the terminal requests this.
 fn measure(desk: &mut Desk, steps: &[Step]) -> Result<(), Failure> {
     for &step in steps {
         let outcome = desk.complete(step, |_| Ok(()))?;

@@ -74,7 +74,8 @@ fn url(bound: SocketAddr, token: Option<&str>) -> String {
     format!("http://{host}:{}/{token}", bound.port())
 }
 
-/// Returns the address that this machine has for others. It is that of a datagram to a distant network; none is sent.
+/// Returns the address that this machine has for others: the sender's address of a datagram to a distant network. No
+/// datagram is sent.
 fn own_address() -> Option<String> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
     socket.connect(DISTANT).ok()?;

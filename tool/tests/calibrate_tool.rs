@@ -124,7 +124,8 @@ fn a_finger_that_nobody_holds_is_refused_with_what_to_do() {
     }
 }
 
-/// The printed command to continue does not find the signs again, so the file must have them.
+/// The tool prints a command with which to continue. This command does not search for the signs again, so the file must
+/// contain them.
 #[test]
 fn signs_are_stored_before_a_zero_that_is_refused() {
     let links = tempfile::tempdir().expect("a folder");

@@ -108,7 +108,7 @@ class Tip:
     #: Force on the touched object from the measured tensions, N: shape (3,). It includes friction, weight and
     #: acceleration of the finger.
     force: Array
-    #: Number of directions that the joints feel: 3, or fewer near a singular pose.
+    #: Number of directions in which a force at the tip causes joint torques: 3, or fewer near a singular pose.
     force_directions: int
     #: Measured tensions of tendons 1 to 4, N: shape (4,).
     tensions: Array

@@ -1,5 +1,5 @@
 //! The names of hands and clients. A name is part of keys, so it must not contain a character that has a meaning in
-//! a key.
+//! keys.
 
 use std::fmt;
 use std::str::FromStr;

@@ -18,8 +18,7 @@ pub struct Arguments {
     /// Duration of each measurement, s.
     #[arg(long, default_value_t = Self::default().seconds)]
     seconds: u64,
-    /// Time from one message to the next, us. With 0, each message is sent as soon as the previous
-    /// answer has arrived.
+    /// Time from one message to the next, us. With 0, each message is sent as soon as the previous answer has arrived.
     #[arg(long, default_value_t = Self::default().period_us)]
     period_us: u64,
 }

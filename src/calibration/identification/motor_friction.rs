@@ -37,8 +37,8 @@ impl MotorFriction {
         Self { fits: [LeastSquares::new(); 4] }
     }
 
-    /// Adds a sample of a steady motion. `speeds` are the speeds of the tendons toward their motors, cm/s.
-    /// `fastest` are the largest speeds of the tendons in all motions, cm/s.
+    /// Adds a sample of a steady motion. `speeds` are the speeds of the tendons toward their motors, cm/s. `fastest`
+    /// are the largest speeds of the tendons in all motions, cm/s.
     pub fn add(&mut self, instruments: &Instruments, sample: &Sample, speeds: &Vector4<f64>, fastest: &Vector4<f64>) {
         let tensions = instruments.tensions(sample.feedback);
         let pulls = sample.report.motor_torques.component_div(&instruments.signed_radius);

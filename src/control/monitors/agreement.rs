@@ -81,8 +81,7 @@ pub(super) struct Memory {
     disagreement: f64,
     /// The part of it that the mismatch does not explain, N.
     difference: f64,
-    /// Magnitude of `difference` divided by the tolerated magnitude. It is 0 if a slack tendon explains the
-    /// difference.
+    /// Magnitude of `difference` divided by the tolerated magnitude. It is 0 if a slack tendon explains the difference.
     ratio: f64,
     /// Time for which the disagreement has lasted, s.
     duration: f64,

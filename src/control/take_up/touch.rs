@@ -65,8 +65,8 @@ impl Gauge {
         self.noise = (deviation * ratio).clamp(LEAST_NOISE * minimum, MOST_NOISE * minimum);
     }
 
-    /// Reads a sample while the motor winds in. `smoothed` is the low-pass filtered tension. `travel` is the travel
-    /// of the motor, m. Returns the travel at which the tendon came taut, as soon as this is detected.
+    /// Reads a sample while the motor winds in. `smoothed` is the low-pass filtered tension. `travel` is the travel of
+    /// the motor, m. Returns the travel at which the tendon came taut, as soon as this is detected.
     pub fn taut_at(&mut self, tension: f64, smoothed: f64, travel: f64) -> Option<f64> {
         self.tare = self.tare.min(smoothed + LOWER * self.noise);
         let above = tension - self.tare;

@@ -85,7 +85,7 @@ fn check_gravity(gravity: &Vector3<f64>) -> Result<(), (&'static str, String)> {
     }
 }
 
-/// What a servo can have recorded as input of its controller.
+/// The limits of the inputs that a servo can have recorded for its controller.
 pub(super) struct InputLimits<'a> {
     hand: &'a ConfiguredHand,
     most_skipped: u64,

@@ -15,7 +15,8 @@ const READING: f64 = 0.2;
 const MOVED: f64 = 0.05;
 /// Largest error of a turn by hand.
 const BY_HAND: f64 = 0.15;
-/// The usual ratios of true to configured counts: channels and edges that were or were not counted.
+/// The usual ratios of the true to the configured counts. They occur if the configuration assumes the wrong number of
+/// channels or edges.
 const RATIOS: [(u32, u32); 4] = [(1, 2), (2, 1), (1, 4), (4, 1)];
 
 /// The answer of the encoders to one turn of a motor.
@@ -75,8 +76,8 @@ fn report(desk: &Desk, outcome: &mut Outcome) {
     outcome.about("encoder.counts_per_revolution", "counts of one turn by hand, to the nearest usual ratio");
 }
 
-/// A motor whose encoder does not count, beside an encoder that counts for no other motor: the order is complete if
-/// only one is missing.
+/// If exactly one motor turned no encoder, and exactly one encoder was turned by no motor, the two belong together.
+/// Adds this encoder to the order, which is then complete.
 fn name_the_missing(outcome: &mut Outcome, order: &mut [usize; 4]) {
     let missing: Vec<usize> = (0..4).filter(|&motor| order[motor] == 0).collect();
     let unused: Vec<usize> = (1..=4).filter(|encoder| !order.contains(encoder)).collect();

@@ -1,4 +1,4 @@
-//! Which part answers at which place.
+//! The order of parts: which encoder or gauge responds at the place of each number.
 
 /// The order of a finger whose parts are all at their places.
 pub const RIGHT: [usize; 4] = [1, 2, 3, 4];
@@ -10,7 +10,7 @@ pub fn is_exchange(order: [usize; 4]) -> bool {
     sorted == RIGHT && order != RIGHT
 }
 
-/// Whether a part answers at two places. 0 is no part.
+/// Whether a part answers at two places. 0 means that no part answers.
 pub fn repeats(order: [usize; 4]) -> bool {
     (1..=4).any(|part| order.iter().filter(|&&found| found == part).count() > 1)
 }

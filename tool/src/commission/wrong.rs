@@ -5,7 +5,7 @@ mod text;
 
 use serde::Serialize;
 
-/// A gauge scale that differs by more than this part is more than the tolerance of parts explains.
+/// Largest relative error of a gauge scale that the tolerances of the parts explain.
 const TOLERANCE: f64 = 0.15;
 
 /// Something that is wrong or unexpected. Parts have the numbers 1 to 4.
@@ -40,20 +40,21 @@ pub enum Wrong {
     MotorTorque(usize, f64),
     GaugeReversed(usize),
     GaugeDead(usize),
-    /// Shown divided by true tension with the previous scale.
+    /// Shown tension divided by true tension, with the previous scale.
     GaugeScale(usize, f64),
     /// Difference to the configured zero, N.
     GaugeZero(usize, f64),
     /// N rms.
     GaugeNoise(usize, f64),
-    /// The weights are not on a line: residual, N.
+    /// The counts are not a linear function of the weights: residual, N.
     GaugeNotLinear(usize, f64),
-    /// The count without load is at the end of the converter's range: this count, and the zero by the weights.
+    /// The count without load is at the end of the converter's range. The values are this count, and the zero that
+    /// follows from the weights.
     GaugeAtEnd(usize, f64, f64),
     /// `order[n]` is the gauge that showed the weight on tendon n + 1, or 0. No exchange of cables explains it.
     GaugesUnclear([usize; 4]),
     TendonLoose(usize),
-    /// Tension at rest divided by the intended one.
+    /// Tension at rest divided by the intended tension.
     TendonTension(usize, f64),
     /// Measured and sent stiffness, N/cm.
     SpringStiffness(f64, f64),

@@ -12,7 +12,7 @@ use sun2xp::model::configuration::Configuration;
 /// Largest number of commands that wait.
 const MOST_WAITING: usize = 4;
 
-/// The thread, as the code that handles the keys sees it.
+/// The handle of the thread, for the code that handles the keys.
 pub struct Worker {
     commands: Option<Sender<(u64, Command)>>,
     results: Receiver<(String, bool)>,

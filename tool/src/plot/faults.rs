@@ -25,7 +25,8 @@ const LOST: usize = 3;
 const LINE: f64 = 23.0;
 const MOST_LINES: usize = 18;
 
-/// Width of a text in the list, pixels, and the largest number of its lines. Faults and warnings have more to say.
+/// Width of a text in the list, pixels, and the largest number of its lines. The texts of faults and warnings may have
+/// more lines than one.
 const TEXT: f64 = 880.0;
 const LINES_OF_FAULT: usize = 4;
 const LINES_OF_WARNING: usize = 3;

@@ -14,7 +14,7 @@ const EVENTS: usize = 500;
 /// Kind of a message, which decides what a new page gets of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A hand, from which everything begins anew.
+    /// A new hand. A new page gets nothing that was published before it.
     Hand,
     /// There is no hand, with the reason.
     Gone,

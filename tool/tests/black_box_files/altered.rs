@@ -35,13 +35,14 @@ const INSTEAD: [&str; 18] = [
 /// Marks the place of a replacement.
 const MARK: &str = "@instead@";
 
-/// A sample tries one of this many alterations.
+/// A sample tries one alteration out of this number of alterations.
 const SAMPLE: usize = 41;
 
 /// Number of alterations of several numbers at once in a sample.
 const AT_ONCE: usize = 400;
 
-/// If this variable is set, every alteration of every controller is tried, and 200 times as many of several numbers.
+/// If this variable is set, every alteration is tried, with every controller. The number of alterations of several
+/// numbers at once is then 200 times as large.
 const EVERYTHING: &str = "SUN2XP_EVERY_ALTERATION";
 
 /// A recording as lines of JSON values.

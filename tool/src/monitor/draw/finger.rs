@@ -26,7 +26,7 @@ const NUMBER: usize = 6;
 /// Number of lines inside the frame of a compact finger.
 pub const COMPACT: u16 = 10;
 
-/// Number of lines inside the frame of a finger with everything.
+/// Number of lines inside the frame of a finger that is shown with all its values.
 pub const COMPLETE: u16 = 23;
 
 /// Draws a finger into its column.
@@ -63,7 +63,7 @@ pub fn draw(frame: &mut Frame, area: Rect, palette: &Palette, finger: &FingerSta
 /// The lines in place of the values of a finger that has had no cycle.
 pub fn no_cycle(palette: &Palette, finger: &FingerState) -> Vec<Line<'static>> {
     let reason = match finger.known {
-        true => ["no cycle with a command", "since this view is here"],
+        true => ["no cycle with a command", "since this view began"],
         false => ["no cycle yet", ""],
     };
     reason.map(|line| Line::styled(line, palette.dim)).into()
