@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the pages: README and CHANGELOG, those of docs/, and those of the firmware, the protocol and the packages.
+/// Returns the pages: README, CHANGELOG, and the pages of docs/, of the firmware, of the protocol and of the packages.
 fn pages() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folders = [".", "docs", "firmware", "firmware/stm32f405", "protocol", "models", "python"];

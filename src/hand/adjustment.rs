@@ -14,8 +14,8 @@ use crate::model::configuration::{ConfiguredFinger, ConfiguredStiffness, Unusabl
 use nalgebra::Matrix6;
 use toml_edit::{Document, Item, Table};
 
-/// Dotted keys, and tables of keys, that take effect only at open: those of the port, the thread and the board, those
-/// that define the units of the servo's state, and those of the simulated finger.
+/// Dotted keys, and tables of keys, that take effect only at open. They concern the port, the thread, the board and the
+/// simulated finger, or they define the units of the servo's state.
 const PERMANENT: &[&str] = &[
     "port",
     "board",

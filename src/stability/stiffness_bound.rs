@@ -64,7 +64,7 @@ pub enum Limit {
     /// With a larger bound the finger is unstable in this sample. The sample has the stiffness for the next larger
     /// bound.
     Unstable(Box<Rest>),
-    /// With a larger bound this pose (joint angles, rad) supports less than half of it.
+    /// With a larger bound this pose (joint angles, rad) supports less than half of that bound.
     Scaled(Vector3<f64>),
 }
 

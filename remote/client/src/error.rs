@@ -110,8 +110,8 @@ pub enum RemoteError {
     },
     /// The server does not speak this version of the protocol.
     #[error(
-        "the server of the hand {hand} has sent data that is not a message of version 1 of the protocol ({reason}): use \
-             a client and a server of the same version"
+        "the server of the hand {hand} has sent data that is not a message of version 1 of the protocol ({reason}): \
+             use a client and a server of the same version"
     )]
     Protocol {
         /// The name of the hand.

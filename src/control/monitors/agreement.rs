@@ -79,7 +79,7 @@ pub(super) struct Memory {
     mismatch: Mismatch,
     /// Difference of gauges and encoders, N.
     disagreement: f64,
-    /// The part of it that the mismatch does not explain, N.
+    /// The part of `disagreement` that the mismatch does not explain, N.
     difference: f64,
     /// Magnitude of `difference` divided by the tolerated magnitude. It is 0 if a slack tendon explains the difference.
     ratio: f64,
@@ -98,7 +98,7 @@ pub(super) struct Memory {
 pub(super) struct Missing {
     /// Tension of each tendon minus the tension that its gauge shows, if the other three gauges are right, N.
     pub tensions: Vector4<f64>,
-    /// Part of it that a change of the directions of friction can cause, N.
+    /// Part of `tensions` that a change of the directions of friction can cause, N.
     pub by_friction: Vector4<f64>,
 }
 

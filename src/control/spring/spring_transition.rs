@@ -11,7 +11,7 @@ const STAGE: f64 = 0.01;
 /// Stiffness, N cm/rad, and torque, N cm, below which a joint spring that ends is no longer computed.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// The spring of one cycle. It is the spring of a [`SetPoint`], or a spring between those of two set points.
+/// The spring of one cycle. It is the spring of a [`SetPoint`], or a spring between the springs of two set points.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Spring {
     /// Anchor: the desired joint angles, rad.

@@ -63,7 +63,8 @@ impl TouchFetching {
         self.enabled && self.permitted && self.pause == 0
     }
 
-    /// Returns the request of this period for the finger with this address. `sequence` is that of its Command.
+    /// Returns the request of this period for the finger with this address. `sequence` is the sequence number of its
+    /// Command.
     pub fn request(&mut self, address: u8, sequence: u8) -> OutgoingRequest {
         self.asked = Some(sequence);
         OutgoingRequest { address, sequence, request: TactileRequest { received: self.received } }

@@ -16,8 +16,8 @@ impl SimulatedFinger {
         Capabilities(Capabilities::HOLD.0 | Capabilities::KEEPS_ZERO.0 | Capabilities::EMERGENCY_STOP.0 | tactile)
     }
 
-    /// Writes the board's number into the unique number, which then differs from that of the same finger on other
-    /// simulated boards.
+    /// Writes the board's number into the unique number, which then differs from the unique number of the same finger
+    /// on other simulated boards.
     pub(in crate::simulated) fn set_board_number(&mut self, number: u32) {
         self.unique_number[BOARD_NUMBER].copy_from_slice(&number.to_be_bytes());
     }

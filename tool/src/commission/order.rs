@@ -3,7 +3,7 @@
 /// The order of a finger whose parts are all at their places.
 pub const RIGHT: [usize; 4] = [1, 2, 3, 4];
 
-/// Whether the order is one that an exchange of cables explains: each part answers at one place.
+/// Whether an exchange of cables explains the order: each part answers at exactly one place.
 pub fn is_exchange(order: [usize; 4]) -> bool {
     let mut sorted = order;
     sorted.sort_unstable();
