@@ -98,7 +98,7 @@ pub fn capacity(baud: u32, fingers: usize, rate: f64) -> Result<f64, TooFast> {
         return Ok(needed_us / period_us);
     }
     // If the usable part of a period is not longer than the turnaround, this divides by zero. The conversion to an
-    // integer then gives the largest one.
+    // integer then gives the largest value.
     let line_us = (usable_us - turnaround_us).max(0.0);
     let exact_baud = ((command_bits + reply_bits) / line_us * 1e6).ceil() as u32;
     Err(TooFast {

@@ -76,7 +76,7 @@ pub enum LinkError {
         /// The refusal.
         refused: Refused,
     },
-    /// The board confirmed terms that differ from those it was sent.
+    /// The board confirmed terms that differ from the terms that the host sent.
     #[error("finger address {address} confirms terms that differ from those it was sent: update its faulty firmware")]
     OtherTerms {
         /// The finger's address.

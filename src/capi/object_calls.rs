@@ -14,8 +14,9 @@ use std::ffi::c_int;
 
 /// Result of sun2xp_object. Vectors are in the palm's frame.
 ///
-/// time stops while the machine is too busy for the simulation. rotation is the unit matrix at the start.
-/// force has no errors of gauges, and is zero for a finger that does not touch the object.
+/// The member time stops while the machine is too busy for the simulation. The member rotation is the unit
+/// matrix at the start. The member force has no errors of gauges, and is zero for a finger that does not
+/// touch the object.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_object {

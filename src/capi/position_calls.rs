@@ -13,11 +13,11 @@ use std::ffi::c_int;
 ///   position   position[3]: desired angles of joints 0, 1, 2, rad
 ///
 /// All three angles take effect together. From the next cycle on, the anchor of the fingertip's spring moves
-/// to position, along a straight line in joint angles and at a bounded speed. The stiffness is the one sent
-/// last. When the anchor is at position, the force of the fingertip is Kx (tip - p) at any distance: tip is
-/// the place of the fingertip at the angles in position, and p is its present place. With controller.law =
-/// "report" the finger follows the law of the report, which holds for small distances. The call does not
-/// wait until the finger arrives. sun2xp_limits reads the joint limits.
+/// to the angles in position, along a straight line in joint angles and at a bounded speed. The stiffness is
+/// the one sent last. When the anchor has arrived, the force of the fingertip is Kx (tip - p) at any
+/// distance: tip is the place of the fingertip at the angles in position, and p is its present place. With
+/// controller.law = "report" the finger follows the law of the report, which holds for small distances. The
+/// call does not wait until the finger arrives. sun2xp_limits reads the joint limits.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -90,8 +90,8 @@ pub unsafe extern "C" fn sun2xp_send_stiffness(hand: *mut sun2xp_hand, finger: c
 ///   finger     1 to 3
 ///   position   result: position[3]: measured angles of joints 0, 1, 2, rad, from the last cycle
 ///
-/// While the servo thread does not run, the angles stay those of its last cycle, and skipped_periods of
-/// sun2xp_status grows.
+/// While the servo thread does not run, the angles stay those of its last cycle, and the member
+/// skipped_periods of sun2xp_status grows.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

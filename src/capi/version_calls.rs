@@ -11,7 +11,7 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
 
 /// sun2xp_version - the version of the library that runs
 ///
-/// Returns a text such as "0.1.0", which stays valid. SUN2XP_VERSION is that of the header.
+/// Returns a text such as "0.1.0", which stays valid. SUN2XP_VERSION is the version of the header.
 ///
 /// Threads: any. Works in a forked child too.
 #[unsafe(no_mangle)]

@@ -15,7 +15,8 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// Interval between attempts to take the lock. The system offers no wait with a time-out for this lock.
 const LOOKING: Duration = Duration::from_millis(5);
 
-/// Why an update failed. The file is unchanged, unless only its folder could not be written to the disk afterwards.
+/// Why an update failed. The file is unchanged, with one exception: if writing its folder to the disk failed, the file
+/// has already been replaced.
 #[derive(Debug)]
 pub enum UpdateError<E> {
     /// The system reported an error, or another process did not release the file.

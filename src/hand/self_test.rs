@@ -10,8 +10,8 @@ const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
 impl Hand {
     /// Checks the wiring of finger 1, 2 or 3, and the scales of its gauges relative to each other, within two seconds.
-    /// Every motor pulls its tendon with some t_min; the finger must be free, calibrated and in no object's way. The
-    /// finger is limp afterwards.
+    /// Every motor pulls its tendon with a few times t_min. The finger must be calibrated and free, and no object may
+    /// be in its way. The finger is limp afterwards.
     ///
     /// `progress` is called 200 times per second.
     ///
@@ -42,7 +42,7 @@ impl Hand {
 }
 
 impl HandError {
-    /// The error of a self-test for that of a calibration.
+    /// Converts the error of a calibration to the error of a self-test.
     fn of_self_test(self) -> Self {
         match self {
             Self::Calibration { finger, obstacle, .. } => Self::WrongWiring { finger, obstacle },

@@ -8,10 +8,11 @@ use nalgebra::{Vector3, Vector4};
 
 /// A gauge is dead if it rises by less than this part of the usual rise.
 const DEAD: f64 = 0.12;
-/// Two gauges respond to each other's motor if their shares of the largest responses exceed those of the configured
-/// gauges by more than this, of at most 2.
+/// Two gauges count as swapped if they respond to each other's motor more strongly than the configured gauges do. Each
+/// response is divided by the largest response to the same motor, and the sum of the two differences, at most 2, must
+/// exceed this value.
 const LEADING: f64 = 0.15;
-/// Largest difference of a gauge's scale from the others that is not named.
+/// Largest relative difference of a gauge's scale from the usual scale at which the gauge is not reported.
 const SCALE: f64 = 0.13;
 /// Step of the prediction of a pulse, s. The links vibrate with at most 80 Hz.
 const STEP: f64 = 0.000_25;
@@ -64,9 +65,10 @@ fn swapped_pair(responses: &[Vector4<f64>; 4]) -> Option<(usize, usize)> {
     pairs.max_by(|a, b| gain(a).total_cmp(&gain(b))).filter(|pair| gain(pair) > LEADING)
 }
 
-/// Returns whether the tendons of a swapped pair are swapped, and not their gauges. With swapped gauges each of them
-/// shows the rise of the other tendon, which differs unless both tendons have the same pretension. Otherwise the pulses
-/// show which tendon a motor has pulled: the joints that it moves slacken or stretch the other tendons.
+/// Returns whether the tendons of a swapped pair are swapped, and not their gauges. If the gauges are swapped, each of
+/// them shows the rise of the other tendon. The two rises differ unless both tendons have the same pretension. With the
+/// same pretension, the pulses show which tendon a motor has pulled: the joints that it moves slacken or stretch the
+/// other tendons.
 fn tendons_are_swapped(
     responses: &Responses,
     (one, other): (usize, usize),
@@ -76,7 +78,7 @@ fn tendons_are_swapped(
 ) -> bool {
     let expected = (instruments.pretension[one] / instruments.pretension[other]).ln();
     if expected.abs() > DIFFERENT {
-        // The rises are divided by those that the gauges show with swapped tendons too.
+        // Each rise is already divided by the expected rise, which the gauge also shows if the tendons are swapped.
         let shown = (responses.raised[one].abs() / responses.raised[other].abs()).ln();
         return shown.abs() < expected.abs() / 2.0;
     }
@@ -95,8 +97,8 @@ fn tendons_are_swapped(
     with_tendons < with_gauges
 }
 
-/// The mean rises of the tensions in the time of [`Responses::late`], up to a factor, if the motor of a tendon pulls
-/// and all motors but this one stand still. `joints` are the joint angles, rad.
+/// Predicts the mean rises of the tensions in the time of [`Responses::late`], up to a common factor. The motor of
+/// `tendon` pulls, and all other motors stand still. `joints` are the joint angles, rad.
 fn predicted(instruments: &Instruments, dynamics: &LinkDynamics, joints: &Vector3<f64>, tendon: usize) -> Vector4<f64> {
     let r = &instruments.tendons.r;
     let inverse = (dynamics.inertia(joints) * CENTIMETRES).try_inverse().unwrap_or_default();

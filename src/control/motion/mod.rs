@@ -1,5 +1,5 @@
 //! Timed motion of a set point: its derivatives, the paths that it follows, and the interpolation of set points that
-//! arrive at a low rate. A servo changes the set point of a cycle with these before the controller runs.
+//! arrive at a low rate. In every cycle, a servo applies these to the set point before the controller runs.
 
 mod derivatives;
 mod follower;

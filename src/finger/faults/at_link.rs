@@ -1,4 +1,4 @@
-//! Faults of a port and of the board at it.
+//! Faults of a port and of the board that is connected to it.
 
 use super::{Fault, FaultKind};
 use crate::board::protocol::{Reason, Refused, Status};

@@ -20,8 +20,8 @@ impl Mailbox {
         self.requests.stops.load(Ordering::Acquire)
     }
 
-    /// Returns whether a request to stop, or an emergency stop call, was made that no recovery has answered. The servo
-    /// faults such a finger at the beginning of its next cycle.
+    /// Returns whether there is a request to stop, or an emergency stop call, that no recovery has answered yet. In
+    /// this case the servo faults the finger at the beginning of its next cycle.
     pub fn is_stopped(&self) -> bool {
         let Requests { answered_stops, answered_calls, .. } = &*self.requests;
         self.stops() != answered_stops.load(Ordering::Acquire) || stop_calls() != answered_calls.load(Ordering::Acquire)
@@ -39,7 +39,7 @@ impl ServoEnd {
         self.requests.stops.load(Ordering::Acquire) != self.requests.answered_stops.load(Ordering::Acquire)
     }
 
-    /// Ignores these first requests to stop.
+    /// Ignores the requests to stop and the emergency stop calls up to these counts.
     pub fn forget_stops(&mut self, stops: StopCounts) {
         self.requests.answered_stops.store(stops.of_finger, Ordering::Release);
         self.requests.answered_calls.store(stops.calls, Ordering::Release);

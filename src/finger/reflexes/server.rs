@@ -43,7 +43,7 @@ pub struct ReflexServer {
     memory: LockedMemory,
 }
 
-/// The state of a rule. It belongs to the rule with its number.
+/// The state of the rule with this number.
 #[derive(Clone, Copy, Debug, Default)]
 struct RuleState {
     number: u32,

@@ -22,12 +22,12 @@ const LONGEST: f64 = 3600.0;
 /// Margin by which a path that is too fast is made slower than necessary. Its limits are then met despite rounding.
 const MARGIN: f64 = 1.001;
 
-/// Largest number of attempts to make a path slower. From rest one attempt is enough. A path that begins in motion has
-/// another shape after each.
+/// Largest number of attempts to make a path slower. From rest one attempt is enough. If a path begins in motion, each
+/// attempt changes its shape.
 const ATTEMPTS: usize = 30;
 
-/// Computes the path that finger `number` of a hand with this configuration would follow, and checks it. For tools,
-/// which have no hand.
+/// Computes the path that finger `number` of a hand with this configuration would follow, and checks it. It is
+/// for tools that have no open hand.
 ///
 /// # Errors
 /// Returns the reason why the finger would refuse the path.
