@@ -60,7 +60,8 @@ impl Hand {
         })
     }
 
-    /// Sends the stiffness of the joints of a finger, N cm/rad: shape (3, 3), symmetric. It replaces that of the tip.
+    /// Sends the stiffness of the joints of a finger, N cm/rad: shape (3, 3), symmetric. It replaces the
+    /// stiffness of the tip.
     fn send_joint_stiffness(&self, py: Python<'_>, finger: i32, stiffness: &Bound<'_, PyAny>) -> PyResult<()> {
         let rows = rows(stiffness, "stiffness")?;
         self.quick(py, |hand| hand.send_joint_stiffness(finger, rows))

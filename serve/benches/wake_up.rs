@@ -25,7 +25,7 @@ use zenoh::Wait;
 /// Time after clients have started or ended that is not measured.
 const SETTLING: Duration = Duration::from_secs(2);
 
-/// Largest ratio of the latency with clients to that without.
+/// Largest ratio of the latency with clients to the latency without clients.
 const GOAL: f64 = 1.1;
 
 #[derive(Parser)]

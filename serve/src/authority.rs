@@ -62,7 +62,7 @@ pub fn read(certificate: &Path, key: &Path, user: u32) -> Result<KeyPair, ServeE
 }
 
 fn check_key(key: &Path, user: u32) -> Result<(), ServeError> {
-    // The link itself, not the file behind it: a link can lead to the key of somebody else.
+    // This inspects a link itself and not the file behind it, because a link can lead to the key of somebody else.
     let found = symlink_metadata(key).map_err(|error| ServeError::certificate(key, error))?;
     if !found.is_file() {
         return Err(ServeError::certificate(key, "is not a regular file: put the key of the authority itself there"));

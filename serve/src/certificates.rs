@@ -90,7 +90,7 @@ fn is_there(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
 }
 
-/// Makes the folder and the files. `made` has those that have been made, also after an error.
+/// Makes the folder and the files. `made` lists the files that have been made, also after an error.
 fn make_files(folder: &Path, wanted: &Wanted, made: &mut Vec<PathBuf>) -> Result<(), ServeError> {
     let user = effective_user()?;
     let mut builder = DirBuilder::new();

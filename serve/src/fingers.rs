@@ -144,7 +144,7 @@ impl Fingers {
             }
             if let Destination::Path(end) = goal.destination {
                 if self.admitted(number, &goal, &report, &report.reference.joints) < 1.0 {
-                    // The finger does not follow its path. It goes on as to a single place.
+                    // The finger lags behind its path. It continues to the end of the path as to a single pose.
                     self.goals[index].destination = Destination::Joints(end);
                     self.send(number, &report, silence.of_commanded(), false);
                 }
@@ -178,7 +178,7 @@ impl Fingers {
         if let Some((kx, damping)) = goal.spring.filter(|_| spring) {
             command = command.stiffness(rows(&kx)).damping(damping);
         }
-        // A finger that has stopped meanwhile refuses it. The next call finds that.
+        // A finger that has stopped meanwhile refuses the command. The next call detects that.
         if self.hand.send_group(&[command]).is_ok() {
             self.goals[index].note_sent(report, whole);
         }
@@ -224,7 +224,7 @@ impl Fingers {
             (command.pose, goal.whole) = self.led(number, &goal, &report)?;
         }
         if let Some((kx, damping)) = goal.spring.filter(|_| report.expired) {
-            // The finger has the soft spring. What the owner had commanded before is in force again.
+            // The finger was caught and has the soft spring. The command contains the spring that the owner wants.
             (command.stiffness, command.damping) = (Some(rows(&kx)), Some(damping));
         }
         let empty = command.pose.is_none() && command.stiffness.is_none() && command.damping.is_none();

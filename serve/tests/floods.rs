@@ -1,4 +1,4 @@
-//! Queries that are many, or that have no answer.
+//! Many queries at once, and queries that get no answer.
 
 mod common;
 
@@ -8,7 +8,7 @@ use std::time::Instant;
 use sun2xp_remote_protocol::{Action, Code};
 use zenoh::Wait;
 
-/// Queries of a flood, more than the places of a client and than the queue of Answers.
+/// Number of queries of a flood. It exceeds the places of a client and the length of the queue of Answers.
 const MANY: usize = 500;
 
 #[test]
@@ -17,7 +17,7 @@ fn a_query_without_an_answer_ends_at_once() {
     let alice = rig.connect("alice");
     wait_for("a State", || alice.state());
     let begun = Instant::now();
-    // A key of every client is that of none.
+    // A key with a wildcard belongs to no client.
     assert!(alice.ask("sun2xp/hand/acquire/*", request(Action::Acquire).encode().expect("a Request")).is_none());
     assert!(begun.elapsed() < PATIENCE / 2, "the end arrived, and not only the time limit");
     rig.server.end();

@@ -1,9 +1,9 @@
-//! What a planner changes of one finger.
+//! The changes that a planner requests for one finger.
 
 use crate::command::{FingerCommand, Pose};
 use sun2xp_remote_protocol::Place;
 
-/// Values for one finger. What is none, or [`Place::Kept`], keeps its value.
+/// Values for one finger. A field that is none or [`Place::Kept`] changes nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Change {
     pub place: Place,
@@ -25,7 +25,7 @@ impl Change {
         self.place == Place::Kept && self.stiffness.is_none() && self.damping.is_none()
     }
 
-    /// Adds a later change, which replaces the values that it has.
+    /// Adds a later change. Its values replace the values of this one.
     pub fn add(&mut self, later: Change) {
         if later.place != Place::Kept {
             self.place = later.place;

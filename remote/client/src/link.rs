@@ -28,7 +28,7 @@ const QUICK_ANSWER: Duration = Duration::from_secs(3);
 /// The time in which a calibration ends. The protocol says ten minutes.
 const CALIBRATION: Duration = Duration::from_secs(610);
 
-/// The time in which a Status is received, and the first records.
+/// The time in which a Status and the first records are received.
 const FIRST: Duration = Duration::from_secs(3);
 
 /// Attempts of a request that reaches nobody, and the pause between them. Just after a client has connected, Zenoh may
@@ -268,7 +268,7 @@ fn send(shared: &Shared, session: &Session, key: &KeyExpr<'_>) {
             drop(exchange);
             // A Target that is lost, or that cannot be sent now, is repeated.
             if let Ok(payload) = target.encode() {
-                // Not through a declared publisher, which sends nothing until it is told of a subscriber.
+                // The session itself sends. A declared publisher would send nothing until it is told of a subscriber.
                 let put = session.put(key, payload).congestion_control(CongestionControl::Drop);
                 let _ = put.priority(Priority::RealTime).express(true).wait();
             }

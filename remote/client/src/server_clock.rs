@@ -4,8 +4,8 @@
 const WINDOW: u64 = 10_000_000_000;
 
 /// Estimates the difference of the server's clock and the clock of this process: the smallest difference between the
-/// reception of a State and its publication, over the last one to two windows. So a message that was delayed on its way
-/// is found to be old, except for the smallest delay of the line.
+/// reception of a State and its publication, over the last one to two windows. The age of a message therefore includes
+/// its delay on the way, less the smallest delay of the line.
 #[derive(Clone, Debug, Default)]
 pub struct ServerClock {
     /// The smallest difference of the window before and of this window, ns.

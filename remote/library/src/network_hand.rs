@@ -63,7 +63,7 @@ impl NetworkHand {
         self.connection.read().unwrap_or_else(PoisonError::into_inner).clone().ok_or_else(closed)
     }
 
-    /// The checks of a command that a hand of this machine makes, with the same results. The server makes the others.
+    /// Checks a command as a hand of this machine does, with the same results. The server makes the other checks.
     fn admitted(
         &self,
         hand: &client::RemoteHand,

@@ -1,8 +1,8 @@
-//! Reading and writing of numbers at the offsets of the page.
+//! Reading and writing of numbers at the offsets that docs/remote-protocol.md gives.
 
 use crate::{DecodeError, MessageKind, VERSION};
 
-/// The bytes of a message, or of a part of it. The offsets are those of the page.
+/// The bytes of a message, or of a part of it. The offsets are those of docs/remote-protocol.md.
 #[derive(Clone, Copy)]
 pub(crate) struct Bytes<'a>(pub &'a [u8]);
 

@@ -1,4 +1,4 @@
-//! What changes rarely of one finger.
+//! The data of one finger that change rarely.
 
 use crate::bytes::{Bytes, Written};
 use crate::error::{FieldError, Reason, finite, within};

@@ -123,7 +123,7 @@ fn pose_at(bytes: Bytes<'_>, pose: usize) -> PathPose {
     PathPose { time: bytes.f64(at), joints: bytes.f64s(at + 8) }
 }
 
-/// Returns `given`. Refuses numbers that are not zero although they are not given.
+/// Returns `given`. If it is false, refuses numbers that are not zero.
 fn given(given: bool, field: &'static str, numbers: &[f64]) -> Result<bool, FieldError> {
     if !given {
         zero(field, numbers)?;

@@ -1,5 +1,6 @@
-//! Lets the planner or the line fail many times, and prints when the fingers were caught and ended, at the board, and
-//! what the server has left over. Needs root, because it makes network namespaces.
+//! Lets the planner or the line fail many times. Prints when the fingers were caught and when they were in their end
+//! states, as seen at the board, and the threads and descriptors that the server has not released. Needs root, because
+//! it makes network namespaces.
 
 #[path = "../../tests/network/line.rs"]
 mod line;

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 use sun2xp::Stage;
 use sun2xp::telemetry::{Message, Reader, Sample, View};
 
-/// Longest time in which a hand that was started can be attached to.
+/// Longest time from the start of a hand until a reader can attach to it.
 const APPEARS: Duration = Duration::from_secs(20);
 
 /// A reader of the telemetry of a hand.

@@ -1,7 +1,7 @@
 """Hands on other machines, which `sun2xp serve` offers (docs/remote.md).
 
-It needs the package eclipse-zenoh: pip install 'sun2xp[remote]'. Units, shapes and the names of calls are those of
-`sun2xp`.
+This module needs the package eclipse-zenoh: pip install 'sun2xp[remote]'. Units, shapes and the names of calls are
+those of `sun2xp`.
 
     import sun2xp.remote
 
@@ -62,7 +62,7 @@ def open(
         tls: the files of mutual TLS. A server that listens on more than loopback needs them.
         read_only: do not acquire the hand. Then its state can be read, and it can be stopped.
         take_over: acquire it also if another client commands it.
-        recover: recover fingers that have stopped, as those of a hand that was released have.
+        recover: recover fingers that have stopped. When a hand is released, its fingers stop.
         stale: largest age of the state that `position` and others return, s.
 
     Raises:
@@ -102,7 +102,7 @@ def send_together(set_points: Dict[RemoteHand, Sequence[SetPoint]]) -> None:
 
     Raises:
         ValueError: the hands do not have the same connection (`connect`).
-        NotOwner, Refused: as those of `RemoteHand.send_group`.
+        NotOwner, Refused: for the same reasons as in `RemoteHand.send_group`.
     """
     networks = {id(hand._network): hand._network for hand in set_points}
     if len(networks) != 1:

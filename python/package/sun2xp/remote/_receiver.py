@@ -61,7 +61,7 @@ class Receiver:
         self._arrived = 0
 
     def state(self, data: bytes) -> Optional[State]:
-        """Takes a State. Returns None if it is malformed or older than one before."""
+        """Takes a State. Returns None if it is malformed, or not newer than the newest State so far."""
         state = _messages.read_state(data)
         with self.changed:
             if state is None:
@@ -87,7 +87,7 @@ class Receiver:
         self._newest[finger] = records[-1]
 
     def _note_restart(self, published: int) -> None:
-        """Begins anew if the server's clock does: its machine was started again."""
+        """Starts anew if the server's clock has started anew. The server's machine was then started again."""
         if published < self._published - _RESTARTED:
             self._number = self._published = self.seen = 0
             self._offset = None
@@ -107,7 +107,7 @@ class Receiver:
             self.seen = max(self.seen, published)
 
     def event(self, data: bytes) -> None:
-        """Takes an Event. One of an unknown kind is of a newer server, and is ignored."""
+        """Takes an Event. An Event of an unknown kind comes from a newer server, and is ignored."""
         message = _messages.read_event(data)
         if message is None:
             return
