@@ -40,8 +40,8 @@ proptest! {
         let torque = Vector3::from(direction) * size;
         let distribution = TensionDistribution::new(&tendons, MINIMUM, Vector4::repeat(MAXIMUM)).unwrap();
         let found = distribution.below(&limits.into()).distribute(&torque);
-        // The bound of a tendon is never below its pretension. So a motor that is too weak for the pretension permits
-        // only torques that need no more tension than the pretension from it.
+        // The bound of a tendon is never below its pretension. So if a motor is too weak for the pretension, the bound
+        // of its tendon is the pretension.
         let bounds = Vector4::from(limits).inf(&Vector4::repeat(MAXIMUM)).sup(&tendons.pretension(MINIMUM));
         let within = |tensions: &Vector4<f64>, tolerance: f64| (tensions - bounds).max() <= tolerance;
         prop_assert!((tendons.r * found.tensions - torque * found.scale).amax() < 1e-9 * (1.0 + size));

@@ -46,8 +46,8 @@ impl Drop for Process {
     }
 }
 
-/// Runs a process for two seconds, with the processes `beside` on the same core. Returns the longest time for which it
-/// waited for the core within a span of half a second, and a description of the measurements.
+/// Runs a process for two seconds, with the processes `beside` on the same core. Returns how long it
+/// waited for the core in the worst span of half a second, and a description of the measurements.
 fn waited(script: &str, beside: &[&str], meanwhile: impl Fn(u32)) -> (Duration, String) {
     let process = Process::start(script);
     let _others: Vec<_> = beside.iter().map(|script| Process::start(script)).collect();

@@ -14,8 +14,8 @@ use sun2xp::model::configuration::{Configuration, RealTime};
 
 #[test]
 fn real_time_that_is_ignored_gives_no_warning() {
-    // Keeps other tests from running by holding a bench, and uses a low rate, because a thread without real time waits
-    // for all other threads of the machine.
+    // A thread without real time waits for all other threads of the machine. The bench therefore keeps other tests
+    // from running, and the rate is low.
     let _turn = Bench::new();
     let mut configuration = Configuration::default();
     (configuration.hand.real_time, configuration.hand.rate) = (RealTime::Ignore, 500.0);

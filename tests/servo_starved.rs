@@ -1,5 +1,5 @@
-//! A servo and its simulated board on a machine that delays both of them, and the carrier of their bytes, on simulated
-//! time.
+//! A servo and its simulated board on a machine that delays the servo, the board and the carrier of their bytes. The
+//! time is simulated.
 
 #[allow(dead_code)]
 #[path = "common/finger_on_a_cable.rs"]

@@ -8,7 +8,7 @@
 #define CRC32_START 0xFFFFFFFFu
 uint32_t crc32_add(uint32_t crc, uint8_t byte);
 
-/* The result over bytes and their correct checksum, whatever the bytes are. */
+/* The value after any bytes followed by their correct checksum. It does not depend on the bytes. */
 #define CRC32_WITH_CHECK 0xDEBB20E3u
 
 #endif

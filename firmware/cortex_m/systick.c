@@ -22,7 +22,7 @@ static volatile uint32_t rounds;
 void systick_start(uint32_t megahertz)
 {
     counts_per_microsecond = megahertz;
-    /* The longest round that fits: 65 ms at 168 MHz. An emulator that its machine delays for longer loses rounds. */
+    /* The longest round that fits: 65 ms at 168 MHz. If a machine delays its emulator for longer, rounds are lost. */
     while (megahertz << (round_bits + 1) <= MOST_COUNTS)
         round_bits++;
     last_count = (megahertz << round_bits) - 1;

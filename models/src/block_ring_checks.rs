@@ -32,7 +32,7 @@ fn take(reader: &mut BlockReader<Memory>, arrived: &mut Vec<u64>) -> Found {
     found
 }
 
-/// A reader of a ring that is overwritten gets whole blocks in order, the newest one always.
+/// A reader of a ring that is overwritten receives whole blocks in order. It always receives the newest one.
 pub fn blocks_are_whole_and_the_newest_arrives() {
     let memory = Memory((0..CONTROL_WORDS + BLOCK_WORDS).map(|_| AtomicU64::new(0)).collect());
     let mut reader = BlockReader::new(memory.clone(), 0).expect("a ring");

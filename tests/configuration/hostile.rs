@@ -94,7 +94,7 @@ fn no_nesting_depth_exhausts_the_stack() {
         (format!("[finger{}]\n", ".a".repeat(78)), Some(1)),
         (format!("[finger{}]\nb = 1\n[finger.1{}]\nc = 1\n", ".a".repeat(78), ".a".repeat(77)), Some(3)),
     ] {
-        // A stack of an eighth of the main thread's, smaller than that of an ordinary thread.
+        // This stack is an eighth of the main thread's stack, and smaller than the stack of an ordinary thread.
         let thread = std::thread::Builder::new().stack_size(1 << 20).spawn(move || refused(&text));
         assert_eq!(thread.expect("a thread").join().expect("no overflow").0, line);
     }

@@ -24,8 +24,8 @@ fn two_poses(finger: &ConfiguredFinger, random: &mut Pcg64, joint_2: [[f64; 2]; 
     })
 }
 
-/// Returns where a finger rests that was sent from one pose to another, rad. If it is held, it is let go only when the
-/// anchor of its spring has arrived.
+/// Sends a finger from one pose to another, and returns the joint angles at which it rests, rad. A finger that is held
+/// is let go only when the anchor of its spring has arrived.
 fn sent(finger: &ConfiguredFinger, [from, to]: [Vector3<f64>; 2], stiffness: f64, held: bool) -> Vector3<f64> {
     let mut finger = finger.clone();
     finger.simulation.start_degrees = from.map(f64::to_degrees).into();

@@ -116,7 +116,7 @@ fn a_warm_motor_does_not_change_the_direction_of_the_torque() {
         let (turned, scale) = (asked.angle(&true_torque).to_degrees(), servo.report.torque_scale);
         println!("{scheme:?}: turned by {turned:.2} degrees, {scale:.3} of the torque, motor 1 pulls {pull:.1} N");
         assert!(pull > 17.0 && pull < 22.0, "{scheme:?}: {pull} N: not at its limit");
-        assert!(scale < 0.9, "{scheme:?}: {scale} of the torque, which is not said to be limited");
+        assert!(scale < 0.9, "{scheme:?}: the reported scale of the torque, {scale}, shows no limit");
         assert!(turned < 1.0, "{scheme:?}: turned by {turned} degrees");
     }
 }

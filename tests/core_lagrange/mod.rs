@@ -125,8 +125,9 @@ fn inertia(theta: &Vector3<f64>) -> Matrix3<f64> {
     h
 }
 
-/// Eight points a link: two on the axis at Gauss's places and four around it at radius / sqrt 2 have the mass, the
-/// centre and the second moments of a uniform cylinder. The tip is the last point.
+/// Each link has eight points: at both places of Gauss's two-point rule on its axis, four points around the axis at the
+/// distance radius / sqrt 2. They have the mass, the centre and the second moments of a uniform cylinder. The tip is
+/// the last point.
 fn points(theta: &Vector3<f64>) -> Vec<(f64, Vector3<f64>)> {
     let mut turn = Rotation3::identity();
     let mut origin = Vector3::zeros();

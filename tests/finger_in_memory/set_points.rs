@@ -53,7 +53,7 @@ fn set_points_sent_before_a_fault_are_discarded() {
     bench.mailbox.send(|set_point| set_point.joints = far).expect("not faulted");
     bench.opens();
     let found = bench.report().set_point.joints;
-    assert!((found - far).amax() > 0.1, "the case must be one of another pose");
+    assert!((found - far).amax() > 0.1, "the finger must be found far from the pose that was sent");
     // The first call, before anything has read the finger's state.
     soften(&bench);
     holds(&mut bench, found);

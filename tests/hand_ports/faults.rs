@@ -69,7 +69,7 @@ fn a_board_that_falls_silent_faults_its_finger_and_its_watchdog_ends_it() {
     goes(&open(on_boards(&boards)), 1, START);
 }
 
-/// A board in this process, for disturbances that the program has no order for.
+/// A board in this process, for disturbances for which `sun2xp board` has no order.
 fn own_board() -> (SimulatedPort, Hand) {
     let board = SimulatedBoard::new(&Configuration::default(), &FingerNumber::ALL).expect("a board");
     let port = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None })

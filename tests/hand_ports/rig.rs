@@ -57,7 +57,7 @@ impl Board {
         Self::start_with(&PATIENT, fingers)
     }
 
-    /// The same with a symbolic link to its port.
+    /// Does the same as [`Board::start`], and makes a symbolic link to the port.
     pub fn start_at(link: &str, fingers: &[&str]) -> Self {
         Self::start_with(&[&PATIENT[..], &["--link", link]].concat(), fingers)
     }

@@ -11,11 +11,11 @@ mod pages;
 
 use pages::{Page, pages};
 
-/// The languages of the fenced blocks. `hex` is that of the protocol (tests/board_protocol_page.rs), and `text` quotes
-/// errors (tests/faq.rs).
+/// The languages of the fenced blocks. `hex` blocks are frames of the board protocol (tests/board_protocol_page.rs),
+/// and `text` blocks quote errors (tests/faq.rs).
 const LANGUAGES: [&str; 6] = ["c", "hex", "python", "rust", "text", "toml"];
 
-/// What only code contains. `See it move` of README has commands (tool/tests/readme.rs).
+/// Texts that only code contains. The section `See it move` of README contains commands (tool/tests/readme.rs).
 const CODE: [&str; 6] = ["#include", "let ", "?;", "import ", "if (", "sun2xp_send"];
 
 #[test]

@@ -31,7 +31,7 @@ fn the_description_names_hand_process_and_configuration() {
 fn samples_have_the_values_that_planners_get() {
     let name = name("samples");
     let mut configured = configuration(&name);
-    // Fingers that are turned in the palm show a confusion of frames.
+    // Fingers that are turned in the palm reveal a confusion of frames.
     configured.fingers[1].turn_degrees = Some(40.0);
     let hand = Hand::open(configured.clone()).expect("open");
     let mut reader = reader(&name);
@@ -195,7 +195,8 @@ fn events_status_and_object_arrive() {
     assert_eq!((first.lost(), second.lost()), ([0; 3], [0; 3]));
 }
 
-/// A reader that asks to attach waits for the next publication. A fault in this time is an event of the reader.
+/// A reader that asks to attach waits for the next publication. If a fault occurs in this time, the
+/// reader receives its event.
 #[test]
 fn a_fault_while_a_reader_attaches_is_an_event() {
     let name = name("attaching");

@@ -11,7 +11,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use sun2xp::model::FingerNumber;
 
-/// Measures a finger as `sun2xp commission` does, and compares the result with that of its commissioning: zeros,
+/// Measures a finger as `sun2xp commission` does, and compares the results with the results of commissioning: zeros,
 /// pretension, stiffness, friction. Names what to tension, replace or lubricate. Changes no file.
 ///
 /// The finger moves through its whole workspace, which must be free. It takes two to three minutes.

@@ -55,7 +55,7 @@ impl Reading {
     fn take(hand: &Hand, finger: i32) -> Result<Option<Self>, Failure> {
         let kept = hand.record(finger, None)?;
         let first = kept.newest.saturating_sub(AVERAGED).max(kept.oldest);
-        // The box may overwrite the oldest cycles meanwhile.
+        // The black box may overwrite the oldest cycles meanwhile.
         let feedback = (first..=kept.newest).filter_map(|cycle| hand.record(finger, Some(cycle)).ok()?.record.feedback);
         let feedback: Vec<_> = feedback.collect();
         let Some(newest) = feedback.last() else { return Ok(None) };

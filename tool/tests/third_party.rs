@@ -18,7 +18,7 @@ fn linked(packages: &[&str]) -> BTreeSet<String> {
     assert!(tree.status.success(), "{tree:?}");
     let tree = String::from_utf8(tree.stdout).expect("names");
     // A line is a name and a version such as v1.0.0, and sometimes remarks. The packages of the workspace are not
-    // third-party. A crate that the workspace replaces by its own copy is.
+    // third-party. A crate that the workspace replaces by its own copy is third-party.
     tree.lines()
         .filter(|line| !line.starts_with("sun2xp"))
         .filter_map(|line| {

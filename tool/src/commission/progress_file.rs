@@ -30,7 +30,7 @@ pub struct Done {
 pub struct CommissionedFinger {
     /// The steps that have passed.
     pub steps: BTreeMap<Step, Done>,
-    /// The steps that have not passed when they were done last, with what was wrong.
+    /// The steps that did not pass in their last attempt, with what was wrong.
     pub failed: BTreeMap<Step, Done>,
     pub vitals: Vitals,
 }
@@ -96,7 +96,8 @@ impl ProgressFile {
 }
 
 impl CommissionedFinger {
-    /// Adds a step that has passed. The steps after it belong to the finger as it was, and count no longer.
+    /// Adds a step that has passed. If it is one of the steps encoders, gauges or motors, the later steps no longer
+    /// count, because they belong to the finger as it was before.
     pub fn pass(&mut self, step: Step, outcome: &Outcome, vitals: &Vitals, when: &str) {
         if matches!(step, Step::Encoders | Step::Gauges | Step::Motors) {
             self.steps.retain(|&other, _| other <= step);

@@ -13,10 +13,10 @@ use sun2xp::{FingerNumber, Part};
 /// Number of events that are kept.
 const EVENTS: usize = 500;
 
-/// Number of the newest events among which a repetition is looked for.
+/// An event is compared with this number of the newest events, to detect whether it repeats one of them.
 const SUCCESSION: usize = 12;
 
-/// Longest time between two events of which the second is a repetition, ns.
+/// Longest time between an event and its repetition, ns.
 const SUCCESSION_TIME: u64 = 1_000_000_000;
 
 /// What is known of a hand.

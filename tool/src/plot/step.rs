@@ -15,8 +15,9 @@ const SET_POINT: Stroke = Stroke::dashed(INK, 1.4);
 /// Height of a panel, pixels.
 const HEIGHT: f64 = 190.0;
 
-/// A longer recording is drawn around its largest step, from and to this time after the step, s.
+/// A recording that is longer than this, s, is drawn only around its largest step.
 const LONG: f64 = 5.0;
+/// Beginning and end of the part that is then drawn, s after the step.
 const AROUND: (f64, f64) = (-0.2, 1.3);
 
 /// A step of the set point is at least this large, degrees.

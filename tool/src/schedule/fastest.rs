@@ -9,8 +9,8 @@ use sun2xp::model::configuration::{Configuration, RATES};
 pub struct Fastest {
     /// The highest whole rate that can be configured and at which every deadline is met, Hz. `None` if there is none.
     pub rate: Option<u32>,
-    /// What is missed above that rate, or at the lowest rate if there is none. `None` if the highest rate that can be
-    /// configured is met.
+    /// What is missed above that rate, or at the lowest rate if `rate` is `None`. `None` if every deadline is met at
+    /// the highest rate that can be configured.
     pub limit: Option<Limit>,
 }
 

@@ -152,7 +152,7 @@ pub const KINDS: [Kind; 20] = [
         case.expected = vec![Wrong::MotorBlocked(part(seed) + 1)];
     }),
     ("tendon off", |case, seed| {
-        // The tendon is torn when the finger is built below: a negative stiffness has no meaning otherwise.
+        // `commission` cuts the tendon of every case that expects a loose tendon.
         case.expected = vec![Wrong::TendonLoose(part(seed) + 1)];
     }),
 ];
