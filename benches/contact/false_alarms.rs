@@ -14,7 +14,7 @@ pub const SPEEDS: [f64; 3] = [1.0, 3.0, f64::INFINITY];
 /// The result of a run.
 pub struct Alarms {
     pub count: u32,
-    /// Part of the time in which a contact was reported.
+    /// Fraction of the time for which a contact was reported.
     pub share: f64,
     /// Time of the first alarm, s.
     pub first: Option<f64>,

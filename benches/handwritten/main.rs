@@ -3,8 +3,9 @@
 //!     cargo bench --bench handwritten
 //!
 //! First a closed loop is run and recorded, and both steps must give the same motor torques in every cycle of it. Then
-//! the two repeat the run alternately, and are timed from counts to motor torques and report. Neither computes
-//! statistics. The library's step also estimates the contact force, and the handwritten step does not.
+//! the two steps repeat the run alternately. The measured time begins with the counts and ends with the motor torques
+//! and the report. Neither step computes statistics. The library's step also estimates the contact force, and the
+//! handwritten step does not.
 
 mod by_hand;
 mod parameters;
@@ -108,7 +109,7 @@ fn thread_time() -> u64 {
     time.tv_sec as u64 * 1_000_000_000 + time.tv_nsec as u64
 }
 
-/// Returns the time of a step, ns: of the library and of the handwritten C.
+/// Returns the time of one step in the library, and the time of one step in the handwritten C, ns.
 fn time(recording: &Recording, plain: &Plain) -> (f64, f64) {
     let per_step = |begun: u64| (thread_time() - begun) as f64 / CYCLES as f64;
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());

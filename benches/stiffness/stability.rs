@@ -1,5 +1,5 @@
-//! Rows about the exact one-cycle map: without friction, with exact measurements, and with all states of the
-//! controller.
+//! The rows of the table about the exact one-cycle map: without friction, with exact measurements, and with all states
+//! of the controller.
 
 use crate::cases::{self, Case, Friction, USUAL};
 use crate::closed_loop::{ClosedLoop, Held, Senses};
@@ -30,7 +30,7 @@ pub struct Stability {
     pub largest: f64,
 }
 
-/// Samples for each pose of the other rows.
+/// Number of samples for each pose that the other rows measure.
 const DENSITY: usize = 20;
 
 /// Returns poses within `limits`, with springs up to the bound and small loads. Without a load, tendons 1 and 4 would
@@ -103,7 +103,8 @@ pub fn growth(case: &Case, description: &ConfiguredFinger, sample: &Sample) -> O
     finger.push(sample.load);
     if let Some((surface, anchor)) = &sample.wall {
         finger.plant.set_surface(Some(*surface));
-        // If the anchor is out of reach, a weaker force presses the tip against the wall, which is as good a sample.
+        // If the anchor is out of reach, a weaker force presses the tip against the wall instead. That sample is
+        // equally good.
         if !finger.move_anchor(anchor) {
             finger.push((anchor - finger.anchor()).normalize());
         }

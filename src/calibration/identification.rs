@@ -48,7 +48,7 @@ pub(super) struct Identification {
     /// Tensions and motor torques of the free finger. They are evaluated again when the moment arms are known.
     joint_friction: JointFriction,
     motor_friction: MotorFriction,
-    /// What they show with the configured moment arms.
+    /// The results for the free finger with the configured moment arms.
     free: FreeFinger,
     motors: MotorFrictionFound,
     moment_arms: Option<MomentArms>,

@@ -1,4 +1,4 @@
-//! The events of a hand of the C calls: its queue, and the planner's callback.
+//! The events of a hand that a C program has opened: their queue, and the planner's callback.
 
 use crate::capi::handle::Handle;
 use crate::capi::refusal::Refusal;

@@ -32,7 +32,7 @@ pub struct RepairedLink<T> {
 pub struct RestoredBoard {
     /// The confirmation of the board.
     pub configured: Configured,
-    /// The requests to stop before the recovery began.
+    /// The numbers of requests to stop that were made before the recovery began.
     pub stops: StopCounts,
 }
 

@@ -13,7 +13,8 @@ pub struct MotionSettings {
     pub interpolation: Option<Interpolation>,
     /// How long a set point is valid, s; none if it never expires.
     pub valid: Option<f64>,
-    /// How long a finger holds its pose after its set point has expired, until it faults, s; none for without end.
+    /// How long a finger holds its pose after its set point has expired, until it faults, s; none if there is no time
+    /// limit.
     pub end_state: Option<f64>,
     /// The reaction to a set point that has expired.
     pub after_expiry: AfterExpiry,

@@ -1,4 +1,4 @@
-//! The reference of a finger: where its set point is on its way, and how it moves.
+//! The reference of a finger: the joint angles that its moving set point has reached, and its motion there.
 
 use crate::control::Motion;
 use nalgebra::Vector3;

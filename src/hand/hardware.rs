@@ -31,7 +31,7 @@ impl Hardware {
     /// Replaces the port and the default scale of the gauges of every finger whose hardware the program provides.
     ///
     /// # Errors
-    /// Returns an error if such a finger is not opened, or if its configured gauges cannot be those of its hardware.
+    /// Returns an error if such a finger is not opened, or if its configured gauges cannot belong to its hardware.
     pub fn prepare(&self, configuration: &mut Configuration, opened: Fingers) -> Result<(), HandError> {
         for number in self.members() {
             if !opened.contains(number) || !configuration.hand.fingers.contains(number) {
@@ -69,7 +69,8 @@ impl Hardware {
     }
 }
 
-/// Gives the gauges the scale in which tensions in steps of `unit`, N, are stored, unless they have been calibrated.
+/// Sets the scale and the zero of the gauges for tensions that are stored in steps of `unit`, N. Calibrated values are
+/// kept.
 fn fit(gauge: &mut ConfiguredGauge, unit: f64) -> Result<(), Unusable> {
     if TensionScale::new(unit).is_none() {
         let reason = format!("the step of the tensions of its hardware is {unit} N: give a number above 0");

@@ -155,7 +155,7 @@ pub(super) fn reach(
     Ok(Connected { lines, reached, gate, repairs, events })
 }
 
-/// Returns the ports of these fingers, as far as the hand has them, each with its fingers.
+/// Returns the ports of these fingers, each port with its fingers. Fingers that the hand does not have are left out.
 pub fn ports(
     configuration: &Configuration,
     fingers: Fingers,

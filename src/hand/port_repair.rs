@@ -99,8 +99,8 @@ impl PortRepair {
         Ok(all)
     }
 
-    /// Gives the link back to the servo, and makes every finger of the port recover. `stops` has the requests to stop
-    /// of each finger before the recovery began, in the order of the boards.
+    /// Gives the link back to the servo, and makes every finger of the port recover. For each finger, `stops` has the
+    /// numbers of requests to stop that were made before the recovery began, in the order of the boards.
     pub fn give_back(&mut self, configured: [Option<Configured>; FINGERS], stops: &[StopCounts; FINGERS]) {
         if let Some(link) = self.link.take() {
             self.released = false;
@@ -112,7 +112,8 @@ impl PortRepair {
     }
 
     /// Shakes hands with the board at `place` while the servo keeps the link, because other fingers of the port run.
-    /// Then makes that finger recover. `stops` are the requests to stop before the recovery began.
+    /// Then makes that finger recover. `stops` has the numbers of requests to stop that were made before the recovery
+    /// began.
     pub fn restore_beside_others(&mut self, place: usize, stops: StopCounts) -> Result<(), HandError> {
         let Some(board) = self.boards.get(place) else { return Ok(()) };
         let configured = board.shake_hands(&mut self.handover.relay)?;

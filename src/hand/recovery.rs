@@ -39,7 +39,7 @@ struct Task {
     port: Arc<RepairablePort>,
     /// Number of recoveries of every finger of the port at the beginning.
     recoveries: [u32; FINGERS],
-    /// Requests to stop every finger of the port before the beginning.
+    /// For every finger of the port, the numbers of requests to stop that were made before the beginning.
     stops: [StopCounts; FINGERS],
     /// Whether another finger of the port was not faulted at the beginning.
     beside_others: bool,
@@ -47,8 +47,8 @@ struct Task {
 
 impl Recovering {
     /// Notes the state of finger 1, 2 or 3 and of every other finger on its port. If the finger is not faulted, the
-    /// other steps do nothing. A finger that was stopped before this call, and whose servo has not faulted it yet, is
-    /// awaited; that takes a cycle.
+    /// other steps do nothing. If a finger was stopped before this call and its servo has not faulted it yet, this call
+    /// waits until the servo has done so. That takes a cycle.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if its servo does not run.
@@ -174,7 +174,7 @@ impl Recovering {
 /// Returns the last report, once the servo has carried out the requests to stop; none if it does not run.
 fn report_after_stops(mailbox: &Mailbox, begun: Instant) -> Option<FingerReport> {
     loop {
-        // The report that is read after the requests is not older than they are.
+        // The report is read after the requests, so it is not older than they are.
         let stopped = mailbox.is_stopped();
         let report = mailbox.report();
         if !stopped || matches!(report.stage, Stage::Faulted(_) | Stage::Closing | Stage::Closed) {

@@ -12,8 +12,8 @@ use crate::simulated::{
 use std::path::PathBuf;
 
 /// Highest SCHED_FIFO priority of a simulated board. A servo has priority 80 by default, so a board does not delay it.
-/// The priority of a board is never higher than that of its finger. If the finger has no such priority, neither has its
-/// board.
+/// The priority of a board is never higher than that of its finger. If the finger has no SCHED_FIFO priority, its board
+/// does not have one either.
 const SIMULATED_BOARD_PRIORITY: u8 = 20;
 
 /// The boards of the fingers whose port is `simulated`.

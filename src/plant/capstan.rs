@@ -1,9 +1,9 @@
 //! A tendon that rubs in its conduit and on its pulleys.
 //!
 //! The tendon has three sections without mass: from the motor to the conduit, from the conduit past the gauge to the
-//! pulleys, and from there to the joint. The friction of the conduit acts between the first two sections and that of
-//! the pulleys between the last two. Both obey the capstan equation: the point of contact sticks while the tensions on
-//! its two sides have a ratio of at most 1 + mu, and otherwise slides until they have this ratio.
+//! pulleys, and from there to the joint. The friction of the conduit acts between the first two sections. The friction
+//! of the pulleys acts between the last two. Both obey the capstan equation: the point of contact sticks while the
+//! tensions on its two sides have a ratio of at most 1 + mu, and otherwise slides until they have this ratio.
 //!
 //! The tendon has no mass, so the points slide without delay. The friction therefore has no chatter at rest, and its
 //! computation is stable for any step. A regularised friction force (a steep function of the speed) would creep at
@@ -98,7 +98,7 @@ impl Contacts {
 }
 
 /// Returns the position of a contact between two sections after it has slid. Each section is given by the position of
-/// its far end, m, and its share of the compliance: first the one toward the motor. `ratio` is 1 + mu.
+/// its far end, m, and its share of the compliance. The section toward the motor comes first. `ratio` is 1 + mu.
 fn slid(contact: f64, [upper, lower]: [(f64, f64); 2], ratio: f64, elasticity: &Elasticity) -> f64 {
     let above = elasticity.signed_tension((upper.0 - contact) / upper.1);
     let below = elasticity.signed_tension((contact - lower.0) / lower.1);

@@ -80,7 +80,7 @@ impl Wiring {
         self.reversed[gauge] = !self.reversed[gauge];
     }
 
-    /// Returns the torques of the finger's motors for those that the board commands.
+    /// Returns the torques of the finger's motors if the board commands the torques `commanded`.
     #[must_use]
     pub fn torques(&self, commanded: [f64; 4]) -> [f64; 4] {
         let mut torques = [0.0; 4];
@@ -90,7 +90,7 @@ impl Wiring {
         torques
     }
 
-    /// Returns the counts that the board reads for those of the finger's sensors.
+    /// Converts the counts of the finger's encoders and gauges to the counts that the board reads.
     #[must_use]
     pub fn counts(&self, (encoders, gauges): ([i32; 4], [u16; 4])) -> ([i32; 4], [u16; 4]) {
         let encoder = |connector: usize| {

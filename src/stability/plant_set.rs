@@ -12,7 +12,7 @@ pub struct Variant {
     pub name: &'static str,
     /// Changes the plant. The second argument is the period of the servo, ms.
     change: fn(&mut ConfiguredSimulation, f64),
-    /// Number of cycles of which the last one loses its reply. With 0, no reply is lost.
+    /// One reply is lost in this number of cycles: the reply of the last of them. With 0, no reply is lost.
     pub(super) loss_interval: usize,
 }
 

@@ -29,10 +29,10 @@ const WALLS: [f64; 2] = [30.0, 1000.0];
 /// Largest length of [`Wall::tilt`]. The wall then carries at least 0.7 of the load.
 const LARGEST_TILT: f64 = 0.7;
 
-/// A finger at rest with a spring that is relative to a bound.
+/// A finger at rest with a spring whose stiffness is relative to a bound.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
-    /// The finger at rest with a hard finger. Its stiffness is replaced, and its damping clamped.
+    /// The finger at rest. [`Sample::at`] replaces its stiffness and clamps its damping.
     rest: Rest,
     /// Kx with eigenvalues from 0 (softest spring) to 1 (spring at the bound).
     relative: Matrix3<f64>,
@@ -52,7 +52,7 @@ impl Sample {
         self.rest.joints
     }
 
-    /// Returns the sample with a stiffness that no pose supports, N/cm, on a hard finger.
+    /// Returns the sample as a hard finger with an isotropic stiffness that no pose supports, N/cm.
     pub fn with_isotropic(&self, stiffness: f64) -> Rest {
         Rest { stiffness: spatial(&(Matrix3::identity() * stiffness)), damping: 1.0, wall: None, ..self.rest }
     }
@@ -105,8 +105,8 @@ pub(super) fn samples(finger: &ConfiguredFinger, number: usize, seed: u64, walls
             let tip_way = links.jacobian(&joints) * way;
             let normal = direction(&mut random);
             let (contact, most_tilt) = match number / 2 % 4 {
-                // A constant force would turn a point away, and a wall with another normal would hold it in a direction
-                // in which its spring does not act.
+                // A constant force would turn a frictionless point away. A wall with another normal would hold the
+                // point in a direction in which its spring does not act.
                 0 if walls => (ContactType::FrictionlessPoint(Unit::new_normalize(tip_way).into_inner()), 0.0),
                 1 => (ContactType::SoftFinger(normal, uniform(&mut random, 0.0, 1.0)), LARGEST_TILT),
                 _ => (ContactType::HardFinger, LARGEST_TILT),
@@ -136,7 +136,7 @@ fn relative_stiffness(random: &mut Pcg64, number: usize) -> Matrix3<f64> {
     turn * Matrix3::from_diagonal(&principal) * turn.inverse()
 }
 
-/// Returns a wall of random stiffness and direction. Every ratio of two stiffnesses is equally frequent.
+/// Returns a wall of random stiffness and direction. The logarithm of the stiffness is uniformly distributed.
 fn wall(random: &mut Pcg64, most_tilt: f64) -> Wall {
     let [softest, stiffest] = WALLS;
     let stiffness = softest * (stiffest / softest).powf(uniform(random, 0.0, 1.0));

@@ -111,8 +111,8 @@ impl Reader {
                 return Err(Ended::Closed);
             }
             wait(&self.socket, self.process.as_ref(), timeout);
-            // The end is noticed first, and then the ring is read once more. So nothing is lost that was written before
-            // the end.
+            // The end is noticed first, and then the ring is read once more. So nothing that was written before the end
+            // is lost.
             self.ended = self.has_ended();
             self.take_blocks(messages)?;
         }

@@ -18,8 +18,8 @@ use std::ops::{BitOr, BitOrAssign};
 /// The hardware has the watchdog: if no exchange comes for [`IoTerms::watchdog_ms`], it must enter the end state by
 /// itself, because a program that hangs or dies makes no more calls.
 ///
-/// `exchange` runs in the servo thread of the finger, and usually also `stop`. They must not allocate memory, wait for
-/// a lock, write to files or use the hand. A panic faults every finger of the servo thread.
+/// `exchange` runs in the servo thread of the finger, and `stop` usually runs there too. They must not allocate memory,
+/// wait for a lock, write to files or use the hand. A panic faults every finger of the servo thread.
 pub trait FingerIo: Send {
     /// Returns what the library must know about the hardware before it starts. It is called once, at open.
     fn properties(&self) -> IoProperties {

@@ -43,7 +43,7 @@ pub(super) struct Hardware {
     encoders: [i32; 4],
     gauges: [u16; 4],
     sampled_at: u16,
-    /// When the last exchange began that succeeded, ns.
+    /// When the last successful exchange began, ns.
     exchanged_at: u64,
     last_sequence: Option<u8>,
     /// Number of the last Command since the start.
@@ -179,8 +179,8 @@ impl Hardware {
         Some(self.reply(command.enable && limited != command.torques))
     }
 
-    /// Stores a sample. A value that has no count is a sensor that cannot be read. The encoders may be anywhere in the
-    /// `first` sample.
+    /// Stores a sample. A value that cannot be expressed as a count means that the sensor cannot be read. In the
+    /// `first` sample, the encoders may have any count.
     fn note(&mut self, sample: &IoSample, first: bool) {
         for (io, status) in [
             (IoFaults::WATCHDOG, Status::WATCHDOG_TRIPPED),

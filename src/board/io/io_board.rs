@@ -1,8 +1,8 @@
 //! A transport without a line: it plays the part of the board in memory, with the hardware of the program behind it.
 //!
-//! The link, its counters, the faults, the recovery and the timing figures are therefore those of a serial board. A
-//! Command is kept until the servo awaits its Reply. The exchange happens then, so its time is the stage *wire* of the
-//! cycle. An exchange that fails has no Reply.
+//! The link, its counters, the faults, the recovery and the timing figures are therefore the same as with a serial
+//! board. A Command is kept until the servo awaits its Reply. The exchange happens then, so its time is the stage
+//! *wire* of the cycle. An exchange that fails has no Reply.
 
 use super::finger_io::FingerIo;
 use super::hardware::Hardware;
@@ -110,7 +110,7 @@ impl IoBoard {
         }
     }
 
-    /// Adds an answer to those that the host can read. There is no room only if the host does not read.
+    /// Adds an answer to those that the host can read. The buffer can be full only if the host does not read.
     fn answer(&mut self, sequence: u8, frame: Frame) {
         let wire = WireFrame::new(&Message { address: self.address, sequence, frame });
         let wire = wire.as_bytes();

@@ -3,13 +3,14 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// What the surroundings exert on a finger that follows a set point, without touch sensors. Otherwise it is zero.
+/// An estimate of what the surroundings exert on a finger that follows a set point. It needs no touch sensors. It is
+/// zero while the finger does not follow a set point.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct ContactEstimate {
     /// Torques of the surroundings on the joints, N cm, relative to the slowly varying error of the model.
     pub torques: Vector3<f64>,
-    /// The force of the surroundings on the fingertip with these torques, N, in the finger's frame. Near a singular
-    /// pose, the component in the direction that causes no joint torques is reduced toward zero.
+    /// The force of the surroundings on the fingertip that causes these torques, N, in the finger's frame. Near a
+    /// singular pose, the component in the direction that causes no joint torques is reduced toward zero.
     pub force: Vector3<f64>,
     /// Whether the finger touches something. The force has exceeded the threshold, and has not fallen below the lower
     /// threshold since.

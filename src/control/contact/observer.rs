@@ -14,9 +14,9 @@ use serde::{Deserialize, Serialize};
 /// of the servo, the estimate would need four times the computing time at 1000 Hz and detect the same forces.
 const INTERVAL: f64 = 0.005;
 
-/// Number of samples in which each slowly varying quantity is computed again once. At most one of them is computed at
-/// each sample. A joint that turns at 1 rad/s moves by 0.02 rad in this time, which changes the inertia by less than
-/// 2 %.
+/// Each slowly varying quantity is computed again once in this number of samples. At each sample, at most one of these
+/// quantities is computed. A joint that turns at 1 rad/s moves by 0.02 rad during these samples, which changes the
+/// inertia by less than 2 %.
 const REFRESH: u8 = 4;
 
 /// The constant part of the contact estimate.
@@ -31,7 +31,7 @@ pub(in crate::control) struct ContactObserver {
     mass_tolerance: f64,
     /// Shortest time between two samples, s.
     interval: f64,
-    /// Part of the change of the torque of gravity that is learned in [`REFRESH`] samples.
+    /// Fraction of a change of the torque of gravity that is learned in [`REFRESH`] samples.
     learned: f64,
 }
 

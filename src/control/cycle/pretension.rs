@@ -33,13 +33,13 @@ impl Controller {
         state.doing = Doing::TakingUpSlack(slack);
     }
 
-    /// Runs one cycle of tightening during a calibration. The joints are held where they are when the last tendon comes
-    /// taut. `offset` is the error of the gauges (shown minus true tension), N.
+    /// Runs one cycle of tightening during a calibration. When the last tendon has become taut, the joints are held in
+    /// the pose that they then have. `offset` is the error of the gauges (shown minus true tension), N.
     pub(super) fn tighten(&self, state: &mut State, offset: &Vector4<f64>) {
         let now = self.slackness(state, offset);
         let joints = Joints {
-            // The joints that state feedback observes are not used: Figures 9 and 10 control the tensions here, and
-            // they need the low-pass filtered stretch.
+            // The joint angles that state feedback estimates are not used: Figures 9 and 10 control the tensions here,
+            // and they need the low-pass filtered stretch.
             angles: self.joint_positions.joints(&state.motor_angles, &state.tensions),
             rates: self.joint_positions.joint_rates(&state.motor_speeds),
         };
@@ -65,7 +65,7 @@ impl Controller {
         state.doing = Doing::Tightening(tightening);
     }
 
-    /// Returns the measurements with gauges that show `offset` too much, N.
+    /// Returns the measurements. The gauges show tensions that are too large by `offset`, N, so it is subtracted.
     fn slackness(&self, state: &State, offset: &Vector4<f64>) -> Slackness {
         Slackness {
             travel: state.motor_angles.component_mul(&self.radius),

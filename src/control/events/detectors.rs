@@ -43,7 +43,7 @@ impl Detectors {
         }
     }
 
-    /// Runs the detectors after a cycle with a reply in which the finger followed `set_point`.
+    /// Runs the detectors after a cycle with a reply. The finger followed `set_point` in this cycle.
     pub fn observe(&self, state: &mut DetectorState, report: &Report, set_point: &SetPoint) -> Observations {
         let mut observations = Observations::default();
         self.contact.observe(&mut state.contact, &report.contact, &mut observations);

@@ -43,7 +43,7 @@ const MOST_REPEATS: f64 = 0.7;
 const LEAST_REVERSALS: f64 = 0.15;
 
 /// Lowest fraction of samples in which a gauge that is known to flicker bends to the other side. While the dither of
-/// the tensions changes a tension by several counts in a sample, noise reverses the direction hardly ever. It still
+/// the tensions changes a tension by several counts in a sample, noise hardly ever reverses the direction. It still
 /// changes the sign of the second difference of the counts, which a smooth tension does not.
 const LEAST_BENDS: f64 = 0.05;
 
@@ -96,7 +96,7 @@ pub(super) struct Memory {
     /// Tensions of the last sample, N.
     tensions: Vector4<f64>,
     /// Whether each gauge shows the lowest count because its tension fell or drifted to the end of the range. A dead
-    /// gauge often shows the lowest count too, but its tension is not low before.
+    /// gauge often shows the lowest count too, but its tension was not low before.
     at_lowest: [bool; 4],
 }
 

@@ -1,10 +1,11 @@
 //! Takes up slack while the joints stay where they are.
 //!
 //! The first tendon that comes taut moves a free finger until another tendon opposes it. So every motor winds in slowly
-//! until its tendon only just comes taut, and at once pays out a fraction of a millimetre. The tension lasts for a few
-//! milliseconds and hardly moves the finger. When every tendon has been taut once, the travels of the motors at these
-//! moments determine the joint angles. All motors then wind in together to these travels, and further by a common
-//! stretch until the tensions reach the pretension. The motors are under position control, so they hold the joints.
+//! until its tendon has just become taut. The motor then immediately pays out a fraction of a millimetre. The tension
+//! lasts for a few milliseconds and hardly moves the finger. When every tendon has been taut once, the travels of the
+//! motors at these moments determine the joint angles. All motors then wind in together to these travels, and further
+//! by a common stretch until the tensions reach the pretension. The motors are under position control, so they hold the
+//! joints.
 
 mod together;
 
@@ -35,7 +36,7 @@ const HOLDS: f64 = 0.012;
 /// Tendons that all have more than this fraction of t_min at the start need no winding.
 const ALL_TAUT: f64 = 0.2;
 
-/// Pull with which a motor reverses at a taut tendon, in multiples of t_min, outward.
+/// Pull in the paying-out direction with which a motor reverses at a taut tendon, in multiples of t_min.
 const REVERSAL: f64 = 16.0;
 /// Longest time of this pull, s, and distance from the taut tendon at which it ends, m.
 const LONGEST_REVERSAL: f64 = 0.004;
@@ -47,15 +48,15 @@ const GAP: f64 = 0.0004;
 const GAIN: f64 = 20.0;
 /// Largest pull while the tendons are slack, in multiples of t_min. It must exceed the friction of a motor.
 const STRONGEST_SLACK: f64 = 2.0;
-/// Largest pull later, in multiples of the pretension, and in addition `STRONGEST_SLACK`.
+/// Later the largest pull is this multiple of the pretension plus `STRONGEST_SLACK` times t_min.
 const STRONGEST: f64 = 1.5;
 
-/// Distance from its target of a motor that does not follow, m.
+/// A motor does not follow its target if its distance from the target exceeds this value, m.
 const ASTRAY: f64 = 0.003;
 
 /// Time constant of the low-pass filter on the tensions, s.
 const SMOOTHING: f64 = 0.003;
-/// Time constant of the filter for the question whether a tendon pulls at all, s.
+/// Time constant of the low-pass filter for the decision whether a tendon pulls at all, s.
 const MORE_SMOOTHING: f64 = 0.02;
 
 /// The constant part of the take-up.
@@ -211,7 +212,8 @@ impl SlackTakeUp {
                 slack.targets.travel[motor] = travel - GAP;
                 slack.targets.integral[motor] = 0.0;
             } else {
-                // Above more noise only the inertia of the finger makes a taut tendon visible.
+                // With more noise, only the inertia of the finger raises the tension of a taut tendon above the noise,
+                // so the winding is faster.
                 let noise = (gauge.noise / (QUIET * self.minimum)).max(1.0);
                 let speed = (SPEED + ACCELERATION * slack.seconds) * noise;
                 slack.targets.speed[motor] = speed;

@@ -30,7 +30,8 @@ const BEYOND_LIMITS: f64 = 0.5;
 const WARNING_MS: f64 = 1000.0;
 
 impl Adjustable {
-    /// Constructs the data that the configuration describes. It has the number of a finger's first controller.
+    /// Constructs the data that the configuration describes. The result has the number of a finger's first controller,
+    /// 0.
     ///
     /// # Errors
     /// Returns an error if no controller can be constructed from the configuration.

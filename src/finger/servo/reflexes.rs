@@ -1,4 +1,5 @@
-//! The reflexes of a finger in its servo: the reactions of the rules, and the time without following the planner.
+//! The reflexes of a finger in its servo: the reactions of the rules, and the time for which the finger does not follow
+//! the planner.
 
 use super::FingerServo;
 use crate::control::Activity;

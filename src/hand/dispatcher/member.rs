@@ -15,6 +15,6 @@ pub struct Member {
     pub mailbox: Mailbox,
     pub touch: Elements,
     pub reflexes: Reflexes,
-    /// Whether a caller has the right to calibrate the finger.
+    /// Whether a caller holds the right to calibrate the finger at present.
     pub calibrated: Arc<AtomicBool>,
 }

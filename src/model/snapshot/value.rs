@@ -1,4 +1,4 @@
-//! The copy of a value, which each format writes with the same little code.
+//! The copy of a value. Each format writes every such copy with the same small amount of code.
 
 use serde::ser::{Error, SerializeStruct, SerializeStructVariant, SerializeTuple};
 use serde::{Serialize, Serializer};
