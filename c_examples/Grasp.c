@@ -3,10 +3,10 @@
    The hand is that of grasp.toml. The fingertips are springs. Their anchors are set inside the ball, and the springs
    then press the tips against it. Friction carries the weight. The fingers press so little that the ball is about to
    slip when they lift it. Reflexes tighten the grasp then: each finger presses harder when its contact or that of
-   another finger is about to slip. A call that moves the anchors ends what the reflexes have added, and they add it
-   again. The exit status is 0 if the grasp tightens, the ball is lifted, does not creep while it is held, and is back
-   on the table at the end. The program works with the simulated hand only, because sun2xp_object gives the pose of the
-   ball. C99. */
+   another finger is about to slip. A call that moves the anchors removes the force that the reflexes have added. The
+   reflexes then add it again. The exit status is 0 if the grasp tightens, the ball is lifted, does not creep while it
+   is held, and is back on the table at the end. The program works with the simulated hand only, because sun2xp_object
+   gives the pose of the ball. C99. */
 
 #include <math.h>
 #include <stdio.h>

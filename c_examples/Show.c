@@ -73,7 +73,7 @@ static void grip(struct Grip To)
     check(sun2xp_send_group(hand, 3, Group));
 }
 
-/* Returns a value between two others that begins and ends without a jerk; part is 0 to 1. */
+/* Interpolates between two values, for a part from 0 to 1. The motion begins and ends without a jerk. */
 static double between(double from, double to, double part)
 {
     return from + (to - from) * (HALF - HALF * cos(HALF * TURN * part));

@@ -80,10 +80,10 @@ void mechanism_advance(struct mechanism *finger, uint32_t microseconds)
 
 void mechanism_sample(const struct mechanism *finger, struct sensors *sensors)
 {
-    /* Converter noise, one count up or down: the library takes a gauge whose count never changes for a dead one. */
+    /* Converter noise, one count up or down: the library considers a gauge dead if its count never changes. */
     static uint32_t random = 1;
     for (size_t i = 0; i < MOTORS; i++) {
-        /* Encoder zero is the straight finger under the tension of the start. */
+        /* The encoders read zero when the finger is straight and its tendons have the tensions of the start. */
         double angle = finger->motor[i] - home_tension[i] / stiffness / pulley;
         random = random * 1664525u + 1013904223u;
         double noise = (double)(random >> 16) * 3 / 65536 - 1;

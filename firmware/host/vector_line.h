@@ -10,7 +10,7 @@
 
 enum { LINE_MOST = 4096, BYTES_MOST = 1024 };
 
-/* The line under test and the conversation that it belongs to; empty if there is none. */
+/* The line under test, and the conversation to which it belongs; `conversation` is empty if there is none. */
 extern const char *current_line;
 extern char conversation[LINE_MOST];
 extern unsigned line_number;
@@ -24,7 +24,7 @@ void expect(bool holds, const char *what);
 /* The text after `"name": `, or NULL if the line has no such field. */
 const char *value(const char *name);
 
-/* The number of this name, or element `index` of a list. */
+/* The number in the field `name`. If the field is a list, element `index` of the list. */
 long long number(const char *name, size_t index);
 
 bool text_is(const char *name, const char *wanted);

@@ -5,7 +5,8 @@
 
 #include "../hal.h"
 
-/* Gives every pin its function. Outputs are low, except the converter's CS, before they become outputs. */
+/* Gives every pin its function. Before the pins become outputs, their levels are set: CS of the converter high, all
+   others low. */
 void pins_start(void);
 
 /* Starts the PWM with all outputs off. */
@@ -25,7 +26,8 @@ void encoders_start(void);
 /* Reads the counters now. */
 void encoders_latch(void);
 
-/* The counts at the last latch. Latch and call it at least every 20 ms: two counters have only 16 bits. */
+/* Reads the counts at the last latch. Call encoders_latch and this function at least every 20 ms, because two counters
+   have only 16 bits. */
 void encoders_read(int32_t counts[MOTORS]);
 
 void gauges_start(void);
@@ -36,7 +38,7 @@ void gauges_convert(void);
 /* Checks whether the converter has begun. Call it 0.1 to 1.5 us after gauges_convert. */
 void gauges_confirm(void);
 
-/* Waits for the end of the conversion and reads it, 6 to 11 us in all. */
+/* Waits for the end of the conversion and reads the result. This takes 6 to 11 us in all. */
 void gauges_read(uint16_t counts[MOTORS]);
 
 /* Whether a gauge could not be read in the last three conversions. */
@@ -45,7 +47,8 @@ bool gauges_failed(void);
 /* `crystal_runs` is false if the clock is not accurate. The board then reports a sensor fault. */
 void faults_start(bool crystal_runs);
 
-/* Samples the sensors if no host has done so for a while. This keeps the encoders' extension and the faults current. */
+/* Samples the sensors if no host has done so for a while. This keeps the extended encoder counts and the faults up to
+   date. */
 void sensors_poll(void);
 
 /* Starts the watchdog that resets the processor. It cannot be stopped. */

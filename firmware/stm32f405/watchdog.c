@@ -1,5 +1,5 @@
 /* The independent watchdog runs from its own oscillator of 17 to 47 kHz (data sheet; 32 kHz typically). At a quarter of
-   that, 80 counts take 6.8 ms to 18.9 ms, and 10 ms typically. The main loop takes less than 0.2 ms. */
+   this frequency, 80 counts take 6.8 ms to 18.9 ms, and 10 ms typically. The main loop takes less than 0.2 ms. */
 
 #include "parts.h"
 #include "registers.h"
@@ -10,8 +10,8 @@ void watchdog_start(void)
 {
     IWDG->KR = IWDG_KR_START;
     IWDG->KR = IWDG_KR_UNLOCK;
-    IWDG->PR = 0; /* A quarter. */
-    /* Takes effect within 0.3 ms. Until then a feed loads the reset value, 4096 counts (21.4.3). */
+    IWDG->PR = 0; /* The prescaler divides by 4. */
+    /* This value takes effect within 0.3 ms. Until then a feed loads the reset value, 4096 counts (21.4.3). */
     IWDG->RLR = COUNTS - 1;
 }
 

@@ -9,7 +9,8 @@ use crate::realtime::atomics::{AtomicU64, Ordering};
 use loom::sync::Arc;
 use loom::thread;
 
-/// Two servos that see a group take effect in the same period, whatever the times at which they see it.
+/// If two servos see a group, the group takes effect in both in the same period, whatever the times at which they see
+/// it.
 pub fn a_group_takes_effect_in_one_period() {
     let gate = GroupGate::new();
     // The number of the present period. It increases while threads wait.

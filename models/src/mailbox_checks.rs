@@ -52,7 +52,7 @@ pub fn a_set_point_is_for_one_spring() {
         planner.send(|set_point| set_point.damping += 1.0).expect("the finger is healthy");
         planner
     });
-    // The finger becomes another spring, whose set point the planner's change must start from.
+    // The finger becomes another spring. The planner's change must start from the set point of this spring.
     report.springs = 2;
     report.set_point.damping = 100.0;
     servo.publish(report);

@@ -18,7 +18,7 @@ pub fn values_arrive_once_and_in_order() {
     assert!(accepted.len() >= 2 && arrived == accepted, "{accepted:?} accepted, {arrived:?} arrived");
 }
 
-/// A ring that is dropped drops the values that were not taken, once.
+/// When a ring is dropped, every value that was not taken is dropped once.
 pub fn values_that_were_not_taken_are_dropped() {
     let witness = Arc::new(());
     let (mut producer, mut consumer) = ring(2);

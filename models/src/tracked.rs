@@ -2,8 +2,8 @@
 
 use crate::realtime::atomics::UnsafeCell;
 
-/// A number that two threads access in turns. Loom fails a check in which another thread's access does not precede an
-/// access.
+/// A number that two threads access in turns. Loom fails a check if one thread writes the number and nothing orders
+/// this write before or after an access of the other thread.
 pub struct Tracked(UnsafeCell<u32>);
 
 impl Tracked {

@@ -96,7 +96,7 @@ fn a_posted_group_has_its_set_points() {
     explore(group_checks::a_posted_group_has_its_set_points);
 }
 
-/// The request passes no other data.
+/// The request to close passes no other data.
 #[test]
 fn a_request_to_close_is_answered() {
     explore(mailbox_checks::a_request_to_close_is_answered);

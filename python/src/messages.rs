@@ -18,7 +18,7 @@ const CAPACITY: usize = 1000;
 /// Longest time for which an opened hand waits until its messages are in the log.
 const LONGEST_FLUSH: Duration = Duration::from_secs(1);
 
-/// The process that has the thread of Python, as `fork` counts. No process has the first value.
+/// The process that has the thread of Python: the value of `fork::generation` in it. No process has the initial value.
 static OWNER: AtomicU32 = AtomicU32::new(u32::MAX);
 
 struct Messages {
@@ -47,8 +47,8 @@ pub fn take_messages() {
     offer_messages_to(receive);
 }
 
-/// Returns whether this process has the thread of Python. A forked child has not, and nobody releases a lock there that
-/// another thread of the parent held.
+/// Returns whether this process has the thread of Python. A forked child does not have it. In the child, a lock that
+/// another thread of the parent held is never released.
 fn has_thread() -> bool {
     OWNER.load(Ordering::Relaxed) == fork::generation()
 }
@@ -72,8 +72,8 @@ fn receive(severity: Severity, text: &str) -> bool {
     true
 }
 
-/// Waits for a message, and returns its level and its text. A call also says that the previous message is logged.
-/// Returns None after `end_messages`.
+/// Waits for a message, and returns its level and its text. The next call also reports that this message has been
+/// logged. Returns None after `end_messages`.
 #[pyfunction]
 pub fn next_message(py: Python<'_>) -> PyResult<Option<(i32, String)>> {
     loop {

@@ -35,8 +35,8 @@ pub fn at_hand(hand: &HandName, clients: &BTreeMap<ClientName, Permission>) -> S
     control(listed.map(|(client, permission)| (client, scope.of_client(client, *permission))))
 }
 
-/// Returns the access control at a router: clients may use every hand there, and a hand offers what is below its name,
-/// which is the common name of its certificate.
+/// Returns the access control at a router. Clients may use every hand there. A hand may offer only the keys below its
+/// name, which is the common name of its certificate.
 #[must_use]
 pub fn at_router(clients: &BTreeMap<ClientName, Permission>) -> String {
     let everywhere = Scope("*".into());
@@ -65,7 +65,7 @@ fn control<'a>(subjects: impl Iterator<Item = (&'a ClientName, Vec<Rule>)>) -> S
     )
 }
 
-/// The hand, or every hand, whose keys the rules have.
+/// The part of a key that names the hand to which the rules apply: its name, or `*` for every hand.
 struct Scope(String);
 
 impl Scope {

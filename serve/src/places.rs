@@ -5,13 +5,13 @@ use std::sync::Arc;
 use sun2xp::realtime::Mutex;
 use sun2xp_remote_protocol::ClientName;
 
-/// Most Requests of one client that wait.
+/// Largest number of Requests of one client that may wait.
 const OF_CLIENT: usize = 8;
 
-/// Most gets of the Status that wait. Their keys do not name a client.
+/// Largest number of gets of the Status that may wait. Their keys do not name a client.
 const OF_STATUS: usize = 64;
 
-/// The numbers of queries that wait: of each client, and of the Status under no name.
+/// The number of waiting queries of each client. The entry without a name counts the waiting gets of the Status.
 type Counts = BTreeMap<Option<ClientName>, usize>;
 
 /// The places.
@@ -25,7 +25,8 @@ pub struct Place {
 }
 
 impl Places {
-    /// Returns a place for a Request of this client, or for a get of the Status if it is none; none if all are taken.
+    /// Returns a place for a Request of client `of`. If `of` is none, returns a place for a get of the Status. Returns
+    /// none if all places are taken.
     #[must_use]
     pub fn take(&self, of: Option<ClientName>) -> Option<Place> {
         let most = if of.is_some() { OF_CLIENT } else { OF_STATUS };
@@ -45,7 +46,7 @@ impl Drop for Place {
         let mut counts = self.places.0.lock();
         let left = counts.get(&self.of).map_or(0, |count| count.saturating_sub(1));
         if left == 0 {
-            // Names that have gone leave nothing behind.
+            // A name without waiting queries has no entry.
             counts.remove(&self.of);
         } else {
             counts.insert(self.of.clone(), left);

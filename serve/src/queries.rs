@@ -1,5 +1,5 @@
-//! The callbacks of queries. They run in the threads of zenoh that receive Targets, so they never wait, and they drop
-//! no query, because the end of a query is sent where it is dropped.
+//! The callbacks of queries. They run in the threads of zenoh that receive Targets, so they never wait. They never drop
+//! a query either, because the thread that drops a query sends its end.
 
 use crate::answers::Answers;
 use crate::places::Place;
@@ -38,12 +38,12 @@ impl Drop for Waiting {
 
 /// Takes a query under a key of Requests for an action.
 pub fn on_request(shared: &Arc<Shared>, answers: &Answers, action: Action, query: Query) {
-    // A key with a wildcard is that of no client.
+    // A key with a wildcard belongs to no client.
     let Some(client) = shared.keys.client_of_request(action, query.key_expr().as_str()) else {
         return answers.end(query);
     };
     let place = answers.place(&client);
-    // A Stop is carried out, also if there is no place for its answer.
+    // A Stop is carried out even if there is no place for its answer.
     if place.is_none() && action != Action::Stop {
         return answers.end(query);
     }

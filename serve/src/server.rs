@@ -20,7 +20,7 @@ use sun2xp_remote_protocol::{Action, Answer, ClientName, Status};
 use zenoh::sample::Sample;
 use zenoh::{Session, Wait};
 
-/// Interval at which set points advance and the silence of the owner is looked at, ns.
+/// Interval at which set points are advanced and the silence of the owner is checked, ns.
 const LOOK_INTERVAL: u64 = 5_000_000;
 
 /// A server that offers a hand. [`Server::end`] must be called at its end.
@@ -31,8 +31,8 @@ pub struct Server {
     threads: Vec<JoinHandle<()>>,
 }
 
-/// Configures the dead man's handle of the servos: a finger whose Target has become invalid holds its pose softly, and
-/// the server gives the times with each command.
+/// Configures the dead man's handle of the servos: a finger whose Target has become invalid holds its pose softly. The
+/// server passes the times for this reaction with each command.
 pub fn prepare(configuration: &mut Configuration, limits: &Limits) {
     for finger in &mut configuration.fingers {
         finger.motion.on_expiry = ExpiryReaction::Hold;
@@ -132,7 +132,7 @@ fn refused(what: &'static str) -> impl Fn(zenoh::Error) -> ServeError {
     move |error| ServeError::Network { doing: format!("declare {what}"), reason: error.to_string() }
 }
 
-/// Advances set points and looks at the silence of the owner, until the server ends.
+/// Advances set points and checks the silence of the owner, until the server ends.
 fn look(shared: &Shared) {
     let mut next = now();
     while !shared.ending.load(Ordering::Acquire) {

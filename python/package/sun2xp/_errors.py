@@ -65,7 +65,7 @@ class ConfigurationError(Error):
     """A configuration that cannot be read, used or stored."""
 
 
-# An OSError has an errno too, which may be None.
+# OSError has an attribute errno too, whose value may be None.
 class TimedOut(Error, TimeoutError):  # type: ignore[misc]
     """A finger has not arrived or settled within the time limit."""
 

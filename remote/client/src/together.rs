@@ -21,7 +21,8 @@ pub fn send_together(hands: &[(&RemoteHand, &[FingerCommand])]) -> Result<(), Re
         return Err(RemoteError::TwiceTogether(name));
     }
     let mut locked: Vec<_> = sorted.iter().map(|(shared, commands)| (shared.lock(), *commands)).collect();
-    // The time is taken under the locks, so that no Target has a later time stamp.
+    // The time is read while the locks are held, so that no Target with a later time stamp is sent before these
+    // Targets.
     let now = now();
     let admitted = locked.iter_mut().map(|(exchange, commands)| exchange.admit(commands, now));
     let admitted = admitted.collect::<Result<Vec<_>, _>>()?;

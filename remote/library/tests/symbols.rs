@@ -1,4 +1,5 @@
-//! libsun2xp_remote.so has the exported symbols of libsun2xp.so, and the name by which programs find it.
+//! libsun2xp_remote.so exports the same symbols as libsun2xp.so. It also has the same SONAME, by which programs find
+//! libsun2xp.so.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -33,7 +34,7 @@ fn both_libraries_export_the_same_names() {
 
 #[test]
 fn the_library_calls_none_of_its_own_names_through_the_loader() {
-    // Beside libsun2xp, the loader would bind such a call to the function of that library.
+    // In a process that has also loaded libsun2xp, the loader would bind such a call to the function of libsun2xp.
     let remote = built("libsun2xp_remote.so");
     let relocations = said(Command::new("readelf").args(["-r", "-W"]).arg(&remote));
     let words: BTreeSet<&str> = relocations.split(|letter: char| !letter.is_alphanumeric() && letter != '_').collect();
@@ -43,7 +44,7 @@ fn the_library_calls_none_of_its_own_names_through_the_loader() {
     }
 }
 
-/// The loader takes it in place of libsun2xp, and dlclose unmaps neither.
+/// The loader accepts libsun2xp_remote in place of libsun2xp, and dlclose unmaps neither of them.
 #[test]
 fn both_libraries_have_one_name_and_stay_loaded() {
     let lines = |name: &str| -> Vec<String> {

@@ -36,7 +36,7 @@ pub enum DecodeError {
         /// The length of the payload.
         found: usize,
     },
-    /// A field has a value that the page does not allow.
+    /// A field has a value that docs/remote-protocol.md does not allow.
     #[error("{kind}: {error}")]
     Field {
         /// The message.
@@ -84,7 +84,7 @@ pub enum Reason {
     /// A value is not higher than the one before.
     #[error("must be higher than the one before")]
     NotRising,
-    /// Something that is not given is not zero.
+    /// The bytes of a value that is not given are not zero.
     #[error("must be zero, because it is not given")]
     NotZero,
     /// Bits without a meaning are set.

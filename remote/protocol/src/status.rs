@@ -23,9 +23,9 @@ pub struct Counts {
     pub late: u64,
     /// Targets that the hand did not admit.
     pub refused: u64,
-    /// Times that the fingers were caught.
+    /// How often the fingers were caught, because a Target had become invalid.
     pub caught: u64,
-    /// Times that the fingers went to their end state because the owner fell silent.
+    /// How often the fingers went to their end state because the owner fell silent.
     pub ended: u64,
 }
 
@@ -48,7 +48,7 @@ pub struct Status {
     pub soft_stiffness: f64,
     /// What the server counts.
     pub counts: Counts,
-    /// Fingers 1 to 3; none for a finger that the hand has not.
+    /// Fingers 1 to 3; none for a finger that the hand does not have.
     pub fingers: [Option<FingerStatus>; FINGERS],
     /// The owner; none if there is none.
     pub owner: Option<ClientName>,

@@ -55,7 +55,7 @@ def checked_hand(name: str) -> str:
 
 
 def checked_client(name: Optional[str], tls: Optional[Tls]) -> str:
-    """Returns the name of this client, which is that of its certificate if it is not given.
+    """Returns the name of this client. With TLS, its default is the common name of the certificate.
 
     Raises:
         ConfigurationError: no client can have this name.
@@ -141,8 +141,8 @@ class Network:
         return found
 
     def get(self, key: str, payload: Optional[bytes], timeout: float) -> List[tuple]:
-        """Returns the keys and payloads of all answers to a get. It ends when all have answered, or after `timeout`
-        s. Ctrl-C ends it."""
+        """Returns the keys and payloads of all answers to a get. The get ends when all have answered, or after
+        `timeout` s. Ctrl-C ends it."""
         answers: List[tuple] = []
         ended = threading.Event()
 
@@ -161,7 +161,7 @@ class Network:
         return self.session.declare_subscriber(key, lambda sample: take(bytes(sample.payload)))
 
     def put(self, key: str, payload: bytes) -> None:
-        """Sends a Target. If the line is full, it is dropped: the next one repeats it.
+        """Sends a Target. If the line is full, the Target is dropped: the next Target repeats it.
 
         A declared publisher would send nothing until it is told of a subscriber.
         """
@@ -197,13 +197,13 @@ class Network:
         return opened
 
     def forget(self, hand: Any) -> None:
-        """Takes a hand from the list of those that `close` closes."""
+        """Removes a hand from the list of the hands that `close` closes."""
         with self._lock:
             self._hands = [other for other in self._hands if other is not hand]
 
     def close(self) -> None:
-        """Closes the hands, which brings the fingers of those that this client owns to their end states, and then the
-        connection."""
+        """Closes the hands, and then the connection. The fingers of the hands that this client owns go to their end
+        states."""
         for hand in list(self._hands):
             hand.close()
         self.sender.close()

@@ -8,7 +8,7 @@ use sun2xp_remote_protocol::Code;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum RemoteErrorKind {
-    /// A number that is not that of a finger.
+    /// No finger has this number.
     NoSuchFinger,
     /// The hand does not have the finger.
     NotInHand,
@@ -16,7 +16,7 @@ pub enum RemoteErrorKind {
     Argument,
     /// An argument is outside a limit.
     OutOfRange,
-    /// A Kx is not that of a spring.
+    /// A Kx is not symmetric or has a negative eigenvalue, so it does not describe a spring.
     NotASpring,
     /// The finger has stopped.
     Faulted,
@@ -28,7 +28,7 @@ pub enum RemoteErrorKind {
     Stale,
     /// Another client owns the hand.
     Owned,
-    /// This client does not own the hand, or no longer.
+    /// This client does not own the hand, or no longer owns it.
     NotOwner,
     /// The hand has refused an earlier set point, or a request.
     Refused,

@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-/// Why a client does not own a hand. Nothing is acquired again by itself, because then a hand would follow a planner
-/// that does not know what happened meanwhile.
+/// Why a client does not own a hand. The client never acquires the hand again by itself, because the hand would then
+/// follow a planner that does not know what happened meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Loss {
-    /// It only watches.
+    /// The client only watches.
     Never,
     /// The ownership has ended at the server.
     Ended,
@@ -15,7 +15,7 @@ pub enum Loss {
     TakenOver,
     /// The server was started again.
     Restarted,
-    /// It has released the hand.
+    /// The client has released the hand.
     Released,
 }
 

@@ -1,4 +1,5 @@
-//! A small server that speaks the protocol over Zenoh on loopback, with fingers that are at once where they are sent.
+//! A small server that speaks the protocol over Zenoh on loopback, with fingers that reach every commanded position at
+//! once.
 
 use crate::fake_hand::FakeHand;
 use std::net::TcpListener;
@@ -18,7 +19,7 @@ pub fn free_port() -> u16 {
     listener.local_addr().expect("an address").port()
 }
 
-/// The configuration of a client of this port. The machine may be busy, so old positions are refused late.
+/// The configuration of a client of this port. The machine may be busy, so a position counts as stale only after 5 s.
 pub fn configuration(port: u16, hand: &str, client: &str) -> RemoteConfiguration {
     let (hand, client) = (hand.parse().expect("a name"), client.parse().expect("a name"));
     let mut configuration = RemoteConfiguration::new(&format!("tcp/127.0.0.1:{port}"), hand, client);
