@@ -73,7 +73,7 @@ fn nothing_is_accepted_that_was_not_sent_and_the_next_frame_is_found() {
             }
         }
         bytes += stream.len() as u64;
-        // An open frame may cost the next frame, but no more.
+        // If the stream ends within a frame, the next frame may be lost, but no further one.
         let frame = dice.frame();
         let after = [&frame[..], &frame[..]].concat();
         let mut found = 0;

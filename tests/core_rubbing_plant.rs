@@ -70,7 +70,8 @@ fn pulleys_hide_a_change_of_the_tension_from_the_joint() {
         plant.hold(plant.joints());
         pull(&mut plant, &(home() * 1.5), 1.0);
         let (gauge, joint) = (plant.tensions(), plant.joint_tensions());
-        // The tensions have risen, so each pulley already hides all that it can. Only a fall is hidden entirely.
+        // The tensions have risen, so each pulley already hides as much of a rise as its friction can. Therefore only a
+        // fall can be hidden entirely.
         pull(&mut plant, &(home() * 1.5 * 0.95), 1.0);
         ((plant.tensions() - gauge).amax(), (plant.joint_tensions() - joint).amax())
     };

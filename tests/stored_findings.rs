@@ -182,7 +182,8 @@ fn a_store_waits_for_another_one() {
     lock.lock().expect("locked");
     std::thread::scope(|scope| {
         let storing = scope.spawn(|| WORKERS[0].work(&path, 1));
-        // A process that has the file open is waiting at the lock, as this thread is.
+        // This thread has the file open and holds the lock. The storing thread has come to the lock when it has the
+        // file open too.
         while fs::read_dir("/proc/self/fd").expect("Linux").flatten().filter(|fd| links_to(&fd.path(), &path)).count()
             < 2
         {

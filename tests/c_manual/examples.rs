@@ -157,7 +157,7 @@ fn the_quick_starts_are_compiled_and_run_by_their_commands() {
     }
 }
 
-/// The port belongs to the reader's machine, so the file may be refused for the port only.
+/// The port belongs to the reader's machine, so the port is the only permitted reason to refuse the file.
 #[test]
 fn the_configuration_is_refused_only_for_its_port() {
     let bench = Bench::new();

@@ -18,7 +18,7 @@ const LONGEST: f64 = 2.0;
 /// The pairs of tendons.
 const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
 
-/// A finger whose parameters differ from its configuration as those of a calibrated finger do, and its configuration.
+/// Returns a finger and its configuration. They differ as much as a calibrated finger and its configuration differ.
 fn fingers(seed: u64) -> (ConfiguredFinger, ConfiguredFinger) {
     let mut random = Pcg64::seed_from_u64(seed);
     let mut within = |low: f64, high: f64| low + (high - low) * (random.next_u32() as f64 / f64::from(u32::MAX));

@@ -70,8 +70,8 @@ pub fn attempts<T>(
                 panic!("{count}; {failure}. No pause of the machine explains it: {measured}")
             }
             (Err(failure), Verdict::Hopeless) => panic!("{count}; {failure}. The machine pauses too often: {measured}"),
-            // Written to the stream itself, which is not captured, so that the excused failures show in the test
-            // report.
+            // This line is written to the stream itself, which is not captured. So the test report shows the excused
+            // failures.
             (Err(failure), _) => drop(writeln!(std::io::stderr(), "{count}: {measured}; {failure}")),
             (Ok(value), verdict) => {
                 println!("{count}: {measured}");

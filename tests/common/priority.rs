@@ -4,7 +4,7 @@
 use std::os::unix::process::CommandExt;
 use std::process::Command;
 
-/// Below the servos.
+/// Lower than the priority of the servos.
 const PRIORITY: libc::c_int = 20;
 
 /// Gives the calling thread and its children precedence on a busy machine, if that is permitted.
@@ -20,7 +20,7 @@ pub fn runs_first(command: &mut Command) -> &mut Command {
         run_first();
         Ok(())
     };
-    // SAFETY: makes only a system call between fork and exec.
+    // SAFETY: the closure makes only a system call between fork and exec.
     unsafe { command.pre_exec(before_exec) }
 }
 
@@ -44,6 +44,6 @@ pub fn stays_on_processor(index: usize, command: &mut Command) -> &mut Command {
         }
         Ok(())
     };
-    // SAFETY: makes only system calls between fork and exec.
+    // SAFETY: the closure makes only system calls between fork and exec.
     unsafe { command.pre_exec(before_exec) }
 }

@@ -1,4 +1,5 @@
-//! The estimated force against a finger whose dynamics come from Lagrange's equations, without code of the library.
+//! Tests the estimated force with a finger whose dynamics come from Lagrange's equations, and not from code of the
+//! library.
 
 use crate::core_lagrange::IndependentFinger;
 use nalgebra::{Matrix3, Vector3};
@@ -27,7 +28,8 @@ fn counts(finger: &ConfiguredFinger, measured: &Measured) -> Feedback {
 fn pushed(gravity: Vector3<f64>, forces: &[Vector3<f64>]) -> Vec<Report> {
     let mut configured = ConfiguredFinger::default();
     (configured.friction.joint_coulomb, configured.friction.joint_viscous) = ([0.0; 3], [0.0; 3]);
-    // After the first 0.2 s everything is a contact, so that no force is learned as an error.
+    // With these thresholds, every force after the first 0.2 s counts as a contact, so that no force is learned as an
+    // error of the model.
     configured.contact = ConfiguredContact {
         force: 1e-3,
         force_per_rate: 0.0,

@@ -202,7 +202,7 @@ pub fn finger_with(scheme: Scheme) -> ConfiguredFinger {
 
 pub const SCHEMES: [Scheme; 4] = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11, Scheme::StateFeedback];
 
-/// Without noise and dither, so that only the jump of a switch remains in the torque.
+/// A finger without noise and dither, so that a switch of the controller is the only cause of jumps in the torque.
 pub fn quiet(scheme: Scheme) -> ConfiguredFinger {
     let mut finger = finger_with(scheme);
     finger.simulation.gauge_noise = 0.0;

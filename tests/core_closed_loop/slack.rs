@@ -28,7 +28,7 @@ fn drift(finger: &ConfiguredFinger, slack: &Vector4<f64>, rate: f64, take_up: &A
     ((servo.plant.joints() - start).amax(), cycles / rate)
 }
 
-/// Largest slack, cm; true over nominal motor constants; joint friction, N m.
+/// Largest slack, cm; ratio of each true motor constant to the nominal one; joint friction, N m.
 const CASES: [(f64, [f64; 4], f64); 6] = [
     (0.05, [1.0; 4], 0.5e-3),
     (0.15, [1.0; 4], 0.5e-3),

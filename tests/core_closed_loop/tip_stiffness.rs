@@ -1,4 +1,4 @@
-//! The stiffness that a pushed fingertip has is the one that is reported, near limits and for every contact, too.
+//! A pushed fingertip has the stiffness that the controller reports. This also holds near limits and for every contact.
 
 use super::rig::{Loop, SCHEMES, smooth};
 use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3, Vector4};
@@ -38,7 +38,7 @@ impl Held {
         self.finger.links().tip(&joints)
     }
 
-    /// The stiffness that pushes of +-`push` N along the axes show, N/cm.
+    /// The stiffness that is measured with pushes of +-`push` N along the axes, N/cm.
     fn measured(&mut self, push: f64) -> Matrix3<f64> {
         let mut compliance = Matrix3::zeros();
         for axis in 0..3 {
@@ -69,7 +69,7 @@ fn off(measured: &Matrix3<f64>, reported: &Matrix3<f64>) -> f64 {
 }
 
 /// Near the straight pose the tendons do not provide 12 N/cm. All controllers and both laws provide the same part,
-/// except for Figure 11, whose loop is stable at a smaller one.
+/// except for Figure 11, whose loop is stable only with a smaller part.
 #[test]
 fn a_stretched_finger_has_the_reported_part_of_its_stiffness() {
     for scheme in SCHEMES {
@@ -122,7 +122,8 @@ fn a_finger_beyond_its_limit_has_less_of_its_stiffness() {
     }
 }
 
-/// A finger whose tip is pushed by `load`, N, so that joint 2 is beyond its limit, and how far it is, rad.
+/// A finger whose tip is pushed by `load`, N, so that joint 2 is beyond its limit, and how far the joint is beyond it,
+/// rad.
 fn beyond_its_limit(scheme: Scheme, law: Law, stiffness: f64, load: f64) -> (Held, f64) {
     let finger = smooth(scheme, [0.0, 30.0, 120.0]);
     let held = Held::new(&finger, law, isotropic(stiffness), Vector3::new(0.0, 0.0, -load));

@@ -31,8 +31,8 @@ pub struct Injected {
     pub drift: Vector4<f64>,
 }
 
-/// A fault is detectable from the beginning of the first stretch of `lasts_ms` during which `holds` is true of the
-/// finger's true state.
+/// A fault is detectable from the beginning of the first stretch of `lasts_ms` during which `holds` returns true. The
+/// first argument of `holds` is the finger's true state.
 #[derive(Clone, Copy)]
 pub struct Detectable {
     pub holds: fn(&Truth, &Injected, &ConfiguredFinger) -> bool,
@@ -70,7 +70,8 @@ impl Case {
         Self { configure, ..self }
     }
 
-    /// Lets the monitors learn the mismatch of the finger before the injection, and gives them this time, ms.
+    /// Lets the monitors learn the mismatch of the finger before the injection. `within` becomes the longest time until
+    /// the motors reach their end state, ms.
     fn later(self, within: f64) -> Self {
         Self { after: 3000, within, ..self }
     }
@@ -104,7 +105,8 @@ fn of_the_tendons() -> Vec<Case> {
             inject(bench, Defect::DeadGauge { gauge, count: None });
             at(gauge)
         })
-        // With this noise one count in five equals the previous one. A run of this length occurs once in 10^11 samples.
+        // With this noise one count in five equals the previous one. A working gauge repeats one count for 16.5 ms only
+        // once in 10^11 samples.
         .from(0.0, |truth, _, _| truth.time > 0.0165),
         case("gauge reads zero", GaugeStuck, |bench| {
             let gauge = bench.part();

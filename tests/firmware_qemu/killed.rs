@@ -168,5 +168,5 @@ fn motors_reach_their_end_state(emulated: Emulated) {
 
 const WATCHDOG_MS: u32 = 18;
 
-/// Two periods of 2 ms less than the watchdog's time. The servo stops a finger one period before its watchdog does.
+/// The watchdog's time minus two periods of 2 ms. The servo stops a finger one period before its watchdog does.
 const TOLERATED_BY_WATCHDOG: Duration = Duration::from_millis(14);

@@ -21,9 +21,10 @@ const MOST: f64 = 4.2;
 struct Outcome {
     /// Load at which the ball was lost, N.
     lost_at: Option<f64>,
-    /// Largest ratio of the force of a finger along the surface of the ball to that across it.
+    /// Largest ratio of the tangential to the normal component of a finger's force on the ball.
     ratio: f64,
-    /// Distance of the ball from where springs that stick to it let it move, cm.
+    /// Distance of the ball from the place to which the load would move it if the fingertips were springs that do not
+    /// slip, cm.
     off: f64,
     /// Sum of the normal forces at the end, N.
     pressed: f64,

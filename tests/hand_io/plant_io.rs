@@ -15,9 +15,9 @@ use sun2xp::realtime::Mutex;
 /// What the tests set and see. The servo's calls lock it, which real hardware must not do.
 #[derive(Default)]
 pub struct Switchboard {
-    /// Errno of every start.
+    /// The errno with which every start fails, if any.
     pub start_fails: Option<i32>,
-    /// Errno of every exchange.
+    /// The errno with which every exchange fails, if any.
     pub exchange_fails: Option<i32>,
     /// Number of stops that still fail.
     pub stops_fail: u32,
@@ -25,7 +25,7 @@ pub struct Switchboard {
     pub delay: Option<Duration>,
     /// Replaces the tension of a gauge.
     pub tension: Option<(usize, f64)>,
-    /// Is added to the count of an encoder.
+    /// The numbers that are added to the counts of the encoders.
     pub encoder: [i32; 4],
     pub faults: IoFaults,
     /// Force on the tip, N.

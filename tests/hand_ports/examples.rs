@@ -8,7 +8,7 @@ use sun2xp::hand::{Configured, Hand, read_configuration};
 
 const PAGE: &str = include_str!("../../docs/configuration.md");
 
-/// Within the limits of every example, and clear of every surface.
+/// A pose within the limits of every example, and clear of every surface, rad.
 const POSE: [f64; 3] = [0.2, 0.5, 1.0];
 
 /// The examples of the page with their headings.

@@ -16,11 +16,11 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::now;
 use sun2xp::simulated::{Pace, PacedTime, SimulatedBoard};
 
-/// A board that sends without end must not delay any call. A busy machine needs most of this time. Before reads were
-/// bounded, a flood blocked a servo for longer.
+/// Longest time by which a board that sends without end may delay a call. A busy machine needs most of this time.
+/// Before reads were bounded, a flood blocked a servo for longer.
 const PROMPT: Duration = Duration::from_secs(1);
 
-/// A board with finger 2 that repeats one frame on request, and discards its answers meanwhile.
+/// A board with finger 2 that repeats one frame on request, and sends no answers meanwhile.
 struct FloodingBoard {
     port: String,
     flooding: Arc<AtomicBool>,
@@ -40,7 +40,7 @@ impl FloodingBoard {
             let (flooding, ended) = (flooding.clone(), ended.clone());
             std::thread::spawn(move || {
                 run_first();
-                // Open here too, so that the host may open and close it.
+                // The port stays open here too, so that the host may open and close it.
                 let _port = port;
                 let mut board = SimulatedBoard::new(&Configuration::default(), &[FingerNumber::TWO]).expect("a board");
                 let mut clock = PacedTime::new(Pace::patient(500.0), now());
@@ -81,7 +81,7 @@ impl Drop for FloodingBoard {
     }
 }
 
-/// A servo waits for replies. The link discards everything else.
+/// Returns the frames of the floods. A servo waits for a Reply. The link discards all other frames.
 fn floods() -> [Frame; 2] {
     [Frame::Reply(Reply::default()), Frame::Stopped(Stopped::default())]
 }

@@ -43,7 +43,7 @@ const SECTIONS: &[(&str, &str)] = &[
 /// Files of constants at the beginning of sun2xp.h.
 const CONSTANTS: &[&str] = &["fingers.rs", "error_numbers.rs"];
 
-/// The column of the comments beside constants and members: behind most of them.
+/// The column in which the comments beside constants and members begin. Most constants and members end before it.
 const COMMENT_COLUMN: usize = 44;
 
 /// A constant for each fault.

@@ -4,7 +4,7 @@ use crate::c::{Bench, C_STANDARDS, STRICT, c_compiler, c_compilers, said};
 use crate::pages::{Block, in_language, pages};
 use std::process::Command;
 
-/// Returns a program of the snippet. It fails if a call of the snippet is refused.
+/// Returns a program that consists of the snippet and what it needs. It fails if a call of the snippet is refused.
 fn program(block: &Block) -> String {
     let (includes, statements): (Vec<&str>, Vec<&str>) = block.text.lines().partition(|line| line.starts_with('#'));
     let (opening, closing) = if statements.iter().any(|line| line.contains("OpenHand()")) {

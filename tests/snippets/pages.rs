@@ -12,7 +12,7 @@ pub struct Page {
 /// A block between lines with three backquotes.
 pub struct Block<'page> {
     pub page: &'page str,
-    /// The word behind the first backquotes; of `hex`, the name of the frame follows.
+    /// The word after the first backquotes. If it is `hex`, the name of the frame follows it on the same line.
     pub language: &'page str,
     pub text: &'page str,
 }

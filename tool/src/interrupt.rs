@@ -5,7 +5,7 @@ use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Notes requests to end from now on. Work that looks at it can end in an orderly way.
+/// Notes whether the end of the program has been requested. Work that checks it can end in an orderly way.
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {

@@ -65,7 +65,8 @@ fn the_tool_prints_the_bound_of_every_plant_and_takes_the_least() {
     let limiting = &plants[finger["set"]["limited_by"].as_u64().expect("an index") as usize];
     assert_eq!(bound(limiting), least);
 
-    // People see the same bounds: plant, free, (uncovered), against walls, (uncovered).
+    // The table that people read has the same bounds. Its columns are: plant, free, (uncovered), against walls,
+    // (uncovered).
     let printed = output(&["--samples", "8"]);
     for (free, against) in places(false).zip(places(true)) {
         let name = free["plant"].as_str().expect("a name");

@@ -16,7 +16,7 @@ use sun2xp::realtime::now;
 
 /// How long to wait for an answer of the board, ns.
 const HELLO: u64 = 1_500_000_000;
-/// Duration of the average of a spring, and interval of its samples.
+/// Time over which the measurements of a finger at rest are averaged, and interval of their samples.
 const RESTING: Duration = Duration::from_millis(600);
 const SAMPLING: Duration = Duration::from_millis(5);
 /// Settling time before such an average.
@@ -116,7 +116,7 @@ impl Machine for HandMachine {
         sleep(Duration::from_secs_f64(seconds));
         let kept = hand.record(finger, None)?;
         let first = first.max(kept.oldest);
-        // The box may overwrite the oldest cycles meanwhile.
+        // The black box may overwrite the oldest cycles meanwhile.
         let cycles: Vec<_> =
             (first..=kept.newest).filter_map(|cycle| hand.record(finger, Some(cycle)).ok()?.record.feedback).collect();
         let number = cycles.len() as f64;

@@ -37,7 +37,7 @@ pub fn spring(desk: &mut Desk) -> Result<Outcome, Failure> {
         outcome.wrong(Wrong::NotPushed);
         return Ok(outcome);
     }
-    // The tip presses against the finger of the person, opposite to the way.
+    // The tip presses against the person's finger. Its force is opposite to the displacement `way`.
     let force = Vector3::from(rest.force) - Vector3::from(pushed.force);
     let stiffness = force.dot(&way) / way.norm_squared();
     let sent = (desk.finger.initial_stiffness() * way).dot(&way) / way.norm_squared();

@@ -146,7 +146,7 @@ fn cylinder(xml: &mut Xml, from: [f64; 3], to: [f64; 3], radius: f64, colour: Co
     });
 }
 
-/// Writes a shape to look at, and the same shape to collide with.
+/// Writes a visual shape, and the same shape for collisions.
 fn part(xml: &mut Xml, centre: [f64; 3], turn: [f64; 3], colour: Colour, shape: impl Fn(&mut Xml)) {
     for purpose in ["visual", "collision"] {
         xml.open(purpose, &[]);

@@ -45,7 +45,7 @@ pub struct FingerState {
     pub tension_minimum: f64,
     /// t_max, N.
     pub tension_maximum: f64,
-    /// The newest cycle in which the controller ran; none before it. Its angles are in rad.
+    /// The newest cycle in which the controller ran; none before the first such cycle. Its angles are in rad.
     pub sample: Option<Sample>,
     /// Estimated force on the touched object in the palm's frame, N, without the finger's own friction and weight.
     pub contact_force_in_palm: [f64; 3],
@@ -145,7 +145,7 @@ impl FingerState {
         self.note_rate(record);
     }
 
-    /// Takes the status into account that comes once a second.
+    /// Takes a status into account. The status comes once a second.
     pub fn note_status(&mut self, status: &Status) {
         self.known = true;
         self.wake_up = status.wake_up;

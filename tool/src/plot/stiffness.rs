@@ -93,7 +93,7 @@ impl Plot for Stiffness {
             (Sign::Line(FORCE), "force of the tip at the end".into()),
             (Sign::Line(FORCES), "before".into()),
         ];
-        let more = format!("after {time:.3} s  \u{b7}  an ellipse has the forces of all deflections of 1 cm");
+        let more = format!("after {time:.3} s  \u{b7}  each ellipse: the forces for all deflections of 1 cm");
         let subtitle = subtitle(selection, self.rate, &more);
         let mut figure = Figure::new("Stiffness and force of the fingertip", &subtitle, &legend, SIDE);
         figure.grid(&[vec![panel([0, 1]), panel([0, 2]), panel([1, 2])]], SIDE);

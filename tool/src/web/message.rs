@@ -49,10 +49,10 @@ pub enum ToPage<'a> {
     Events { events: [EventMessage; 1] },
 }
 
-/// A hand, from which the page begins anew.
+/// A hand. The page starts again with this message.
 #[derive(Debug, Serialize)]
 pub struct HandMessage<'a> {
-    /// The same for the same hand, also after the page was disconnected.
+    /// Identifies the hand. It stays the same while the page is disconnected and connects again.
     pub identity: String,
     pub name: &'a str,
     pub process: u32,
@@ -168,7 +168,7 @@ impl FaultMessage {
     /// Describes a fault.
     pub fn new(fault: &Fault) -> Self {
         let description = fault.kind.description();
-        // The text of a fault goes on with what has happened, after a colon.
+        // In the text of a fault, name, part and value come first. After a colon, the text says what has happened.
         let whole = fault.to_string();
         let detail = whole.split_once(": ").map_or(whole.as_str(), |(detail, _)| detail).to_owned();
         Self { name: description.name, detail, text: description.text, remedy: description.remedy }

@@ -16,7 +16,7 @@ use sun2xp::model::configuration::{ConfiguredFinger, ZeroingMethod};
 
 type Shared = Rc<RefCell<World>>;
 
-/// A finger without mistakes, after a change of the truth.
+/// A finger without mistakes, and its configuration. `change` changes only the true parameters of the finger.
 fn world(change: impl Fn(&mut ConfiguredFinger)) -> (Shared, ConfiguredFinger) {
     let mut case = right(0);
     change(&mut case.truth);
@@ -150,7 +150,7 @@ fn the_person_lets_go_once_before_a_finger_is_identified_and_zeroed_at_its_stops
     assert_eq!(person.acts, [Act::LetGo]);
 }
 
-/// The computer is tried before the motors move, and its faults are not harmless notes.
+/// The computer is examined before the motors move. Its faults are reported as suspect, and not as harmless notes.
 #[test]
 fn the_computer_is_tried_before_the_motors() {
     assert!(Step::Computer < Step::Encoders && Step::Computer.number() == 2);
