@@ -16,7 +16,7 @@ fn follow(bencher: Bencher, scheme: Scheme) {
     cycle(bencher, scheme, 1.0);
 }
 
-/// With a torque beyond the tension limits, so that the scale must be computed.
+/// The required torque exceeds the tension limits, so the controller must compute the scale.
 #[divan::bench(args = [Scheme::Figure10, Scheme::StateFeedback])]
 fn follow_over_limit(bencher: Bencher, scheme: Scheme) {
     cycle(bencher, scheme, 40.0);

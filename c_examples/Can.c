@@ -1,4 +1,4 @@
-/* Can.c - a hand whose drives are at a CAN bus: the program gives the library its own hardware
+/* Can.c - a hand whose drives are on a CAN bus. The program provides the hardware of the fingers to the library
    (docs/other-hardware.md). GNU C99, Linux.
 
        Can [INTERFACE]
@@ -16,7 +16,7 @@
 #include "can_bus.h"
 #include "sun2xp.h"
 
-/* The simulated drives have a patient watchdog, because a busy machine may delay them. */
+/* The watchdog of the simulated drives has a long time limit, because a busy machine may delay the drives. */
 #define CONFIGURATION "[hand]\nend_state = \"release\"\nwatchdog_ms = 200\n"
 
 /* Longest wait for simulated drives in an exchange, s. For real drives it is the deadline of the command. */
@@ -25,7 +25,7 @@
 struct drives {
     struct can_bus bus;
     int finger;
-    int encoders[4];                    /* whole counts: the frames have their low 16 bits */
+    int encoders[4];                    /* full counts; a frame contains their low 16 bits */
 };
 
 static void start_far_end(const char *program, const char *place, pid_t *process)

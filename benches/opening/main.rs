@@ -157,7 +157,7 @@ fn stages() -> Result<Vec<Row>, Box<dyn Error>> {
     Ok(rows)
 }
 
-/// Returns the time since `begin`, ms, and begins anew.
+/// Returns the time since `begin`, ms, and sets `begin` to the present time.
 fn row(name: &str, begin: &mut Instant) -> Row {
     let duration = begin.elapsed().as_secs_f64() * 1e3;
     *begin = Instant::now();

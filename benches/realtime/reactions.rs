@@ -2,8 +2,8 @@
 //! fingertip to the first changed motor command, of the touched finger and of the fingers in other threads.
 //!
 //! The board tells which motor command is in force when the contact begins. The records of the servos tell which
-//! command is the first one with the set point of the reaction. Both are numbered by periods, so a period that a late
-//! servo skips counts.
+//! command is the first one with the set point of the reaction. Both commands have the numbers of their periods, so a
+//! delay includes the periods that a late servo skips.
 
 use crate::Failure;
 use crate::explain::{Pauses, Watchers};
@@ -40,13 +40,14 @@ impl Default for Arguments {
 
 const PERIOD: u64 = 1_000_000;
 
-/// Priorities as in a hand, and of the threads that detect pauses of the machine.
+/// Priorities of the servos and the boards, as in a hand, and of the threads that detect pauses of the machine.
 const PRIORITY: u8 = 80;
 const BOARD_PRIORITY: u8 = 20;
 const WATCH_PRIORITY: u8 = 90;
 
-/// The machine paused if a core did not run a thread above all servos for this long in total, ns. A reply may take half
-/// of a period, and a board or a servo that loses this part of the other half misses its period.
+/// The machine counts as paused if a core did not run a thread for this long in total, ns, although the priority of
+/// this thread is above that of all servos. A reply may take half of a period. A board or a servo that loses this much
+/// of the other half misses its period.
 const PAUSE: u64 = PERIOD / 5;
 
 /// Longest time until the fingers are under control.
@@ -130,7 +131,7 @@ impl Delays {
         self.known.push(Delay { periods: reacted - touched, time });
     }
 
-    /// Returns the share of some delays that are within the goal, %.
+    /// Returns the share of these delays that is within the goal, %.
     fn share<'a>(&self, delays: impl Iterator<Item = &'a Delay>) -> f64 {
         let (mut within, mut all) = (0_u32, 0_u32);
         for delay in delays {
@@ -188,7 +189,7 @@ fn start(
         let Finger { mailbox, port, schedule, board, uncollected: (timings, black_box), start } = finger;
         let ended = ended.clone();
         servos.push(spawn("servo", Priority { fifo: PRIORITY, core: None }, move |_| {
-            // As a hand does for a finger with its own line.
+            // A hand constructs the servo of a finger with its own line in the same way.
             let mut servo = Servo::new(MonotonicClock, schedule, vec![port.with_requests(1)]);
             while !ended.load(Relaxed) {
                 servo.cycle();

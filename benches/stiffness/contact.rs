@@ -34,7 +34,7 @@ pub fn against_walls(case: &Case, stiffness: f64) -> (usize, f64) {
 }
 
 impl Residual {
-    /// Returns whether the motion exceeds the one that the noise of the gauges causes, or grows.
+    /// Returns whether the motion grows, or is larger than the motion that the noise of the gauges causes.
     pub fn lasts(&self) -> bool {
         const NOISE: f64 = 0.005;
         const PERCEPTIBLE: f64 = 0.001;
@@ -42,7 +42,8 @@ impl Residual {
     }
 }
 
-/// Returns `None` if the anchor cannot be that far inside the wall.
+/// Moves the anchor into a wall, and returns the motion of the finger. Returns `None` if the anchor cannot be that far
+/// inside the wall.
 fn into_wall(case: &Case, pose: &Vector3<f64>, stiffness: f64, wall: f64, outward: &Vector3<f64>) -> Option<Residual> {
     let mut finger = ClosedLoop::at(case, pose, Friction::None, &(Matrix3::identity() * stiffness));
     let tip = finger.anchor();
@@ -68,12 +69,14 @@ pub fn residual(tips: &[Vector3<f64>]) -> f64 {
 
 /// The result of a torque beyond the limits.
 pub struct OverLimit {
-    /// Largest true tension minus t_max, N: at rest, and from the beginning.
+    /// Largest true tension minus t_max, N: at rest, and before the finger has come to rest.
     pub excess: f64,
     pub excess_on_the_way: f64,
-    /// Angle between the mean joint torque of the true tensions and the one that the law required, degrees.
+    /// Angle between the mean joint torque of the true tensions and the mean joint torque that the law required,
+    /// degrees.
     pub turned: f64,
-    /// The largest part of the torque that was within the limits. 1 means that the limits had no effect.
+    /// The largest fraction of the required torque that the limits permitted in a cycle. 1 means that the limits had no
+    /// effect.
     pub scale: f64,
 }
 

@@ -23,7 +23,7 @@ void faults_start(bool crystal_runs)
     crystal = crystal_runs;
 }
 
-/* All eight sensors within 1 us. Interrupts would come between them. */
+/* Samples all eight sensors within 1 us. Interrupts are masked, because they would come between the samples. */
 static void sample(void)
 {
     mask_interrupts();

@@ -33,7 +33,8 @@ pub fn events_are_whole_and_lost_events_are_counted() {
     assert_eq!(arrived.len() as u64 + reader.lost(), EVENTS, "{arrived:?} arrived");
 }
 
-/// A reader that has read the horizon and then taken all events has missed none that is earlier.
+/// After a reader has read the horizon and then taken all events, it receives no event that is earlier than the
+/// horizon.
 pub fn no_later_event_is_before_the_horizon() {
     let (writer, log) = event_log_of(FingerNumber::ONE, EVENTS as usize);
     let mut reader = log.reader();

@@ -20,9 +20,10 @@ pub struct Discovered {
     pub status: Status,
 }
 
-/// Lists the hands that can be reached at the endpoint of the configuration: that of a server, or those of all servers
-/// behind a router. The name of the hand in the configuration is not used. Waits at most 5 s. Hands whose answer is
-/// not of this version of the protocol are left out.
+/// Lists the hands that can be reached at the endpoint of the configuration. If the endpoint is a server, this is the
+/// hand of the server. If it is a router, these are the hands of all servers behind the router. The name of the hand in
+/// the configuration is not used. Waits at most 5 s. Hands whose answer is not of this version of the protocol are left
+/// out.
 ///
 /// # Errors
 /// Returns an error if the configuration or a certificate cannot be used, or if the endpoint cannot be reached.

@@ -3,7 +3,7 @@
 use crate::change::Change;
 use sun2xp_remote_protocol::{Finger, Part, Place};
 
-/// What is sent to one finger: the part of the Targets, and changes that are not in it yet.
+/// What is sent to one finger: the part that Targets contain, and the changes that are not in this part yet.
 #[derive(Clone, Debug, Default)]
 pub struct Slot {
     /// Changes that no Target has yet.
@@ -37,15 +37,16 @@ impl Slot {
         !self.waits() && self.part.as_ref().is_none_or(|part| part.confirmed)
     }
 
-    /// Whether the waiting changes must not be sent yet: a path was sent and is not confirmed. To repeat it with the
-    /// changes would let it begin twice, and to leave it out could lose it.
+    /// Whether the waiting changes must not be sent yet, because a path was sent and is not confirmed. If the path were
+    /// repeated with the changes, it could begin twice. If it were left out, it could be lost.
     pub fn is_blocked(&self) -> bool {
         let unconfirmed_path =
             |part: &Repeated| !part.confirmed && part.sequence != 0 && matches!(part.values.place, Place::Path(_));
         self.waits() && self.pending.place == Place::Kept && self.part.as_ref().is_some_and(unconfirmed_path)
     }
 
-    /// Makes a part with a new command number of the waiting changes and of what no record has confirmed.
+    /// Makes a part with a new command number. It contains the waiting changes, and everything that no record has
+    /// confirmed.
     pub fn renew(&mut self, command: u32) {
         let mut values = match self.part.take() {
             Some(part) if !part.confirmed => part.values,

@@ -1,7 +1,7 @@
 //! The C calls of libsun2xp for a hand on another machine.
 //!
-//! The exported functions are those of the package `sun2xp`: the same names, structs, texts, and the same care for the
-//! planner's process. This package makes them open hands over the network, and only those.
+//! The exported functions are those of the package `sun2xp`. They have the same names, structs and texts, and protect
+//! the planner's process in the same way. In this package they open only hands over the network.
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]

@@ -10,11 +10,11 @@ const KIND: MessageKind = MessageKind::Answer;
 /// The answer to a Request, or the refusal of a Target.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// Whether it is done, or why not.
+    /// Whether the action is done, or why it is not.
     pub code: Code,
     /// `catch_ms` of the server, ms: at least 1.
     pub catch_ms: u32,
-    /// The new epoch for acquire, otherwise that of the Request or Target.
+    /// For acquire: the new epoch. Otherwise: the epoch of the Request or Target.
     pub epoch: u64,
     /// Time, ns, server's clock: a value for [`Target::seen`](crate::Target::seen).
     pub time: u64,

@@ -12,7 +12,8 @@ const KIND: MessageKind = MessageKind::Event;
 pub struct Event {
     /// The finger.
     pub finger: Finger,
-    /// The joint, 0 to 2, or the tendon, motor, gauge or encoder, 1 to 4, by the kind; otherwise 0.
+    /// The number of the part that the kind concerns: joint 0 to 2, or tendon, motor, gauge or encoder 1 to 4. It is 0
+    /// if the kind concerns no such part.
     pub part: u8,
     /// The kind: the number of docs/events.md, from 1.
     pub kind: u16,

@@ -20,7 +20,7 @@ pub struct Target {
     pub validity_ms: u32,
     /// The epoch of the owner.
     pub epoch: u64,
-    /// Higher than that of every Target of this epoch before.
+    /// The sequence number. It is higher than the sequence number of every earlier Target of this epoch.
     pub sequence: u64,
     /// Time sent, by any clock of the sender.
     pub sent: u64,
@@ -67,7 +67,7 @@ impl Target {
         Ok(target)
     }
 
-    /// Checks what does not belong to a single part.
+    /// Checks the number and the order of the parts, and the validity.
     fn check_order(&self) -> Result<(), FieldError> {
         within("number of parts", self.parts.len() as u64, 0, MOST_PARTS as u64)?;
         within("validity", u64::from(self.validity_ms), 1, u64::from(LONGEST_VALIDITY_MS))?;

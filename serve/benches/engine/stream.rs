@@ -72,7 +72,7 @@ fn chain(files: &Files) -> Result<Vec<CertificateDer<'static>>, Failure> {
     Ok(vec![CertificateDer::from_pem_file(&files.certificate)?])
 }
 
-/// Returns the messages that ask for it, until the client closes the connection.
+/// Sends back every message that asks for an answer, until the client closes the connection.
 fn answer(mut stream: BufReader<impl Read + Write>) -> Result<(), Failure> {
     let mut message = [0; LENGTH];
     loop {

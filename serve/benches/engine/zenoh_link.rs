@@ -22,7 +22,8 @@ pub struct Server {
     _session: Session,
 }
 
-/// Listens at a port of this machine. With `certificates`, encrypted, and with certificates on both sides.
+/// Listens at a port of this machine. With `certificates`, the connection is encrypted, and both sides have
+/// certificates.
 pub fn serve(port: u16, certificates: Option<&Path>) -> Result<Server, Failure> {
     let session = zenoh::open(configuration("router", "listen", port, certificates)?).wait()?;
     let back = publisher(&session, BACK, true)?;
@@ -57,7 +58,7 @@ pub fn connect(port: u16, certificates: Option<&Path>) -> Result<Client, Failure
     Ok(client)
 }
 
-/// Returns a publisher. An express one sends each message at once. None of its messages is dropped.
+/// Returns a publisher that drops no message. With `express`, it sends each message at once.
 fn publisher(session: &Session, key: &'static str, express: bool) -> Result<Publisher<'static>, Failure> {
     session
         .declare_publisher(key)

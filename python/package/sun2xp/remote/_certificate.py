@@ -37,7 +37,8 @@ def common_name(path: Union[str, os.PathLike[str]]) -> str:
 def _subject_name(certificate: bytes) -> str:
     whole = next(_elements(certificate))[1]
     fields = list(_elements(next(_elements(whole))[1]))
-    # An explicit version comes first. Serial number, algorithm, issuer and validity follow, and then the subject.
+    # The first field may be an explicit version. Serial number, algorithm, issuer and validity follow, and then the
+    # subject.
     subject = fields[5 if fields[0][0] == 0xA0 else 4][1]
     begin = subject.index(_COMMON_NAME) + len(_COMMON_NAME)
     return next(_elements(subject[begin:]))[1].decode()

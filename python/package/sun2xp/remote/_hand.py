@@ -17,7 +17,7 @@ from ._network import ANSWER_TIME, ATTEMPTS, PAUSE, Network
 from ._owner import Owner
 from ._reading import Reading
 
-#: Longest time without a State that does not end a wait, s.
+#: A wait continues if no State arrives for this time, s.
 _PAUSE = 1.0
 
 #: Longest time of a recovery, s.
@@ -71,7 +71,7 @@ class RemoteHand(Reading):
         """Makes this client the one that commands the hand.
 
         Args:
-            take_over: also if another client commands it. That client then gets NotOwner.
+            take_over: whether to take the hand from another client that commands it. That client then gets NotOwner.
             recover: recovers the fingers that have stopped.
 
         Raises:
@@ -99,7 +99,7 @@ class RemoteHand(Reading):
         try:
             self.release()
         except Error:
-            # The server brings the fingers to their end states without the owner's Targets too.
+            # If the owner sends no more Targets, the server brings the fingers to their end states by itself.
             pass
         self._network.sender.remove(self._owner)
         self._receiver.close()
@@ -152,7 +152,7 @@ class RemoteHand(Reading):
 
     @property
     def owner(self) -> Owner:
-        """What `send_together` sends to."""
+        """The set points of this hand, to which `send_together` adds new ones."""
         return self._owner
 
     def wait(
@@ -198,7 +198,8 @@ class RemoteHand(Reading):
                 raise TimedOut(f"fingers {wanted} are not {condition} after {timeout} s", number=ErrorNumber.TIMED_OUT)
 
     def recover(self, finger: int = 0) -> None:
-        """Makes a finger that has stopped a spring again; every finger without an argument.
+        """Recovers a finger that has stopped: it becomes a spring again. Without an argument, recovers every such
+        finger.
 
         Raises:
             Fault: the cause of the fault is still there.

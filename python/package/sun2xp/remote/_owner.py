@@ -1,4 +1,4 @@
-"""The owner's end: what was sent to each finger, and the Targets that repeat it."""
+"""The client's part of the ownership: what it has sent to each finger, and the Targets that repeat it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PERIOD = 0.02
 #: Number of Targets whose commands are remembered, for a refusal that arrives late.
 _REMEMBERED = 500
 
-#: The last command number before they begin again with 1.
+#: The largest command number. The next command has the number 1.
 _LAST_COMMAND = 2**32 - 1
 
 
@@ -32,13 +32,13 @@ class Owner:
         self._receiver = receiver
         self._epoch = 0
         self._validity = 0
-        #: The number of the epoch, and the time since which every State has it.
+        #: The number of the epoch, and the server's time from which every State contains this number.
         self._number = self._since = 0
         self._sequence = 0
         self._command = 0
         #: The last part of each finger that a State has confirmed.
         self._confirmed: Dict[int, Part] = {}
-        #: The commands after it: what each one changes, and the part that was sent for it.
+        #: The later commands of each finger: what each one changes, and the part that was sent for it.
         self._open: Dict[int, List[Tuple[Part, Part]]] = {}
         self._sent: Deque[Tuple[int, Dict[int, int]]] = collections.deque(maxlen=_REMEMBERED)
         self._refusals: Dict[int, str] = {}
@@ -60,7 +60,7 @@ class Owner:
         self._epoch = 0
 
     def heard(self, published: int, owner: int) -> None:
-        """Takes the number of the owner's epoch that a State has shown, and what was applied."""
+        """Processes what a State has shown: the number of the owner's epoch, and the applied commands."""
         if published > self._since and owner != self._number:
             self._epoch = 0
         for finger, commands in self._open.items():
@@ -71,7 +71,7 @@ class Owner:
                 del commands[: index + 1]
 
     def refused(self, answer: Answer) -> None:
-        """Takes the refusal of a Target: leaves out its set points that no State has confirmed."""
+        """Processes the refusal of a Target: drops those of its set points that no State has confirmed."""
         if answer.epoch != self._epoch:
             return
         sent = next((commands for sequence, commands in self._sent if sequence == answer.number), {})
@@ -98,7 +98,7 @@ class Owner:
         return None if part is None else part.command
 
     def check(self, fingers: Iterable[int]) -> None:
-        """Returns if commands for these fingers can be taken.
+        """Checks that commands for these fingers can be accepted.
 
         Raises:
             NotOwner: this client is not the owner.
@@ -110,7 +110,7 @@ class Owner:
         self.take_refusal(fingers)
 
     def command(self, changes: List[Part]) -> None:
-        """Takes new set points, each with what shall change. What a change does not give keeps its value."""
+        """Accepts new set points. Each contains only the values that shall change. All other values stay the same."""
         for change in changes:
             self._command = self._command % _LAST_COMMAND + 1
             part = dataclasses.replace(change, command=self._command)
@@ -178,7 +178,7 @@ class Sender:
         """Sends commands to one or several hands at once, with one time stamp.
 
         Raises:
-            NotOwner, Refused: as those of `Owner.check` for one of the hands. Then nothing is sent.
+            NotOwner, Refused: `Owner.check` raises this error for one of the hands. Then nothing is sent.
             Closed: one of the hands is closed.
         """
         with self.lock:
@@ -205,5 +205,5 @@ class Sender:
                 sent = time.monotonic_ns()
                 for owner in self._owners:
                     owner.publish(sent)
-            # After a pause, the next Target comes a period later, and those that were missed are not made up.
+            # If this thread has paused, it does not send the missed Targets.
             due = max(due + PERIOD, time.monotonic())

@@ -81,9 +81,9 @@ class Counts:
     replayed: int
     late: int
     refused: int
-    #: Times that the fingers were held because the owner's targets had become too old.
+    #: Number of times that the fingers were held because the owner's targets had become too old.
     caught: int
-    #: Times that the fingers went to their end state because the owner fell silent.
+    #: Number of times that the fingers went to their end state because the owner fell silent.
     ended: int
 
 
@@ -117,11 +117,12 @@ class Status:
 
     #: Name of the client that commands the hand; None if there is none.
     owner: Optional[str]
-    #: By the numbers of the fingers that the hand has.
+    #: The status of each finger that the hand has, by the number of the finger.
     fingers: Dict[int, FingerStatus]
     #: Time when it was made.
     time: int
-    #: Age of the newest target at which the server holds the fingers, and at which they go to their end state, s.
+    #: Ages of the newest target, s. At the first, the server holds the fingers. At the second, they go to their end
+    #: state.
     catch: float
     end: float
     #: Rate of the servos, Hz.
@@ -130,7 +131,7 @@ class Status:
     lead_force: float
     #: Stiffness with which the server holds a finger, N/cm.
     soft_stiffness: float
-    #: Clients that have asked for anything since the start.
+    #: Number of clients that have asked for anything since the start.
     clients: int
     counts: Counts
 

@@ -1,5 +1,5 @@
-//! The certificate of a client. Zenoh says only that a connection was refused, so what is wrong with the files is found
-//! before.
+//! The certificate of a client. Zenoh reports only that a connection was refused. Therefore the files are checked
+//! before a connection is opened.
 
 use super::RemoteTls;
 use crate::error::RemoteError;

@@ -177,7 +177,7 @@ fn after_a_restart_of_the_server_the_hand_is_read_but_not_acquired() {
     let hand = RemoteHand::open(&short).expect("open");
     hand.send_position(1, [0.5; 3]).expect("sent");
     server.hand().wait_for_target("the set point", |target| !target.parts.is_empty());
-    // Enough States, so that the new server begins with lower numbers.
+    // The hand receives so many States that the numbers of the new server's first States are lower.
     until("States", || hand.statistics().states, |&states| states > 20);
     drop(server);
     until("the age", || hand.position(1), Result::is_err).expect_err("stale");
