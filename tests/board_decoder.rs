@@ -86,7 +86,7 @@ proptest! {
     #[test]
     fn a_byte_lost_or_doubled_is_found(content in content(), place in any::<prop::sample::Index>(), doubled: bool) {
         let mut stream = sealed(&content);
-        // A doubled delimiter is harmless. It is the last byte, which is never lost here.
+        // `place` is never the last byte, which is the delimiter. A doubled delimiter is harmless.
         let place = place.index(stream.len() - 1);
         if doubled {
             stream.insert(place, stream[place]);
@@ -115,7 +115,7 @@ proptest! {
                 prop_assert_eq!(again.as_bytes(), &wire[..]);
             }
         } else {
-            // Only the end state can hold a number without meaning.
+            // Only a number of the end state can be without meaning, and makes the frame unreadable.
             prop_assert!(matches!(kind, Kind::Configure | Kind::Configured) && body[3] > 1);
         }
     }

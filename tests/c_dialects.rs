@@ -39,7 +39,7 @@ fn the_header_alone_is_free_of_warnings_and_may_come_twice() {
     }
 }
 
-/// The layout of the structs and the calls of `sun2xp.h`, and that it may be included twice.
+/// Checks the layout of the structs and the calls of `sun2xp.h`, and that the header may be included twice.
 #[test]
 fn the_header_with_handles_compiles_in_every_dialect_with_its_layout() {
     let bench = Bench::new();

@@ -51,7 +51,7 @@ fn measured(scheme: Scheme, frequency: f64, direction: &Vector3<f64>, amplitude:
     let kx = Matrix3::identity() * STIFFNESS;
     let set_point = SetPoint { law: Law::Exact, ..SetPoint::hard_finger(rest.joints + rest.deflection, kx) };
     let load = kx * (links.tip(&rest.joints) - links.tip(&set_point.joints));
-    // The force begins after the finger has come to rest, and is measured after the response has settled.
+    // The force begins after the finger has come to rest. The velocity is measured after the response has settled.
     let periods = (0.5 * frequency).ceil().max(3.0);
     let cycle = |seconds: f64| (seconds * RATE).round() as usize;
     let (begin, settled) = (cycle(0.5), cycle(0.5) + cycle(2.0 * periods / frequency).max(2000));

@@ -82,7 +82,7 @@ struct Member {
 /// The first command that reacts to a contact.
 struct Delay {
     periods: u64,
-    /// Begin of the period of the contact, and end of the period of the command, ns.
+    /// Beginning of the period of the contact, and end of the period of the command, ns.
     time: [u64; 2],
 }
 

@@ -1,9 +1,9 @@
-//! Sends Answers in threads of their own. A client that has stopped to read can hold up a reply, and the threads of
-//! zenoh that receive Targets must not wait for it. Replies have the congestion control of their query, which the
-//! client chooses: zenoh 1.10 ignores that of the reply.
+//! Sends Answers in threads of their own. A client that has stopped reading can hold up a reply, and the threads of
+//! zenoh that receive Targets must not wait for it. A reply has the congestion control of its query, which the client
+//! chooses. Zenoh 1.10 ignores the congestion control of the reply.
 //!
-//! Zenoh sends the end of a query where the query is dropped, and this can wait too. So callbacks give every query to
-//! one of these threads, also a query that has no answer.
+//! When a thread drops a query, zenoh sends the end of the query in this thread. This can wait too. So callbacks pass
+//! every query to one of these threads, even a query that gets no answer.
 
 use crate::places::{Place, Places};
 use crate::shared::Shared;
@@ -18,10 +18,11 @@ use zenoh::key_expr::KeyExpr;
 use zenoh::query::Query;
 use zenoh::{Session, Wait};
 
-/// Most Answers to Requests that wait. Further ones are dropped, and their clients ask again.
+/// Capacity of the queue of Answers to Requests. When it is full, further Answers are dropped, and their clients ask
+/// again.
 const WAITING: usize = 256;
 
-/// Most other queries that wait, some hundred bytes each.
+/// Capacity of the queue of the other queries, which have some hundred bytes each.
 const OTHERS: usize = 16_384;
 
 /// Interval at which a thread looks whether the server ends.
@@ -47,7 +48,7 @@ pub struct Answers {
     places: Places,
 }
 
-/// The ends of the queues, each for a thread that calls [`send`].
+/// The receiving ends of the queues. Each is for a thread that calls [`send`].
 pub struct Queues {
     /// Answers to Requests, and refusals of Targets.
     pub requests: Receiver<Outgoing>,
@@ -56,7 +57,7 @@ pub struct Queues {
 }
 
 impl Answers {
-    /// Returns the queues, and their ends.
+    /// Returns the sending ends of the queues, and the receiving ends.
     #[must_use]
     pub fn new() -> (Self, Queues) {
         let (requests, of_requests) = sync_channel(WAITING);
@@ -85,7 +86,7 @@ impl Answers {
         let _ = self.requests.try_send(Outgoing::Refusal(client, bytes));
     }
 
-    /// Replies with the Status. If too many gets of it wait, the query has no answer.
+    /// Replies with the Status. If too many queries for the Status wait, this one gets no answer.
     pub fn status(&self, query: Query) {
         match self.places.take(None) {
             Some(place) => self.put_other(Outgoing::Status(query, place)),
@@ -95,7 +96,7 @@ impl Answers {
 
     /// Ends a query without an answer.
     pub fn end(&self, mut query: Query) {
-        // The query may wait, and what it carries is not needed any more.
+        // The query may wait in the queue, and its payload is no longer needed.
         if let Some(payload) = query.payload_mut() {
             *payload = ZBytes::new();
         }
@@ -103,8 +104,8 @@ impl Answers {
     }
 
     fn put_other(&self, outgoing: Outgoing) {
-        // Only a client that asks for long faster than the server can refuse it fills this queue. Its further queries
-        // end here, in the thread that receives them, because the memory of the server is limited.
+        // This queue becomes full only if a client keeps sending queries faster than the server can refuse them. Its
+        // further queries end here, in the thread that receives them, because the memory of the server is limited.
         let _ = self.others.try_send(outgoing);
     }
 }
@@ -116,7 +117,7 @@ pub fn send(shared: &Shared, session: &Session, queue: &Receiver<Outgoing>) {
         match queue.recv_timeout(INTERVAL) {
             Ok(Outgoing::Reply(query, key, bytes, place)) => {
                 let _ = query.reply(key, bytes).wait();
-                // The place is that of the end of the query too.
+                // The place stays in use until the end of the query has been sent.
                 drop(query);
                 drop(place);
             }

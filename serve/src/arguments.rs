@@ -41,7 +41,8 @@ pub struct Arguments {
     /// Run a router without a hand, to which hands and clients connect.
     #[arg(long, conflicts_with = "name")]
     router: bool,
-    /// Make certificates in this folder, and end. An authority that is there signs them; otherwise a new one does.
+    /// Make certificates in this folder, and exit. An authority that the folder already contains signs them; otherwise
+    /// a new one does.
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["config", "listen", "name", "router"])]
     make_certificates: Option<PathBuf>,
     /// Make the certificate of a server, a hand or a router with this name, which is also the name of its machine.

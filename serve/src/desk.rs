@@ -14,8 +14,8 @@ use sun2xp::control::events::Arrival;
 use sun2xp::{Hand, HandError, Stage};
 use sun2xp_remote_protocol::{Answer, ClientName, Code, Counts, DecodeError, FINGERS, Target};
 
-/// Time after the end of the ownership at which the desk itself stops the fingers that have not stopped, ns. The servos
-/// count the same end.
+/// If an ownership ends because its owner is silent, the desk stops the fingers that still move after this time, ns.
+/// The servos also measure the silence, and normally stop their fingers before.
 const GRACE: u64 = 20 * MILLISECOND;
 
 /// The desk of a hand.
@@ -29,14 +29,14 @@ pub struct Desk {
     fingers: Fingers,
     counts: Counts,
     clients: BTreeSet<ClientName>,
-    /// Whether a finger was caught at the last look.
+    /// Whether a finger was caught at the last call of [`Desk::look`].
     caught: bool,
     /// The time at which fingers that still move are stopped, ns.
     stop_at: Option<u64>,
 }
 
 impl Desk {
-    /// The desk of this hand, of a server that has started at `start`, ns.
+    /// Constructs the desk of this hand. `start` is the time at which the server started, ns.
     #[must_use]
     pub fn new(hand: Arc<Hand>, limits: Limits, start: u64) -> Self {
         Self {
@@ -138,7 +138,7 @@ impl Desk {
         Some(*silence)
     }
 
-    /// Makes a client the owner, with this epoch. The owner's time begins with [`Desk::begin`].
+    /// Makes a client the owner, with this epoch. The time limit for the owner's silence begins with [`Desk::begin`].
     ///
     /// # Errors
     /// Returns the name of the other owner. Then nothing has changed.
@@ -148,7 +148,8 @@ impl Desk {
         Ok(number)
     }
 
-    /// Begins the time of the owner with this epoch at `now`, ns. Returns whether it still owns the hand.
+    /// Begins the time limit for the silence of the owner with this epoch at `now`, ns. Returns whether this client
+    /// still owns the hand.
     pub fn begin(&mut self, client: &ClientName, epoch: u64, now: u64) -> bool {
         if !self.ownership.admits(client, epoch) {
             return false;

@@ -22,8 +22,8 @@ pub struct Ownership {
 }
 
 impl Ownership {
-    /// A hand without an owner. `start` is the time at which the server has started, ns. The numbers of epochs are
-    /// higher, so they are higher than those of a server that ran before.
+    /// A hand without an owner. `start` is the time at which the server has started, ns. The numbers of epochs begin
+    /// above `start`, so they are higher than the numbers of an earlier server.
     #[must_use]
     pub fn new(start: u64) -> Self {
         Self { owner: None, newest: start }
@@ -47,8 +47,8 @@ impl Ownership {
         self.owner.as_ref().is_some_and(|owner| owner.client == *client && owner.epoch == epoch)
     }
 
-    /// Makes this client the owner, with this epoch. The epoch before ends. If another client owns the hand, this is
-    /// refused unless `take_over` is set.
+    /// Makes this client the owner, with this epoch. The previous epoch ends. If another client owns the hand, the call
+    /// is refused unless `take_over` is set.
     ///
     /// # Errors
     /// Returns the name of the other owner. Then nothing has changed.
@@ -63,7 +63,7 @@ impl Ownership {
         Ok(self.owner.insert(Owner { client: client.clone(), epoch, number: self.newest }))
     }
 
-    /// Ends the ownership. Returns the owner that there was.
+    /// Ends the ownership. Returns the previous owner, if there was one.
     pub fn end(&mut self) -> Option<Owner> {
         self.owner.take()
     }

@@ -23,7 +23,7 @@ const STATE_INTERVAL: u64 = 5_000_000;
 /// States from one Status to the next.
 const STATES_PER_STATUS: u64 = 200;
 
-/// Most Events between two States. The queue holds later ones.
+/// Largest number of Events that are published between two States. Later Events stay in the queue.
 const MOST_EVENTS: usize = 64;
 
 /// The publishers of a hand.
@@ -85,7 +85,8 @@ impl Publishing {
         let Taken { records, missing } = self.cycles.take(&goals, &progress);
         self.states += 1;
         let (time, owner) = {
-            // The time is read while the desk is locked, so that no later Answer has an earlier epoch.
+            // The time and the epoch are read under one lock of the desk. Otherwise an Answer with a later time than
+            // this State could have an earlier epoch.
             let desk = self.shared.desk.lock();
             (now(), desk.epoch_number())
         };
@@ -106,8 +107,8 @@ impl Publishing {
         }
     }
 
-    /// Returns false for the arrival at another place than the owner wants: a set point on the way, which the bound of
-    /// the lead makes, or the place of a catch.
+    /// Returns false for an arrival at a place that is not the owner's destination. This is a set point on the way,
+    /// which the bound of the lead makes, or the place where the finger was caught.
     fn is_of_destination(&self, event: &Event, goals: &[Goal; FINGERS]) -> bool {
         if event.kind != EventKind::Arrived {
             return true;
@@ -135,8 +136,8 @@ impl Publishing {
     }
 }
 
-/// Sends a message. A message that the page does not allow is not sent: the server makes none, except for numbers that
-/// are not finite.
+/// Sends a message. A message that the protocol does not allow is not sent. The server makes such a message only if a
+/// number is not finite.
 fn send(publisher: &Publisher<'_>, encoded: Result<Vec<u8>, FieldError>) {
     if let Ok(bytes) = encoded {
         // The session is closed only when the server ends.

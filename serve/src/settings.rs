@@ -13,7 +13,7 @@ use toml_edit::{Document, Item};
 /// Largest configuration file, bytes, as in the library.
 const LARGEST: u64 = 1 << 20;
 
-/// The endpoint at which a server listens that is not configured otherwise.
+/// The endpoint at which a server listens if neither `listen` nor `connect` is configured.
 const LOOPBACK: &str = "tcp/127.0.0.1:7447";
 
 /// What a client may do.
@@ -80,7 +80,7 @@ pub struct Limits {
     pub end_ms: u32,
     /// Kx with which a finger is caught, N/cm.
     pub soft_stiffness: f64,
-    /// Largest force of the lead, N.
+    /// Largest force with which a set point pulls a fingertip, N.
     pub lead_force: f64,
 }
 

@@ -31,13 +31,14 @@ impl Silence {
         (self.heard, self.validity) = (heard, validity);
     }
 
-    /// Returns the validity of what a finger has that the owner has commanded.
+    /// Returns the validity of the set point of a finger that the owner has commanded.
     #[must_use]
     pub fn of_commanded(&self) -> Validity {
         Validity { hold_after: Some(Duration::from_nanos(self.validity)), ..self.of_other() }
     }
 
-    /// Returns the validity of what another finger has. It is not caught, but it goes to its end state.
+    /// Returns the validity of the set point of a finger that the owner has not commanded. Such a finger is not caught,
+    /// but it goes to its end state.
     #[must_use]
     pub fn of_other(&self) -> Validity {
         Validity { hold_after: None, end_after: Some(Duration::from_nanos(self.end)), since: Some(self.heard) }

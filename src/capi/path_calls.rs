@@ -48,8 +48,8 @@ pub struct sun2xp_path_pose {
 /// Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only
 /// pose is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
 /// continuous. Because they are fed forward, the finger follows without the lag of sun2xp_send_position.
-/// Between two poses that have a Kx, Kx changes linearly. Before the first pose that has one, Kx changes
-/// linearly from the one in force at the beginning.
+/// Between two poses that have a Kx, Kx changes linearly. Until the first pose that has a Kx, Kx changes
+/// linearly from its value at the beginning of the path.
 ///
 /// The whole path is checked before anything moves: against the joint limits, and against speed,
 /// acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made

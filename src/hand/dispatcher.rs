@@ -38,8 +38,8 @@ pub(super) struct Dispatcher {
 }
 
 impl Dispatcher {
-    /// `opened` are all opened fingers, in the order of their numbers. Their servos have this gate. `fingers` are those
-    /// that the hand has.
+    /// `opened` are all opened fingers, in the order of their numbers. `gate` is the gate of their servos. `fingers`
+    /// are the fingers that the hand has.
     pub fn new(opened: Vec<Reached>, fingers: Fingers, gate: GroupGate) -> Self {
         let (mut members, mut collected) = (Vec::new(), Vec::new());
         for finger in opened {

@@ -54,8 +54,8 @@ impl Shape {
         }
     }
 
-    /// Returns the points that can touch a plane with the unit normal `up`, relative to the middle of the object and
-    /// without its rotation. A ball has one.
+    /// Returns the points that can touch a plane with the unit normal `up`. They are relative to the middle of the
+    /// object, in the frame in which the object has this rotation. A ball has one such point.
     pub fn lowest(&self, rotation: &UnitQuaternion<f64>, up: &Vector3<f64>) -> impl Iterator<Item = Vector3<f64>> {
         let (rotation, up, shape) = (*rotation, *up, *self);
         let count = match shape {

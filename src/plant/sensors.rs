@@ -20,7 +20,7 @@ pub struct Sensors {
     gauge_zero: [f64; 4],
     /// Shown tension divided by the true one.
     gauge_gain: [f64; 4],
-    /// Factor of each gauge's gain by a defect.
+    /// Factor by which a defect changes each gauge's gain.
     rescaled: [f64; 4],
     /// Error of each gauge that does not depend on the tension, N.
     gauge_offset: [f64; 4],

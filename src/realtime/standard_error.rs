@@ -20,7 +20,7 @@ pub enum Severity {
     Refusal,
 }
 
-/// Takes a message instead of standard error. Returns false if it does not want it.
+/// Receives messages instead of standard error. Returns false for a message that it does not accept.
 pub type MessageReceiver = fn(Severity, &str) -> bool;
 
 static RECEIVER: OnceLock<MessageReceiver> = OnceLock::new();

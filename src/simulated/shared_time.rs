@@ -58,8 +58,8 @@ impl SharedTime {
         self.board
     }
 
-    /// Returns whether bytes for this finger can be taken now. The host of a finger that is under control waits with
-    /// its next command for the answer to the last one. If the time has stopped for another finger, the answer must
+    /// Returns whether bytes for this finger can be taken now. The host of a finger that is under control sends its
+    /// next command only after the answer to the last one. If the time has stopped for another finger, the answer must
     /// wait too: a controller that continued would count periods that do not pass at its finger.
     pub fn takes(&self, finger: usize) -> bool {
         let host = &self.hosts[finger];

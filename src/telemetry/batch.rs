@@ -33,7 +33,7 @@ impl Batch {
         self.after[finger] += cycles;
     }
 
-    /// Adds a message. A message that is too large is dropped. No message of this library is.
+    /// Adds a message. A message that is too large is dropped. This library makes no such message.
     pub fn add(&mut self, message: &Outgoing, ring: &mut BlockWriter<Mapping>) {
         let added = postcard::to_slice(message, &mut self.bytes[self.used..]).map(|bytes| bytes.len());
         self.used += added.unwrap_or(0);

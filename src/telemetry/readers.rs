@@ -71,7 +71,8 @@ impl Readers {
     }
 
     fn accept(&mut self) {
-        // A limited number at a time, so that a process that connects again and again does not occupy this thread.
+        // Only a limited number is accepted at a time, so that a process that connects again and again does not occupy
+        // this thread.
         for _ in 0..MOST_READERS {
             let Ok(socket) = self.listener.accept() else { return };
             // The reader of another user gets no answer.

@@ -23,8 +23,8 @@ pub struct Sample {
     pub joints: [f64; 3],
     /// Measured joint rates, rad/s.
     pub joint_rates: [f64; 3],
-    /// Joint angles of the set point in this cycle. If the set point moves, they are where it is on its way in this
-    /// cycle. None for a finger that is not a spring.
+    /// Joint angles of the set point in this cycle. If the set point moves, these are the angles that it has reached in
+    /// this cycle. None for a finger that is not a spring.
     pub joint_set_point: Option<[f64; 3]>,
     /// Measured position of the tip in the palm's frame.
     pub tip: [f64; 3],

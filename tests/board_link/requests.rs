@@ -51,7 +51,8 @@ fn duplicates_are_answered_and_damage_is_not_but_shows() {
     assert!(!status(&send(&mut board, &command)).has(Status::DAMAGED_INPUT));
     // Half a frame, followed by a delimiter and a whole frame.
     assert_eq!(send(&mut board, &[&command[..9], &[0], &command[..]].concat()).len(), 1);
-    // The type of an answer, the address of another finger, and address 0 with a type other than Hello.
+    // The board ignores the type of an answer, the address of another finger, and address 0 with a type other than
+    // Hello.
     assert!(send(&mut board, &wire(1, Frame::Stopped(Stopped::default()))).is_empty());
     let to = |address, frame| WireFrame::new(&Message { address, sequence: 1, frame }).as_bytes().to_vec();
     assert!(send(&mut board, &to(2, Frame::Stop(Stop))).is_empty());
@@ -91,10 +92,10 @@ fn a_board_refuses_what_it_does_not_understand() {
             other => panic!("{other:?}"),
         }
     };
-    // Versions 2 to 9, an unassigned type, a Stop with a body, and a third end state.
+    // The board refuses versions 2 to 9, an unassigned type, a Stop with a body, and a third end state.
     assert_eq!(refusal(&[0x11, 77, 2, 9]), Refused { request: 1, reason: Reason::Version, detail: 0x0101 });
     assert_eq!(refusal(&[0x71, 77, 1, 2, 3]), Refused { request: 7, reason: Reason::UnknownFrame, detail: 3 });
-    // A Hello to address 0 without the second version.
+    // It also refuses a Hello to address 0 without the second version.
     assert_eq!(refusal(&[0x10, 77, 1]), Refused { request: 1, reason: Reason::UnknownFrame, detail: 1 });
     assert_eq!(refusal(&[0x41, 77, 0]), Refused { request: 4, reason: Reason::UnknownFrame, detail: 1 });
     let mut configure = vec![0x21, 77, 1, 20, 0, 2];

@@ -1,4 +1,5 @@
-//! A finger and a controller whose parameters differ from it, under the control of a calibration.
+//! A finger and a controller, under the control of a calibration. The parameters of the controller differ from the
+//! parameters of the finger.
 
 use nalgebra::{Vector3, Vector4};
 use sun2xp::calibration::{Calibration, Findings, Obstacle, Sample, Task, Verdict};

@@ -14,7 +14,7 @@ pub fn zeroed(bench: &mut Bench) -> Zeros {
     }
 }
 
-/// Zeros far from those with which a controller starts.
+/// A finger whose zeros are far from the zeros with which a controller starts.
 fn truth() -> ConfiguredFinger {
     let mut truth = ConfiguredFinger::default();
     truth.encoder.zero = [1200, -800, 40_000, -3];
@@ -99,7 +99,7 @@ fn a_calibrated_finger_is_the_commanded_spring() {
     let mut bench = bench.adopt();
     identified(&mut bench);
 
-    // Measured without joint friction, which is a separate effect, before and after.
+    // The stiffness before and after the calibration is measured without joint friction, which is a separate effect.
     truth.simulation.joint_coulomb_friction = [0.0; 3];
     let mut uncalibrated = bench.belief.clone();
     uncalibrated.tendon.stiffness = [300.0; 4];

@@ -115,8 +115,8 @@ pub fn name_pauses() -> &'static PauseWatch {
 /// Time before a failure that is searched for pauses.
 const BEFORE_A_FAILURE: Duration = Duration::from_secs(30);
 
-/// A failure names the longest pause within spans of this length. A hand with the default watchdog survives no longer
-/// pause.
+/// A failure reports the largest total of the pauses within a span of this length. A hand with the default watchdog
+/// survives no longer pause.
 const LONG: Duration = Duration::from_millis(15);
 
 /// The account of a thread.

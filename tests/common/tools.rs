@@ -65,8 +65,8 @@ pub fn skip(part: &str, reason: &str) {
     not_permitted(part, reason);
 }
 
-/// Lists `part` of the current test as skipped because the sandbox or the user forbids what it needs. No tool changes
-/// that, so it does not fail with CI=true either.
+/// Lists `part` of the current test as skipped because the sandbox or the user forbids what it needs. No tool can
+/// change that, so the test does not fail with CI=true either.
 pub fn not_permitted(part: &str, reason: &str) {
     let thread = std::thread::current();
     let test = thread.name().filter(|&name| name != "main").unwrap_or("tests");

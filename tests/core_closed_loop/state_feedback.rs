@@ -149,8 +149,8 @@ fn motor_constants_a_fifth_off_do_not_matter() {
     }
 }
 
-/// Deflection under a force over the expected one, minus 1: the largest over poses and directions of a spring of 3 N/cm
-/// that is pushed by `way` cm.
+/// Returns the largest relative error of the deflection of a spring of 3 N/cm, over poses and directions. The spring is
+/// pushed with the force that deflects an ideal spring by `way` cm.
 fn push_error(way: f64, change: impl Fn(&mut ConfiguredFinger)) -> f64 {
     let mut worst = 0.0f64;
     for pose in poses_of(SEED).into_iter().step_by(3) {

@@ -159,7 +159,7 @@ fn survive(fault: LineFault, probability: f64, seed: u64) -> Losses {
     let before = 300 + bench.random(0.0, 1500.0) as u64;
     bench.run(before);
     let before = bench.report().losses;
-    // The last of a thousand cycles begins after these milliseconds.
+    // The line is disturbed for 1001 ms, so that all of the thousand cycles are included.
     line(&mut bench, fault, probability, 1001);
     let mut lost = before.lost_replies;
     for _ in 0..1000 {

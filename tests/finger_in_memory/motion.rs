@@ -52,7 +52,7 @@ pub fn joints(time: f64, joints: [f64; 3]) -> PathPose {
     PathPose { time, pose: Pose::Joints(joints), stiffness: None }
 }
 
-/// Tip positions on a circle of 1 cm radius, one turn a second, that begins and ends gently at `centre` + x.
+/// Tip positions on a circle of 1 cm radius, with one turn a second. The motion begins and ends gently at `centre` + x.
 fn circle(centre: &Vector3<f64>, turns: f64) -> Vec<PathPose> {
     let ramp = 0.5;
     let length = turns + ramp;
@@ -90,8 +90,8 @@ impl Track {
         }
     }
 
-    /// Checks that every derivative of the reference is the slope of the one before. A jump of a derivative by more
-    /// than these values in a cycle fails: rates rad/s, accelerations rad/s^2, jerk rad/s^3.
+    /// Checks that every derivative of the reference is the slope of the next lower derivative. The check fails if a
+    /// derivative jumps by more than these values in a cycle: rates rad/s, accelerations rad/s^2, jerk rad/s^3.
     pub fn is_smooth(&self, [rates, accelerations, jerk]: [f64; 3]) {
         for (index, pair) in self.0.windows(2).enumerate() {
             let (one, next) = (&pair[0], &pair[1]);

@@ -198,7 +198,7 @@ fn a_calibration_ends_if_its_finger_faults_and_recovers_between_two_polls() {
     recovers(&hand, 1);
     let error = calibrating.poll(&hand).expect_err("no verdict will come");
     assert!(matches!(error, HandError::Interrupted(FingerNumber::ONE)), "{error}");
-    // The end of the hand is the other end without a verdict.
+    // A calibration also ends without a verdict if the hand is ended.
     let mut calibrating = Calibrating::begin(&hand, 2, Task::Zero).expect("begun");
     wait_until("calibrating", || hand.report(2).expect("a report").stage == Stage::Calibrating);
     hand.end();
@@ -207,7 +207,7 @@ fn a_calibration_ends_if_its_finger_faults_and_recovers_between_two_polls() {
     close(hand);
 }
 
-/// The line stays with a finger whose board is not yet the right one.
+/// If a recovery is refused because of the board, the finger keeps its line, and a later recovery can succeed.
 #[test]
 fn a_finger_that_was_refused_for_its_lost_zero_recovers_when_it_is_back() {
     let _turn = turn();

@@ -24,8 +24,8 @@ const KEYWORDS_OF_AFTER: &[&str] = &[
     "volatile",
 ];
 
-/// Three of these are macros of the header itself, so it cannot restore a planner's macro of the same name. These
-/// macros use the other three.
+/// Three of these names are macros of the header itself, so the header cannot restore a planner's macro with such a
+/// name. The macros of the header use the other three names.
 const MACROS: &[&str] = &["GetPos", "GetPosD", "SendKx", "SendKxD", "SendPos", "SendPosD"];
 
 /// Every name that the declarations use, and the C keywords around them.

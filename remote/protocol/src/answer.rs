@@ -29,7 +29,7 @@ impl Answer {
     /// Decodes a payload.
     ///
     /// # Errors
-    /// Returns the field that the page does not allow, and the reason.
+    /// Returns the field that the protocol does not allow, and the reason.
     pub fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
         let bytes = Bytes::of_message(payload, KIND, FIXED)?;
         let length = usize::from(bytes.u16(32));
@@ -63,7 +63,7 @@ impl Answer {
     /// Encodes the Answer.
     ///
     /// # Errors
-    /// Returns the field that the page does not allow, and the reason.
+    /// Returns the field that the protocol does not allow, and the reason.
     pub fn encode(&self) -> Result<Vec<u8>, FieldError> {
         self.check()?;
         let mut to = Written::message(KIND, FIXED + self.text.len());

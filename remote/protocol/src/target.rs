@@ -34,7 +34,7 @@ impl Target {
     /// Decodes a payload.
     ///
     /// # Errors
-    /// Returns the field that the page does not allow, and the reason.
+    /// Returns the field that the protocol does not allow, and the reason.
     pub fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
         let bytes = Bytes::of_message(payload, KIND, FIXED)?;
         let count = usize::from(bytes.u8(2));
@@ -82,7 +82,7 @@ impl Target {
     /// Encodes the Target.
     ///
     /// # Errors
-    /// Returns the field that the page does not allow, and the reason.
+    /// Returns the field that the protocol does not allow, and the reason.
     pub fn encode(&self) -> Result<Vec<u8>, FieldError> {
         self.check_order()?;
         for (number, part) in self.parts.iter().enumerate() {

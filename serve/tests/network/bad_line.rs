@@ -17,12 +17,13 @@ const RAMP_TIME: Duration = Duration::from_secs(30);
 /// Longest time until the finger is at the beginning of the ramp.
 const BEGINS: Duration = Duration::from_secs(10);
 
-/// Largest velocity of a finger, rad/s. The ramp has 0.1 rad/s. After a pause of the line of at most 1 s, which is when
-/// the hand goes to its end state, the next set point is at most 0.1 rad ahead of the finger, and the finger catches up
-/// as after any step of a local planner: with less than 30/s times the step.
+/// Largest velocity of a finger, rad/s. The ramp has 0.1 rad/s. A pause of the line lasts at most 1 s, because the hand
+/// then goes to its end state. After the pause, the next set point is at most 0.1 rad ahead of the finger. The finger
+/// catches up as after any step of a local planner: its velocity is less than 30/s times the step.
 const LARGEST_VELOCITY: f64 = 3.1;
 
-/// Time over which a velocity is measured, ns. That of a single cycle is mostly the resolution of the encoders.
+/// Time over which a velocity is measured, ns. The velocity over a single cycle would mostly show the resolution of the
+/// encoders.
 const WINDOW: u64 = 20_000_000;
 
 /// What the board saw of finger 1.
@@ -87,8 +88,8 @@ fn ramp(line: Line, name: &str, catch_ms: u32, spoil: impl FnOnce(&Line)) -> See
     seen
 }
 
-/// Every set point that was reached is one that the planner has sent, and none is before an earlier one. The finger
-/// moves smoothly.
+/// Checks that the planner has sent every set point that was applied, that the set points are in order, and that the
+/// finger moves smoothly.
 fn assert_ordered(seen: &Seen, name: &str) {
     for pair in seen.set_points.windows(2) {
         assert!(pair[1] >= pair[0], "{name}: {} follows {}", pair[1], pair[0]);
@@ -120,7 +121,8 @@ fn a_line_that_delays_packets_applies_no_wrong_set_point() {
         let conditions = Conditions::jittering(jitter, reorders);
         let seen = ramp(line, name, CATCH_MS, |line| _ = line.set(Direction::Left, conditions));
         assert_ordered(&seen, name);
-        // In both directions together, 100 ms pass before a target is there. Then the hand needs more patience.
+        // With jitter in both directions, up to 100 ms pass before a Target is there. The hand then needs a longer
+        // `catch_ms`.
         let Some(line) = permitted_line(23) else { return };
         let seen = ramp(line, name, 4 * CATCH_MS, |line| _ = line.set_both(conditions));
         assert_ordered(&seen, name);

@@ -111,7 +111,7 @@ fn relay(devices: &[File; 2], shapers: &[Mutex<Shaper>; 2], ends: &AtomicBool) {
             while let Some(packet) = shaper.arrived(Instant::now()) {
                 match to.write(&packet) {
                     Ok(_) => {}
-                    // A full queue loses packets, as that of a real interface does.
+                    // A full queue loses packets, like the queue of a real interface.
                     Err(error) if error.kind() == ErrorKind::WouldBlock => {}
                     Err(error) => panic!("the interface does not take a packet: {error}"),
                 }

@@ -22,13 +22,13 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// A reading while the tensions rise and fall. Motors may tremble then, which the means remove.
+    /// A reading while the tensions rise and fall. Motors may tremble then, and the means remove this motion.
     pub fn swinging() -> Self {
         Self { standstill: Standstill::new(SWINGING), ..Self::default() }
     }
 
-    /// Adds one cycle. Only cycles that count contribute to the means. Returns whether the time of a reading at rest is
-    /// over.
+    /// Adds one cycle. Only cycles for which `counts` is true contribute to the means. Returns whether the time of a
+    /// reading at rest is over.
     pub fn step(&mut self, instruments: &Instruments, sample: &Sample, counts: bool) -> bool {
         self.seconds += instruments.period;
         let (travel, tensions) = (instruments.travel(sample.feedback), instruments.tensions(sample.feedback));

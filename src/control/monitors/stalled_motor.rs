@@ -94,7 +94,7 @@ mod tests {
     const DITHER: f64 = 44.0;
 
     /// Watches a motor for a second at 1000 Hz. Its mean imbalance of 3 N is tolerated, and the peaks of its dither are
-    /// not. `amplitude` is that of the motor's own oscillation, rad. Returns the time of the first alarm, ms.
+    /// not. `amplitude` is the amplitude of the motor's own oscillation, rad. Returns the time of the first alarm, ms.
     fn alarmed(dither_period: f64, amplitude: f64) -> Option<u32> {
         let finger = ConfiguredFinger::default();
         let monitor = StalledMotor::new(&finger, &finger.tendons().expect("the default tendons"), dither_period);

@@ -141,8 +141,8 @@ fn hold(stiffness: &Matrix6<f64>, jacobian: &Matrix6x3<f64>) -> f64 {
     way.dot(&(stiffness.fixed_view::<3, 3>(0, 0) * way)) * lacking
 }
 
-/// Returns whether joint 2 is bent to the other side than `desired`: 0 if it is not, 1 if it is, and between them with
-/// either angle near the straight pose, so that the torque has no jump. Both angles are in rad.
+/// Returns whether joint 2 is bent to the other side than `desired`: 0 if it is not, and 1 if it is. If either angle is
+/// near the straight pose, the result is between 0 and 1, so that the torque has no jump. Both angles are in rad.
 fn bent_to_the_other_side(desired: f64, joint: f64) -> f64 {
     let bent = desired.abs().min(STRAIGHT);
     // The finger has left the straight pose when it is halfway to `desired`, or to the limit of the straight pose.

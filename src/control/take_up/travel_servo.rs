@@ -37,7 +37,7 @@ impl TravelServo {
         Self { period: 1.0 / rate, stiffness: STIFFNESS * slower * slower, damping: DAMPING * slower }
     }
 
-    /// Makes the present travel, m, the targets. The pulls of motors at rest do not change.
+    /// Sets the targets to the present travel, m. The pulls of motors at rest do not change.
     pub fn stop(&self, targets: &mut Targets, travel: &Vector4<f64>) {
         targets.integral += (targets.travel - travel) * self.stiffness;
         targets.travel = *travel;

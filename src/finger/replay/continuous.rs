@@ -28,7 +28,7 @@ pub struct ContinuousReplay {
     keyframe: Option<(u64, State)>,
     /// Number of the next cycle; none before the first.
     next: Option<u64>,
-    /// Whether the last cycle was a fault. The servo records no cycles while the finger is faulted.
+    /// Whether the finger was faulted in the last cycle. The servo records no cycles while the finger is faulted.
     faulted: bool,
 }
 

@@ -15,8 +15,8 @@ impl FingerServo {
         self.enter(Stage::Calibrating);
     }
 
-    /// Runs one step of the calibration, if there is one, and sets the finger's activity. Returns the data that the
-    /// servo computed with until now, if other data replaces it in this cycle.
+    /// Runs one step of the calibration, if there is one, and sets the finger's activity. If the servo begins to
+    /// compute with other data in this cycle, returns the previous data.
     pub(super) fn calibrate(&mut self) -> Option<Adjustable> {
         let Calibrating { run, before } = self.calibration.as_mut()?;
         if !self.answered {
@@ -42,8 +42,8 @@ impl FingerServo {
         previous
     }
 
-    /// Returns to the stage before a calibration that has not moved the finger. Returns the data that the servo
-    /// computed with until now, if planners have replaced it meanwhile.
+    /// Returns to the stage before a calibration that has not moved the finger. If planners have replaced the data with
+    /// which the servo computes, returns the previous data.
     fn go_on_from(&mut self, before: Before) -> Option<Adjustable> {
         // Set points that planners sent meanwhile had no effect. The next change of a set point must not start from one
         // of them. A new spring phase makes it start from the set point that the servo holds.

@@ -37,7 +37,7 @@ fn worn() -> ConfiguredSimulation {
         conduit_friction: 0.05,
         pulley_friction: 0.02,
         stiction_ratio: 1.5,
-        // 270 N/cm on average, and up to 6 % from it.
+        // The mean is 270 N/cm. Each tendon differs from it by up to 6 %.
         tendon_stiffness: [285.0, 255.0, 262.0, 278.0],
         creep: 0.05,
         creep_time: 60.0,

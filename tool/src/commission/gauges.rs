@@ -11,7 +11,7 @@ use crate::failure::Failure;
 
 /// Averaging time, s.
 const READING: f64 = 1.0;
-/// Part of its configured scale that a gauge shows at least of a weight, unless it is dead.
+/// A gauge is dead if it shows less than this fraction of a weight, with its configured scale.
 const LIVES: f64 = 0.2;
 /// Largest noise of a gauge, N rms.
 const NOISE: f64 = 0.3;
@@ -42,7 +42,7 @@ fn at_end(count: f64, noise: f64) -> bool {
     count < AT_END || (noise < QUIET && BITS.into_iter().any(|bits| (count - full(bits)).abs() < QUIET))
 }
 
-/// The step.
+/// Carries out the step `gauges`.
 pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     desk.person.ask(Act::Loosen)?;
@@ -85,7 +85,8 @@ pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// Names exchanged gauges, if an exchange explains what was `seen`. `order` has the missing gauge too.
+/// Reports exchanged gauges, if an exchange explains what was `seen`. Unlike `seen`, `order` contains the gauge that
+/// [`name_the_missing`] has found.
 fn name_the_order(outcome: &mut Outcome, seen: [usize; 4], order: [usize; 4]) {
     let bent = outcome.wrong.iter().any(|wrong| matches!(wrong, Wrong::GaugeNotLinear(..)));
     if repeats(seen) || (is_exchange(order) && bent) {
@@ -98,7 +99,7 @@ fn name_the_order(outcome: &mut Outcome, seen: [usize; 4], order: [usize; 4]) {
     }
 }
 
-/// If only one gauge did not answer, it is the one that answered to no other tendon.
+/// If only one tendon has no gauge, and only one gauge has no tendon, this gauge is dead and belongs to this tendon.
 fn name_the_missing(outcome: &mut Outcome, order: &mut [usize; 4]) {
     let missing: Vec<usize> = (0..4).filter(|&tendon| order[tendon] == 0).collect();
     let unused: Vec<usize> = (1..=4).filter(|gauge| !order.contains(gauge)).collect();
@@ -128,7 +129,7 @@ fn weigh(desk: &mut Desk, tendon: usize, empty: &Reading) -> Result<Option<Weigh
         return Ok(None);
     }
     let point = |&(newton, reading): &(f64, Reading)| (reading.gauges[gauge], newton);
-    // A count at the end of the range is not on the line. Two others are enough for one.
+    // A count at the end of the range is not on the line. Two other counts are enough for a line.
     let inside = |&&(_, reading): &&(f64, Reading)| !at_end(reading.gauges[gauge], reading.noise[gauge]);
     let points: Vec<(f64, f64)> = readings.iter().filter(inside).map(point).collect();
     let all = || Line::through(&readings.iter().map(point).collect::<Vec<_>>());

@@ -8,7 +8,8 @@ use super::wrong::Wrong;
 use crate::failure::Failure;
 use sun2xp::calibration::{Findings, Obstacle, Task};
 
-/// The step. Encoders and gauges are right already, so that every contradiction is one of motors or tendons.
+/// Carries out the step `motors`. Encoders and gauges are already correct, so every contradiction concerns the motors
+/// or the tendons.
 pub fn motors(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     desk.person.ask(Act::HoldStill)?;

@@ -15,7 +15,7 @@ const TAUT: (f64, f64) = (0.75, 1.3);
 /// Time for which the noise of the gauges is measured, s.
 const READING: f64 = 1.0;
 
-/// The step.
+/// Carries out the step `zeros`.
 pub fn zeros(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     // The motors are off, and the finger has not moved yet, so the gauges show only noise.

@@ -54,7 +54,7 @@ impl Figure {
     }
 }
 
-/// A finger, with what its figures are computed from.
+/// A finger, and the data from which its figures are computed.
 struct Finger<'a> {
     configured: &'a ConfiguredFinger,
     mechanics: Mechanics,

@@ -8,7 +8,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::Instant;
 use tempfile::TempDir;
 
-/// A browser with one page. It ends with this value.
+/// A browser with one page. The browser ends when this value is dropped.
 pub struct Browser {
     driver: Child,
     address: SocketAddr,
@@ -80,7 +80,7 @@ impl Browser {
             if !found.is_null() {
                 return found;
             }
-            // One picture, so that the page has something else to do.
+            // Waits for one picture, so that the page can do its own work.
             self.run("await new Promise(requestAnimationFrame)");
         }
         panic!("the page never does this: {body}")

@@ -205,5 +205,5 @@ class Sender:
                 sent = time.monotonic_ns()
                 for owner in self._owners:
                     owner.publish(sent)
-            # If this thread has paused, it does not send the missed Targets.
+            # After a pause of this thread, one Target follows at once. The other missed Targets are not sent.
             due = max(due + PERIOD, time.monotonic())

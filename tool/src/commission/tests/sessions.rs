@@ -58,8 +58,9 @@ fn a_whole_commissioning_ends_with_a_spring() {
     }
 }
 
-/// Error of the joint angles where the finger was zeroed, degrees: after the step zeros, or after identification too.
-/// `None` if a zeroing was refused twice.
+/// Returns the error of the joint angles at the pose in which the finger was zeroed, degrees. The last of the `steps`
+/// is [`Step::Zeros`], or [`Step::Tendons`] for the error after identification. Returns `None` if a zeroing was refused
+/// twice.
 fn zero_error(seed: u64, method: ZeroingMethod, steps: &[Step]) -> Option<f64> {
     let case = right(seed);
     let mut belief = case.belief.clone();
