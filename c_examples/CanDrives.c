@@ -3,8 +3,8 @@
        CanDrives INTERFACE | FOLDER
 
    Answers every frame of torques with encoder counts and tensions, and then advances that finger by 1 ms. Each drive
-   has a watchdog: without torques for the time of the last start it releases its motors. Ends after 10 s without a
-   frame. */
+   has a watchdog. The frame that starts the drive sets the watchdog's time. If no torques arrive for this time, the
+   drive releases its motors. The program ends after 10 s without a frame. */
 
 #define _GNU_SOURCE
 #include <stdlib.h>

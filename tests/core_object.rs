@@ -49,7 +49,7 @@ fn a_tumbling_box_keeps_its_energy() {
     assert!(slowest < -7.0, "the box does not tumble: {slowest} rad/s");
 }
 
-/// Gravity along a slope, in terms of a table whose normal is -z.
+/// Gravity in the frame of a table that leans by this angle. The normal of the table is -z.
 fn on_a_slope(degrees: f64) -> Vector3<f64> {
     let (sine, cosine) = f64::to_radians(degrees).sin_cos();
     Vector3::new(sine, 0.0, cosine) * 9.81
@@ -187,7 +187,7 @@ proptest! {
         }
     }
 
-    /// Without gravity and table, the fingers change the momentum of the object by what it gives to them.
+    /// Without gravity and without a table, the object loses exactly the momentum that it gives to the fingers.
     #[test]
     fn action_equals_reaction(
         place in prop::array::uniform3(-0.015..0.015f64), velocity in prop::array::uniform3(-0.3..0.3f64),

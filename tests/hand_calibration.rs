@@ -99,14 +99,14 @@ fn fingers_are_zeroed_against_their_stops_and_identified() {
     let mut configuration = read_default();
     configuration.hand.rate = 500.0;
     for finger in &mut configuration.fingers {
-        // Completes quickly: a short way and little tension.
+        // With a short way and little tension, the calibration is quick.
         finger.zeroing.method = Some(sun2xp::model::configuration::ZeroingMethod::Stops);
         finger.zeroing.speed = 1.5;
         finger.joints.minimum_degrees = [-30.0, -10.0, 30.0];
         finger.joints.maximum_degrees = [30.0, 50.0, 90.0];
         finger.tendon.maximum = 35.0;
     }
-    // Noise below a zero of 0 would be clipped.
+    // If the zero were 0, the noise below it would be clipped.
     configuration.fingers[0].gauge.zero = [204.0; 4];
     configuration.fingers[1].simulation.tendon_stiffness = [330.0, 270.0, 315.0, 285.0];
     let hand = Hand::open(configuration).expect("open");

@@ -44,7 +44,7 @@ fn a_tip_moves_to_its_set_point_and_reports_its_force() {
     until("the tip arrives", || (Vector3::from(tip(&hand, 2).tip) - wanted).norm() < 0.1);
     let report = hand.report(2).expect("report");
     assert_eq!(report.set_point.law, Law::Exact);
-    // The contact estimate learns the error of its model anew at rest. In motion the error is another one.
+    // The contact estimate learns the error of its model anew at rest. In motion the error is different.
     let learned = || Vector3::from(tip(&hand, 2).contact).norm() < 0.03;
     let mut quiet = 0;
     until("the contact estimate has come to rest", || {
@@ -60,7 +60,7 @@ fn a_tip_moves_to_its_set_point_and_reports_its_force() {
         let tip = tip(&hand, 2);
         tip.touching && (Vector3::from(tip.contact) - Vector3::new(0.0, -1.0, 0.0)).amax() < 0.2 && tip.slide < 1.0
     });
-    // Compares by the spring's own law, within the dead band of the joint friction.
+    // By the spring's law, 1 N at 3 N/cm moves the tip by 1/3 cm. The friction of the joints causes a dead band.
     let given_way = || Vector3::from(tip(&hand, 2).tip) - wanted;
     until("the spring gives way", || (given_way() - Vector3::new(0.0, 1.0 / 3.0, 0.0)).amax() < 0.08);
     assert!((Matrix3::from(tip(&hand, 2).stiffness) - Matrix3::identity() * 3.0).amax() < 1e-9);

@@ -149,7 +149,7 @@ fn gravity_turns_while_the_hand_is_open() {
     let at = |hand: &Hand, finger| Vector3::from(hand.position(finger).expect("a position"));
     let before = [1, 2, 3].map(|finger| at(&hand, finger));
     for step in 0..250 {
-        // Once a second.
+        // Gravity turns once in 500 steps of 2 ms.
         let angle = f64::from(step) * 0.002 * std::f64::consts::TAU;
         hand.set_gravity([9.81 * angle.sin(), 0.0, 9.81 * angle.cos()]).expect("a gravity");
         std::thread::sleep(Duration::from_millis(2));

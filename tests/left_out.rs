@@ -47,7 +47,7 @@ fn without_a_tool_a_test_passes_and_is_listed_and_with_ci_it_fails() {
     assert!(run.status.success() && said(&run).contains(expected), "{}", said(&run));
     run_without_tools("false");
 
-    // This process is the parent of both and lists them once.
+    // This process is the parent of both runs. It lists the skipped test only once.
     let listed = tools::take_skipped(std::process::id());
     assert!(listed.len() == 1 && listed[0].starts_with(expected), "{listed:?}");
     assert!(listed[0].contains("apt-get install --no-install-recommends clang"), "{listed:?}");

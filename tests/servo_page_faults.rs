@@ -25,7 +25,7 @@ fn page_faults() -> Vec<(String, u64)> {
 
 #[test]
 fn a_servo_thread_causes_no_page_fault() {
-    // Threads without real time wait for all other threads of the machine, so the second hand runs at a lower rate.
+    // Threads that are not real-time wait for other threads of the machine, so the second hand runs at a lower rate.
     for (real_time, rate, periods) in [(RealTime::Try, 1000.0, 1000), (RealTime::Ignore, 500.0, 400)] {
         let mut configuration = Configuration::default();
         (configuration.hand.real_time, configuration.hand.rate) = (real_time, rate);

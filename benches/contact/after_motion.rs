@@ -1,7 +1,7 @@
-//! The estimate in a contact that follows a motion at once.
+//! Measures the error of the contact estimate if a contact begins about when a motion ends.
 //!
 //! The torques are compared, and not the force at the tip: near a singular pose the estimate of the force along the
-//! finger goes to zero, whatever happened before.
+//! finger goes to zero after any motion.
 
 use crate::finger::{Finger, RATE};
 use crate::hands::Hand;
@@ -17,8 +17,9 @@ pub const FORCE: f64 = 1.0;
 /// Times from the end of the motion of the set point to the push, s. A negative time is before the end.
 pub const DELAYS: [f64; 5] = [-0.1, 0.0, 0.05, 0.2, 1.0];
 
-/// Duration of a push after the end of the motion, s, and the last part of it, in which the estimate is compared.
+/// Duration of a push after the end of the motion, s.
 const PUSH: f64 = 0.5;
+/// Duration of the last part of a push, in which the estimate is compared, s.
 const COMPARED: f64 = 0.2;
 
 /// Time before the first motion, and longest rest between a push and the next motion, s.
@@ -30,7 +31,7 @@ const MOTION: (f64, f64) = (0.3, 1.8);
 /// Number of pushes for each delay and seed.
 const PUSHES: usize = 10;
 
-/// A push: the place of its delay in [`DELAYS`], whether it was detected, and the error, N cm.
+/// A push: the index of its delay in [`DELAYS`], whether it was detected, and the error, N cm.
 type Push = (usize, bool, f64);
 
 /// The pushes with one delay.

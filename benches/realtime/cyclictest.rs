@@ -51,7 +51,7 @@ impl Cyclictest {
             }
         }
         let listed = |name: &str| -> Result<Vec<u64>, Failure> {
-            let line = text.lines().find_map(|line| line.strip_prefix(name)).ok_or("cyclictest has another output")?;
+            let line = text.lines().find_map(|line| line.strip_prefix(name)).ok_or("unknown output of cyclictest")?;
             Ok(line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?)
         };
         let (overflows, maxima) = (listed("# Histogram Overflows:")?, listed("# Max Latencies:")?);

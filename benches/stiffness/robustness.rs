@@ -15,7 +15,7 @@ fn believing_otherwise(case: &Case, stiffness: f64, differ: impl Fn(&mut Configu
     believing(case, stiffness, |finger, _| differ(finger))
 }
 
-/// The same for a true finger and a configuration that may both differ from the default.
+/// Like [`believing_otherwise`], but both the true finger and the configuration may differ from the default.
 fn believing(
     case: &Case,
     stiffness: f64,

@@ -37,7 +37,7 @@ STIFF_FRICTION = {"solreffriction": "0.0004 1", "solimpfriction": "0.999 0.9999 
 
 
 def with_elastic_tendons(text):
-    """Returns the model with a rotor for each tendon, which winds it in, and elastic tendons that only pull.
+    """Returns the model with elastic tendons that only pull. A rotor for each tendon winds the tendon in.
 
     In the model of `sun2xp model` the tendons are rigid, and the rotors add their inertia and friction to the tendons.
     Here each rotor is a body that slides by the length that it winds in, m.
@@ -58,7 +58,8 @@ def with_elastic_tendons(text):
         for joint in tendon:
             joint.set("coef", str(-float(joint.get("coef"))))
         ElementTree.SubElement(tendon, "joint", joint=wound["name"], coef="1")
-        # The tension is the stiffness times the length above the second number. Below the second number it is zero.
+        # If the tendon is longer than the second number of springlength, the tension is the stiffness times the excess
+        # length. Otherwise the tension is zero.
         tendon.attrib.update(stiffness=str(STIFFNESS), springlength=f"-10 {-home / STIFFNESS}")
     root.remove(root.find("actuator"))
     pose = root.find("keyframe/key").get("qpos")

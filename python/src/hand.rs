@@ -9,7 +9,7 @@ use std::sync::{Arc, Weak};
 /// All hands that may be open. The end of the interpreter closes them.
 static HANDS: Mutex<Vec<Weak<Shared>>> = Mutex::new(Vec::new());
 
-/// A hand, as the Python object and the threads of its slow calls share it.
+/// The hand that the Python object and the threads of its slow calls share.
 pub struct Shared {
     /// None: closed. Locked for writing only to take the hand out.
     hand: RwLock<Option<sun2xp::Hand>>,
@@ -131,7 +131,7 @@ impl Drop for Hand {
     }
 }
 
-/// A hand on its way from a function that opens it into a `Hand`.
+/// Carries an open hand from the function that opened it to the constructor of `Hand`.
 #[pyclass(frozen, module = "sun2xp._sun2xp")]
 pub struct Opened(pub Mutex<Option<sun2xp::Hand>>);
 

@@ -30,9 +30,9 @@ pub struct Goal {
     pub spring: Option<(Matrix3<f64>, f64)>,
     /// Whether the whole way to the destination has been sent, and not only the part that the lead admits.
     pub whole: bool,
-    /// Recoveries of the finger and orders to it when this was sent. A later one ends what was wanted.
+    /// Numbers of the finger's recoveries and orders when this goal was set. A later recovery or order cancels it.
     phase: (u32, u32),
-    /// The spring phase in which this was sent. A finger that is caught begins another one.
+    /// The spring phase in which the goal was sent last. A finger that is caught begins another spring phase.
     springs: u32,
 }
 
@@ -62,8 +62,8 @@ impl Goal {
         self.is_commanded() && report.expired && self.springs != report.springs
     }
 
-    /// Returns whether a finger at `joints`, rad, is where the owner wants it, within `tolerance`, rad. A finger that
-    /// the owner wants nowhere is.
+    /// Returns whether a finger at `joints`, rad, is where the owner wants it, within `tolerance`, rad. Returns true
+    /// if the owner has not commanded its place.
     #[must_use]
     pub fn is_reached(&self, joints: &Vector3<f64>, tolerance: f64) -> bool {
         match self.destination {
@@ -79,8 +79,9 @@ impl Goal {
         (self.springs, self.whole) = (report.springs, whole);
     }
 
-    /// Returns the goal after a part with a new command number, taken at `now`, ns. `destination` is that of the part;
-    /// none to keep it. `report` has the spring that is kept if neither the part nor an earlier one has a Kx.
+    /// Returns the goal after a part with a new command number, taken at `now`, ns. `destination` is the destination
+    /// of the part. If it is none, the goal keeps its destination. If neither the part nor an earlier one has a Kx, the
+    /// goal keeps the spring in `report`.
     #[must_use]
     pub fn with(&self, part: &Part, destination: Option<Destination>, report: &FingerReport, now: u64) -> Self {
         let (kx, damping) = self.spring.unwrap_or_else(|| in_force(report));

@@ -1,5 +1,5 @@
-//! Requests of clients: acquire, release, recover, calibrate, identify and stop. What takes long runs in a thread of
-//! its own, because the threads of zenoh must not wait.
+//! Requests of clients: acquire, release, recover, calibrate, identify and stop. A request that takes long runs in a
+//! thread of its own, because the threads of zenoh must not wait.
 
 use crate::access::permission;
 use crate::desk::code_of;
@@ -32,7 +32,7 @@ pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload:
     };
     if request.action != action {
         shared.desk.lock().count_malformed();
-        let text = format!("the key is that of {}, and the Request that of {}", action.name(), request.action.name());
+        let text = format!("the key is for {}, but the Request is for {}", action.name(), request.action.name());
         return reply.send(&refuse(Code::Malformed, text));
     }
     match permission(&shared.settings.clients, &client) {
@@ -69,7 +69,7 @@ fn carry_out(shared: &Arc<Shared>, request: &Request, client: ClientName, reply:
             return reply.send(&answer);
         }
         _ if !owned => {
-            let text = "you do not own the hand, or with an earlier epoch: acquire the hand first".into();
+            let text = "you do not own the hand, or the epoch of the request is old: acquire the hand first".into();
             let answer = shared.desk.lock().answer(Code::NotOwner, text, request.epoch, time);
             return reply.send(&answer);
         }
@@ -140,7 +140,7 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
     });
 }
 
-/// Runs something that takes long, unless something else does already.
+/// Runs a request that takes long, unless another such request is running.
 fn long(shared: &Arc<Shared>, epoch: u64, reply: impl Reply, body: impl FnOnce(&Shared) -> Answer + Send + 'static) {
     match shared.busy.swap(true, Ordering::AcqRel) {
         true => reply.send(&in_progress(shared, epoch)),
@@ -148,7 +148,7 @@ fn long(shared: &Arc<Shared>, epoch: u64, reply: impl Reply, body: impl FnOnce(&
     }
 }
 
-/// Runs something that takes long in a thread, and sends its Answer. The caller has set `busy`.
+/// Runs a request that takes long in a thread, and sends its Answer. The caller has set `busy`.
 fn run(shared: &Arc<Shared>, reply: impl Reply, body: impl FnOnce(&Shared) -> Answer + Send + 'static) {
     let of_thread = shared.clone();
     let started = spawn("sun2xp request", Priority::default(), move |_| {
@@ -175,7 +175,7 @@ fn in_progress(shared: &Shared, epoch: u64) -> Answer {
     shared.desk.lock().answer(Code::InProgress, text, epoch, now())
 }
 
-/// Recovers this finger, or every finger at the same time if it is none. A recovery can take seconds.
+/// Recovers this finger, or every finger at the same time if `finger` is none. A recovery can take seconds.
 fn recover(hand: &Hand, finger: Option<Finger>) -> Result<(), HandError> {
     if let Some(finger) = finger {
         return hand.recover(number(finger));

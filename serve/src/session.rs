@@ -14,12 +14,12 @@ use zenoh::{Config, Session, Wait};
 /// Largest message that the server of a hand receives, bytes. The longest Target has about 3500 bytes.
 pub const LARGEST_OF_HAND: u16 = 4_096;
 
-/// Largest message that a router receives, bytes. The States of hands pass it.
+/// Largest message that a router receives, bytes. The States of hands pass through the router.
 pub const LARGEST_OF_ROUTER: u16 = u16::MAX;
 
-/// Longest time for which a client that does not read holds up a message, us. The default of zenoh is 5 s, and other
-/// clients would wait as long. It is shorter than the default of catch_ms, so that the others are not caught. Then
-/// zenoh closes the link of the client that does not read.
+/// Longest time for which a client that does not read can hold up a message, us. Then zenoh closes the link of that
+/// client. Other clients wait as long, and the default of zenoh is 5 s. This value is shorter than the default of
+/// catch_ms, so that the fingers of the other clients are not caught.
 const LONGEST_WAIT: &str = "50000";
 
 /// Opens a session for these settings, with this access control if there is TLS. It receives messages of at most
@@ -72,15 +72,16 @@ fn config(settings: &Settings, access: &str, largest: u16) -> Result<Config, Ser
         ("scouting/delay", "0".into()),
         ("scouting/multicast/enabled", "false".into()),
         ("scouting/gossip/enabled", "false".into()),
-        // The functions of zenoh for the key of a declaration call themselves once for each part of the key, and access
-        // control comes later. So a long key with many parts exhausts the stack. Both limits hold for a key: of one
-        // batch, which the two sides agree on when they connect, and of a message of several batches.
+        // When zenoh receives a declaration, its functions call themselves once for each part of the key. They run
+        // before access control. So a long key with many parts exhausts the stack. Two limits bound the length of a
+        // key: the size of a batch, which the two sides agree on when they connect, and the size of a message of
+        // several batches.
         ("transport/link/tx/batch_size", largest.to_string()),
         ("transport/link/rx/max_message_size", largest.to_string()),
         ("transport/link/tx/queue/congestion_control/block/wait_before_close", LONGEST_WAIT.into()),
     ];
     if largest == LARGEST_OF_HAND {
-        // A State can need several of these smaller batches. Then 2 batches, the default, do not hold a State.
+        // A State can need several of these smaller batches. The default queue of 2 batches may not hold a State.
         entries.push(("transport/link/tx/queue/size/data", "16".into()));
     }
     if let Some(files) = &settings.tls {

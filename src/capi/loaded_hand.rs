@@ -40,7 +40,7 @@ pub(super) fn open(source: RemoteSource, _: &Configuration) -> Result<Arc<dyn Re
         RemoteSource::File(path) => (library.open, path.into_os_string().into_vec()),
         RemoteSource::Text(text) => (library.open_text, text.into_bytes()),
     };
-    // Both have come from C strings, or from files whose text contains no zero byte.
+    // The path or the text has come from a C string, or from a file whose text contains no zero byte.
     let argument = CString::new(argument).unwrap_or_default();
     let mut handle = null_mut();
     // SAFETY: the argument is a C string, and there is room for the handle.
@@ -85,7 +85,7 @@ impl LoadedHand {
         Ok(unsafe { place.assume_init() })
     }
 
-    /// The event of a call that takes one, and returns whether there was one.
+    /// Returns the event that `take` takes, or none if there was no event. `take` returns 1 if it took an event.
     fn taken_by(&self, take: impl FnOnce(*mut sun2xp_event) -> c_int) -> Result<Option<sun2xp_event>, RemoteRefusal> {
         let mut event = sized();
         let taken = self.result(take(event.as_mut_ptr()))?;
@@ -117,7 +117,7 @@ fn last_refusal(library: &RemoteLibrary, handle: *const sun2xp_hand) -> RemoteRe
         let text = "libsun2xp_remote gave no reason: please report this defect of the library".into();
         return RemoteRefusal::Other { number: SUN2XP_ERROR_DEFECT, errno: libc::EIO, text, actions: Vec::new() };
     };
-    // The report adds the name of the call and the remedy again, for the interface of the planner's call.
+    // The name of the call and the remedy are removed here. The report adds those of the call that the planner made.
     let text = text.strip_prefix(&format!("{call}: ")).unwrap_or(&text);
     let text = text.strip_suffix(&format!(" ({remedy})")).unwrap_or(text).to_owned();
     RemoteRefusal::Other { number, errno, text, actions: named(&remedy, Interface::Handles) }
@@ -149,7 +149,8 @@ impl RemoteHand for LoadedHand {
         // SAFETY: in each call, the pointers are those of arrays that exist during the call.
         let result = unsafe {
             match commands {
-                // The calls for one finger have refusals of their own, and in a group a damping of 0 is none.
+                // A command for one quantity of one finger uses the call for that quantity, which has refusals of its
+                // own. sun2xp_send_group would also treat a damping of 0 as no command for the damping.
                 [FingerCommand { finger, pose: Some(Pose::Joints(joints)), stiffness: None, damping: None, .. }] => {
                     (library.send_position)(hand, *finger, joints.as_ptr())
                 }

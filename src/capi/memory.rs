@@ -26,7 +26,7 @@ pub(super) unsafe fn load_rows<T>(matrix: *const T, name: &'static str) -> Resul
     Ok(unsafe { matrix.cast::<[[T; 3]; 3]>().read_unaligned() })
 }
 
-/// Writes an array of the caller after a null pointer is refused.
+/// Refuses a null pointer. Otherwise writes the values that `read` returns into the caller's array.
 ///
 /// # Safety
 /// `array` is null or has room for `N` entries.

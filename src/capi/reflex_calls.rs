@@ -22,19 +22,19 @@ pub const SUN2XP_WHEN_EVENT: c_int = 1;
 /// that finger.
 pub const SUN2XP_WHEN_OTHER_FINGER: c_int = 2;
 
-/// The force of the surroundings on the tip is above bound, N.
+/// The force of the surroundings on the tip is above the value in the member bound, N.
 pub const SUN2XP_WHEN_FORCE_ABOVE: c_int = 3;
 
-/// The tension of any tendon is above bound, N.
+/// The tension of any tendon is above the value in the member bound, N.
 pub const SUN2XP_WHEN_TENSION_ABOVE: c_int = 4;
 
-/// The tension of any tendon is below bound, N.
+/// The tension of any tendon is below the value in the member bound, N.
 pub const SUN2XP_WHEN_TENSION_BELOW: c_int = 5;
 
-/// The angle of the member joint is above bound, rad.
+/// The angle of the joint with the number in the member joint is above the value in the member bound, rad.
 pub const SUN2XP_WHEN_JOINT_ABOVE: c_int = 6;
 
-/// The angle of the member joint is below bound, rad.
+/// The angle of the joint with the number in the member joint is below the value in the member bound, rad.
 pub const SUN2XP_WHEN_JOINT_BELOW: c_int = 7;
 
 /// The board has not replied for the time in the member bound, s.
@@ -49,24 +49,25 @@ pub const SUN2XP_THEN_STOP: c_int = 1;
 /// The finger stays where it is.
 pub const SUN2XP_THEN_HOLD: c_int = 2;
 
-/// The tip gets the member stiffness.
+/// The tip gets the Kx in the member stiffness.
 pub const SUN2XP_THEN_SOFTEN: c_int = 3;
 
-/// The finger goes to the member position.
+/// The finger goes to the joint angles in the member position.
 pub const SUN2XP_THEN_RETRACT: c_int = 4;
 
 /// The tip presses harder. Its force rises by the member named value, to at most the one named largest, both
 /// in N. This needs a Kx without an eigenvalue of 0.
 pub const SUN2XP_THEN_GRIP: c_int = 5;
 
-/// The tip gets the member value as its damping ratio.
+/// The tip gets the damping ratio in the member value.
 pub const SUN2XP_THEN_DAMP: c_int = 6;
 
 /// A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.
 ///
-/// With refractory 0 the rule fires again only after its condition was false. During inhibition the finger
-/// ignores set points of the planner. For SUN2XP_THEN_GRIP, position is the direction in the finger's frame
-/// in which the tip presses harder; 0, 0, 0 is the direction in which its spring presses.
+/// If the member refractory is 0, the rule fires again only after its condition was false. After a reaction,
+/// the finger ignores set points of the planner for the time in the member inhibition. For SUN2XP_THEN_GRIP,
+/// the member position is the direction in the finger's frame in which the tip presses harder; 0, 0, 0 is the
+/// direction in which its spring presses.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_reflex {
@@ -112,17 +113,18 @@ pub struct sun2xp_reflex {
 ///
 /// A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
 /// later calls that change a part of a set point start from the new one. The next sun2xp_send_position
-/// moves the finger again; inhibition delays that. A rule stays until sun2xp_remove_reflex or sun2xp_close.
+/// moves the finger again. The finger ignores a set point that is sent within the time in the member
+/// inhibition. A rule stays until sun2xp_remove_reflex or sun2xp_close.
 ///
 /// Returns the number of the rule, above 0, or a negative number with
 ///   EPERM    forked child
 ///   EFAULT   reflex is null
 ///   ENODEV   no such hand
-///   EINVAL   size is too small; no such finger, joint, condition, reaction or event; position or stiffness is
-///            NaN
-///   ERANGE   another value is NaN or outside its range; sun2xp_send_position would refuse position, or
-///            sun2xp_send_stiffness would refuse stiffness, with ERANGE
-///   EDOM     sun2xp_send_stiffness would refuse stiffness with EDOM
+///   EINVAL   size is too small; no such finger, joint, condition, reaction or event; the member position
+///            or stiffness is NaN
+///   ERANGE   another value is NaN or outside its range; sun2xp_send_position would refuse the member
+///            position, or sun2xp_send_stiffness the member stiffness, with ERANGE
+///   EDOM     sun2xp_send_stiffness would refuse the member stiffness with EDOM
 ///   ENOSPC   the finger has 16 rules
 ///
 /// Threads: any. Never waits for a servo. Takes a few us.

@@ -25,8 +25,8 @@ impl<T: Copy> SizedStruct<T> {
     /// Reads the size. It is checked later, because a call reports other reasons first.
     ///
     /// # Safety
-    /// `T` is `repr(C)` and begins with a size of type `usize`. `place` is null, or points to as many bytes as its size
-    /// gives, and at least to a size. That stays so while the result exists.
+    /// `T` is `repr(C)` and begins with a size of type `usize`. `place` is null, or points to a struct with at least a
+    /// size, and with as many bytes as this size gives. The struct stays there while the result exists.
     pub unsafe fn new(place: *const T, name: &'static str) -> Result<Self, Refusal> {
         // The type name contains the path of its module.
         let of_type = type_name::<T>().rsplit("::").next().unwrap_or_default();

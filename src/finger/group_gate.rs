@@ -35,7 +35,7 @@ impl Default for GroupGate {
 }
 
 impl GroupGate {
-    /// Creates the gate of a hand without groups.
+    /// Creates the gate of a hand. No group has been sent yet.
     pub fn new() -> Self {
         let states = [(); REMEMBERED].map(|()| AtomicU64::new(0));
         Self(Pages::new(Shared { newest: AtomicU64::new(0), states }).into())

@@ -32,8 +32,8 @@ pub struct Mailbox {
 /// Requests that do not wait for the lock of the planners, because a signal handler may make them.
 struct Requests {
     closing: AtomicBool,
-    /// Number of requests to stop. It is a counter and not a flag, so that a finger that has recovered from one stops
-    /// at the next.
+    /// Number of requests to stop. It is a counter and not a flag, so that a finger that has recovered from one request
+    /// stops at the next request.
     stops: AtomicU32,
     /// Number of requests to stop that were made before the opening or the last recovery began.
     answered_stops: AtomicU32,

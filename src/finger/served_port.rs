@@ -43,8 +43,8 @@ impl<T: Transport> ServedPort<T> {
         self
     }
 
-    /// Makes the servo release the link through `handover` for repair when all fingers of the port have faulted, and
-    /// relay the handshakes of single fingers.
+    /// Makes the servo release the link for repair through `handover` when all fingers of the port have faulted. The
+    /// servo also relays the handshakes of single fingers.
     pub fn with_handover(mut self, handover: LinkServoEnd<T>) -> Self {
         self.handover = Some(handover);
         self
@@ -104,7 +104,7 @@ impl<T: Transport> ServedPort<T> {
         self.fingers.iter().any(|finger| finger.address() == request.address && finger.at_rest()).then_some(request)
     }
 
-    /// Passes the answer to a relayed request on. Returns false if it is not from a finger at rest.
+    /// Passes on the answer to a relayed request. Returns false if it is not from a finger at rest.
     fn relay(&mut self, answer: &Message) -> bool {
         let finger = self.fingers.iter().find(|finger| finger.address() == answer.address);
         let (true, Some(handover)) = (finger.is_some_and(FingerServo::at_rest), &mut self.handover) else {

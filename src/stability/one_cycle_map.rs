@@ -36,11 +36,12 @@ const DECAYED: f64 = 1e-4;
 /// Displacements of the motors, rad. They are so small that the tip stays in contact with a wall.
 const DISPLACED: [f64; 4] = [3e-6, -2e-6, 1e-6, 4e-6];
 
-/// Motion of a joint after the finger has settled beyond which it counts as having left its rest, rad.
+/// Largest motion of a joint after the finger has settled, rad. A finger that moves farther counts as having left its
+/// rest.
 const FAR: f64 = 0.1;
 
-/// Time constant of a motion in a direction without stiffness that counts as a drift and not as a mode of the loop, s.
-/// If the plant differs from the model, small torques remain in these directions.
+/// A motion in a direction without stiffness counts as a drift, and not as a mode of the loop, if its time constant is
+/// longer than this, s. If the plant differs from the model, small torques remain in these directions.
 const DRIFT: f64 = 0.3;
 
 /// Time after which an amplifier has reached a constant command, in time constants of its lag.
@@ -53,9 +54,10 @@ const VIBRATION: f64 = 1.0;
 /// A finger without Coulomb friction and with exact sensors. Its parameters are equal to those in the configuration of
 /// its controller, apart from what a [`Variant`] changes.
 ///
-/// If the finger touches a wall, the configured Coulomb friction F of a joint acts as the damper 4 F / (pi w), which
-/// dissipates as much at an amplitude w of the joint rate. A wall of hundreds of N/cm has no damping, and lets the
-/// finger vibrate at frequencies that no controller of 1000 Hz can damp. Only friction ends such a vibration.
+/// If the finger touches a wall, the configured Coulomb friction F of a joint acts as the damper 4 F / (pi w). At an
+/// amplitude w of the joint rate, this damper dissipates as much as the friction. A wall of hundreds of N/cm has no
+/// damping, and lets the finger vibrate at frequencies that no controller of 1000 Hz can damp. Only friction ends such
+/// a vibration.
 ///
 /// Friction and quantisation are left out because they only add a small persistent motion, or end a motion.
 pub struct OneCycleMap {
@@ -70,7 +72,7 @@ pub struct OneCycleMap {
     pub(super) steps: usize,
     /// Length of a plant step, s.
     pub(super) step: f64,
-    /// Number of cycles of which the last one loses its reply. With 0, no reply is lost.
+    /// Of every `loss_interval` cycles, the last one loses its reply. If it is 0, no reply is lost.
     loss_interval: usize,
 }
 
@@ -147,7 +149,7 @@ impl OneCycleMap {
         for (motor, angle) in DISPLACED.into_iter().enumerate() {
             displaced.plant.turn_motor(motor, angle);
         }
-        // With lost replies, only the map of a whole interval is the same every time.
+        // With lost replies, single cycles have different maps, but all whole loss intervals have the same map.
         let stride = if self.loss_interval == 0 { self.cycles(STRIDE) } else { self.loss_interval };
         let began = finger.plant.joints();
         let mut differences: Vec<DVector<f64>> = Vec::new();
@@ -266,7 +268,8 @@ fn matching_simulation(finger: &ConfiguredFinger) -> ConfiguredFinger {
     finger.controller.set_point_speed = Some(1e3);
     finger.friction.motor_coulomb = [0.0; 4];
     finger.friction.conduit = [0.0; 4];
-    // The dither of the tensions depends on the time, and its amplitude on the measured one. A linear map has neither.
+    // The dither of the tensions depends on the time, and its amplitude depends on the measured amplitude. A linear map
+    // cannot have either dependence.
     finger.controller.tension_dither = Some(0.0);
     finger.friction.pulley = [0.0; 4];
     finger.friction.joint_coulomb = [0.0; 3];

@@ -69,7 +69,7 @@ impl Waits {
         self.worst(span).values().sum()
     }
 
-    /// The same for one part alone, within the worst `span`.
+    /// The part of [`Self::most_within`] that the threads with the role `part` contribute.
     pub fn of(&self, part: Part, span: Duration) -> Duration {
         self.worst(span).get(&part).copied().unwrap_or_default()
     }

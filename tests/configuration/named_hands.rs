@@ -92,7 +92,7 @@ fn the_examples_of_the_page_are_usable() {
     assert_eq!(simulations(overridden)[0], ConfiguredSimulation { conduit_friction: 0.2, ..sheathed });
 }
 
-/// The cells of a row of a table, without the empty ones outside.
+/// The cells of a row of a table, without the empty text outside the first and the last `|`.
 fn cells(row: &str) -> Vec<&str> {
     row.trim_matches('|').split('|').map(str::trim).collect()
 }
@@ -107,7 +107,7 @@ fn the_table_of_the_page_has_every_value_of_every_named_hand() {
     for (column, hand) in NamedHand::ALL.into_iter().enumerate() {
         let mut text = "[finger.simulation]\n".to_owned();
         for row in &rows[2..] {
-            // An empty cell is the value of the nominal hand.
+            // An empty cell stands for the value of the nominal hand.
             let value = [row[column + 1], row[1]].into_iter().find(|value| !value.is_empty()).expect("a value");
             text += &format!("{} = {value}\n", row[0].trim_matches('`'));
         }

@@ -15,15 +15,15 @@ struct Hand {
     name: &'static str,
     /// The named hand that the other values change.
     hand: NamedHand,
-    /// True Coulomb friction of motors and joints over the friction of the default hand.
+    /// True Coulomb friction of motors and joints, divided by the friction of the default hand.
     coulomb: f64,
     /// The same for viscous friction.
     viscous: f64,
-    /// Gauge noise over that of the default hand.
+    /// Gauge noise, divided by the noise of the default hand.
     noise: f64,
     /// Largest slack of a tendon, cm.
     slack: f64,
-    /// Static over Coulomb friction.
+    /// Static friction divided by Coulomb friction.
     stiction: f64,
     /// Friction of the conduits and of the pulleys, fractions of the tension, in addition to that of the named hand.
     conduit: f64,
@@ -140,8 +140,8 @@ fn take_up(hand: &Hand, pose: &Vector3<f64>, seed: u64, found: &mut Found) {
     found.error = found.error.max((servo.plant.tensions() - pretension).amax());
 }
 
-/// `SEEDS` is the number of seeds, each with 12 poses and slacks; 1 if it is not set. `HAND` is a part of the names of
-/// the hands; all hands if it is not set.
+/// The environment variable `SEEDS` sets the number of seeds, by default 1. Each seed has 12 poses and slacks. If the
+/// environment variable `HAND` is set, only the hands run whose names contain its value.
 #[test]
 fn the_joints_stay_on_every_hand() {
     let seeds = std::env::var("SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(1);

@@ -74,12 +74,13 @@ pub struct Truth {
     pub tensions: Vector4<f64>,
     /// Commanded pulls of the motors, N.
     pub pulls: Vector4<f64>,
-    /// Heat of each motor as a fraction of what it withstands continuously, by I^2 t, and for how long it has been
-    /// above 0.95, s.
+    /// Heat of each motor by I^2 t, as a fraction of the heat that it withstands continuously.
     pub heat: Vector4<f64>,
+    /// Time for which `heat` has been above 0.95, s.
     pub hot_for: Vector4<f64>,
-    /// Fractions of the cycles of the last second without a reply, and of those that skipped periods.
+    /// Fraction of the cycles of the last second that had no reply.
     pub lost: f64,
+    /// Fraction of the cycles of the last second that skipped periods.
     pub skipping: f64,
 }
 
@@ -105,7 +106,7 @@ impl Bench {
         Self::simulating(&configuration.clone(), configuration, seed)
     }
 
-    /// The same with a finger that differs from the configuration of its controller.
+    /// Like [`Self::new`], with a finger that differs from the configuration of its controller.
     pub fn simulating(truth: &Configuration, mut configuration: Configuration, seed: u64) -> Self {
         // Uses the time limits of a real port.
         configuration.fingers[0].port = "in memory".into();

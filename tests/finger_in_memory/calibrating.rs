@@ -1,5 +1,5 @@
-//! Zeroing a finger at a pose: the finger is held as it was while it is read, and remains the same spring if the
-//! zeroing is refused.
+//! Zeroing a finger at a pose: while its sensors are read, the finger is held as before. If the zeroing is refused, the
+//! finger remains the same spring.
 
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;

@@ -1,5 +1,6 @@
-//! Tests the library against the reference firmware on two emulated boards. This runs the protocol core, which
-//! laboratories port to their boards, as compiled for a microcontroller, with its own interrupts and its own time.
+//! Tests the library against the reference firmware on two emulated boards. Laboratories port the
+//! protocol core of the firmware to their boards. Here it is compiled for a microcontroller, and runs with its own
+//! interrupts and its own time.
 
 #[path = "../common/attempts.rs"]
 mod attempts;
@@ -136,7 +137,7 @@ fn settles(emulated: Emulated) {
         let losses = hand.losses(1).map_err(text)?;
         let (from_simulated, from_truth) = (farthest(positions, expected), farthest(joints, expected));
         let found = format!(
-            "{from_simulated:.4} rad from the simulated hand, {from_truth:.4} rad of it in truth, {} of {} replies \
+            "{from_simulated:.4} rad from the simulated hand, in truth {from_truth:.4} rad from it, {} of {} replies \
              lost",
             losses.lost_replies, losses.cycles
         );

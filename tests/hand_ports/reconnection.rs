@@ -18,7 +18,7 @@ fn with_finger_2_on_a_link(folder: &Path) -> ([Board; 3], Hand) {
     (boards, open(configuration))
 }
 
-/// Another board, or a board that has lost its zero, is not accepted as the finger's.
+/// A finger does not accept another board, or its own board after that board has lost its zero.
 #[test]
 fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
     let _turn = turn();

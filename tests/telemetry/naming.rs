@@ -20,7 +20,7 @@ fn several_hands_have_names() {
     }
     assert_eq!(readers[1].description().name, format!("{name}-2"));
     assert_eq!(readers[2].description().process, other.child.id());
-    // Without a name there is a choice, which is the user's.
+    // If no name is given, the user must choose among several hands.
     assert!(matches!(Reader::attach(None), Err(AttachError::Several(names)) if names.contains(&name)));
     drop((first, second));
     other.end();

@@ -131,8 +131,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Passes the selected part of a recording to a plot. With `one_finger`, the first finger is selected unless another
-/// one is.
+/// Passes the selected part of a recording to a plot. With `one_finger`, if no finger is
+/// selected, the first finger of the recording is selected.
 fn collect(file: &Path, selection: &mut Selection, one_finger: bool, plot: &mut dyn Plot) -> Result<(), Failure> {
     let mut start = None;
     trace::read(file, "plot", &mut |item| {

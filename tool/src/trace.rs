@@ -154,7 +154,7 @@ struct Changes {
 }
 
 impl Changes {
-    /// Returns the mark for another stage than that of the cycle before.
+    /// Returns a mark if the stage differs from the stage in the previous cycle.
     fn before(&mut self, sample: &Sample) -> Option<Mark> {
         let before = self.stage.replace(sample.stage);
         if before == Some(sample.stage) {
@@ -173,7 +173,8 @@ impl Changes {
         })
     }
 
-    /// Returns the mark for an event. A fault has been marked as a stage if its cycle is recorded.
+    /// Returns the mark for an event. Returns none for a fault whose cycle is recorded, because the change of the stage
+    /// has marked it already.
     fn event(&self, event: &Event) -> Option<Mark> {
         let kind = match event.kind {
             EventKind::Fault if self.faulted != 0 && event.cycle.abs_diff(self.faulted) <= 1 => return None,

@@ -53,7 +53,7 @@ fn the_simulated_hand_is_examined_whole() {
     };
     assert_eq!((measured("wake-up").count(), measured("port").count(), measured("round trip").count()), (3, 3, 3));
     for finding in measured("round trip") {
-        // 0.25 s for three ports at 500 Hz.
+        // Three ports share 0.25 s at 500 Hz, so each port has 41 cycles.
         let found = finding["found"].as_str().expect("a text");
         assert!(found.starts_with("median ") && found.contains("of 41 lost"), "{found}");
         assert_ne!(finding["verdict"], "failure", "a simulated board has no port that could fail: {finding:#}");

@@ -80,7 +80,7 @@ fn other_programs_receive_json() {
     assert_eq!(fastest, &json!({"rate": null, "limit": {"missed": "cycle", "thread": 1}}));
 }
 
-/// The costs are measured, so what a virtual machine does to them is said exactly if this machine is one.
+/// The costs are measured. If this machine is virtual, and only then, the output describes the effect on the costs.
 #[test]
 fn a_virtual_machine_is_named_where_its_times_are_measured() {
     let folder = tempfile::tempdir().expect("a folder");

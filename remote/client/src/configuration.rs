@@ -26,7 +26,7 @@ pub struct RemoteConfiguration {
     pub hand: HandName,
     /// The name of this client. With TLS it is the common name of the certificate, and may be left out here.
     pub client: Option<ClientName>,
-    /// Positions that are older are refused, ms: 1 to 60000.
+    /// Age above which a position is refused, ms: 1 to 60000.
     pub stale_ms: u32,
     /// Whether opening takes the hand over from another owner.
     pub take_over: bool,
@@ -97,7 +97,7 @@ impl RemoteConfiguration {
         Ok(Some(configuration))
     }
 
-    /// Checks what does not belong to a single key. Returns the key and the reason.
+    /// Checks the endpoint, `stale_ms`, and whether the keys fit together. The error contains the key and the reason.
     fn check(&self) -> Result<(), (&'static str, String)> {
         let (protocol, host) = self.endpoint.split_once('/').unwrap_or(("", &self.endpoint));
         let (host, port) = host.rsplit_once(':').unwrap_or((host, ""));

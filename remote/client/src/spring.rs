@@ -1,9 +1,9 @@
-//! The check that Kx is a spring. It is the check of the hand, so that a call refuses at once what the hand would
-//! refuse.
+//! The check that Kx is a spring. The hand makes the same check. A call therefore refuses at once what the hand would
+//! refuse later.
 
 use nalgebra::Matrix3;
 
-/// The asymmetry and the negative eigenvalue that are taken for rounding, relative to the largest entry or eigenvalue.
+/// The asymmetry and the negative eigenvalue that count as rounding, relative to the largest entry or eigenvalue.
 const ROUNDING: f64 = 1e-3;
 
 /// Why a matrix is not a spring.

@@ -28,7 +28,7 @@ pub struct View {
     newest: [Option<Record>; FINGERS],
     /// The newest Status.
     status: Option<Status>,
-    /// The reception of the newest State.
+    /// The time at which the newest State was received, ns.
     heard: Option<u64>,
     /// The number and the time of the newest State.
     newest_state: Option<(u64, u64)>,

@@ -19,7 +19,7 @@ pub(crate) trait Stoppable: Send + Sync + 'static {
     fn stop_every_finger(&self);
 }
 
-/// Runs as long as this value exists, and as the hand does.
+/// A thread that carries out the stop calls while both this value and the hand exist.
 pub(crate) struct StopCalls(Arc<AtomicBool>);
 
 impl StopCalls {
@@ -28,7 +28,7 @@ impl StopCalls {
         let ended = Arc::new(AtomicBool::new(false));
         let seen_by_thread = ended.clone();
         let mut seen = stop_calls();
-        // The thread inherits the mask: signals run the planner's handlers only in its own threads.
+        // The thread inherits this mask, so the planner's signal handlers run only in the planner's own threads.
         let _blocked = SignalsBlocked::all();
         let started = Builder::new().name("sun2xp stop".into()).spawn(move || {
             while !seen_by_thread.load(Ordering::Acquire) {

@@ -1,4 +1,4 @@
-//! What a planner hears if the library of remote hands, the server or the configuration is not there.
+//! The error that a planner receives if the library of remote hands, the server or the configuration is not there.
 
 mod rig;
 

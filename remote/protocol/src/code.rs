@@ -6,7 +6,7 @@ use crate::error::{FieldError, within};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]
 pub enum Code {
-    /// It is done.
+    /// The request is done.
     Done = 0,
     /// The message was malformed.
     Malformed = 1,
@@ -20,11 +20,11 @@ pub enum Code {
     NotOwner = 5,
     /// The hand refused an argument.
     Argument = 6,
-    /// The hand refused it, because a finger has stopped.
+    /// The hand refused the request, because a finger has stopped.
     Stopped = 7,
     /// The hand is closed, or the server ends.
     Closed = 8,
-    /// It is in progress already.
+    /// Such a request is in progress already.
     InProgress = 9,
 }
 

@@ -6,8 +6,8 @@ use std::hint::black_box;
 use std::io::Read;
 use std::process::{ChildStdout, Command, Stdio};
 
-/// A process of this program. It ends when the value is dropped, or when this process dies, because its standard input
-/// ends then.
+/// A child process that runs this program. The child ends when its standard input ends. That happens when the value is
+/// dropped, or when the parent process dies.
 pub struct Child(std::process::Child);
 
 impl Child {

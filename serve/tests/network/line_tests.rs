@@ -152,7 +152,7 @@ fn the_line_loses_the_fraction_of_udp_packets_that_it_should() {
             assert!(Instant::now() < deadline, "the last packet is missing");
             received += u64::from(right.recv(&mut bytes).is_ok());
         }
-        // The last packet was not one of the loss.
+        // The packet `last` was sent without loss, so it does not count.
         assert_loss(u64::from(PACKETS) - (received - 1), loss);
     }
 }

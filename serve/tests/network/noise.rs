@@ -62,7 +62,7 @@ impl Noise {
         Target { parts: vec![part], ..next.clone() }.encode().expect("a good Target")
     }
 
-    /// Changes up to eight bits outside the field that makes the Target one that is not taken.
+    /// Changes up to eight bits outside the field `kept`. This field is the reason why the server must drop the Target.
     fn flip(&mut self, payload: &mut [u8], kept: std::ops::Range<usize>) {
         for _ in 0..self.random.below(9) {
             let at = self.random.below(payload.len());
@@ -106,7 +106,7 @@ impl Noise {
             6 => payload[COMMAND..ANGLES].fill(0),
             7 => number(&mut payload, ANGLES + 8 * axis, f64::NAN),
             8 => number(&mut payload, ANGLES + 8 * axis, if self.random.below(2) == 0 { far } else { -far }),
-            // An element of Kx beside the diagonal, and one that is too stiff.
+            // Case 9 makes Kx asymmetric, and case 10 makes a diagonal element too stiff.
             9 => number(&mut payload, KX + 8, 0.5),
             10 => number(&mut payload, KX + 32 * axis, 1e4 * far),
             _ => {

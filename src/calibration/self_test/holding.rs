@@ -17,13 +17,14 @@ const WINDING: f64 = 0.5;
 const MOST_SLACK: f64 = 0.5;
 /// Time for the motors to come to rest, s.
 const SETTLING: f64 = 0.05;
-/// Time in which readings are averaged, s: some periods of the links on their tendons.
+/// Time in which readings are averaged, s: some periods of the vibration of the links on their tendons.
 const READING: f64 = 0.04;
-/// Rise of the tensions, in pretensions.
+/// Rise of the tensions, as a multiple of the pretension.
 const RAISED: f64 = 2.0;
 /// Time of that rise, s.
 const RAISING: f64 = 0.12;
-/// Pull of a pulse, in t_min. The links vibrate after it until their friction stops them, the sooner the weaker it is.
+/// Pull of a pulse, in t_min. After a pulse the links vibrate until their friction stops them. After a weaker pulse
+/// they stop sooner.
 const PULSE: f64 = 2.0;
 /// Duration of a pulse, s.
 pub(super) const LENGTH: f64 = 0.006;

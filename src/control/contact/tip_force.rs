@@ -70,7 +70,7 @@ mod tests {
     use super::*;
     use crate::model::configuration::ConfiguredFinger;
 
-    /// Poses away from the singular ones, where the inverses are damped.
+    /// Poses far from the singular poses. The inverses are damped near singular poses.
     const POSES: [[f64; 3]; 3] = [[0.0, 0.5, 1.0], [-0.7, 1.0, 1.3], [0.5, -0.3, 0.8]];
 
     #[test]

@@ -18,8 +18,8 @@ impl Mailbox {
 }
 
 impl ServoEnd {
-    /// Returns the newest renewal, if there is one since the last call. A servo that has a renewal may not have its set
-    /// point yet.
+    /// Returns the newest renewal, if there is one since the last call. The servo may receive a
+    /// renewal before the set point that it renews.
     pub fn new_renewal(&mut self) -> Option<Renewal> {
         self.renewals.update().then(|| *self.renewals.output_buffer())
     }

@@ -38,8 +38,8 @@ impl FingerServo {
         }
     }
 
-    /// Sets the validity, which begins in the period `begin` unless it says when. A finger that holds its pose after
-    /// its set point has expired continues to hold it.
+    /// Sets the validity. It begins in the period `begin`, unless `validity.since` gives another beginning. A finger
+    /// that holds its pose after its set point has expired continues to hold this pose.
     fn set_validity(&mut self, begin: u64, validity: &Validity) {
         let (hold, end) = self.adjustable.motion.times(validity);
         let past = validity.since.map_or(0.0, |since| self.report.last.saturating_sub(since) as f64 * 1e-9);

@@ -9,7 +9,7 @@ use crate::model::{FingerNumber, Section, Shown, UnusableConfiguration};
 use std::ops::Range;
 use toml_edit::{Document, Item, Table, Value};
 
-/// The tables that this library reads. Programs of their own read the tables `serve` and `remote`.
+/// The tables that a configuration file may have. Other programs read the tables `serve` and `remote`.
 const TABLES: [&str; 5] = ["hand", "telemetry", "finger", "serve", "remote"];
 
 /// What the text says, apart from the values.
@@ -76,8 +76,8 @@ fn finger_of(common: &Table, own: &Table) -> Result<(ConfiguredFinger, bool), Wr
     Ok((deserialize(&merged)?, port || board))
 }
 
-/// Refuses a hand of which some fingers have a port and others nothing: those would be simulated beside real fingers,
-/// although nobody has said so.
+/// Refuses a hand in which the file names a real port or board for some fingers, and neither for other fingers. Those
+/// other fingers would be simulated beside real ones, although the file does not say so.
 fn refuse_simulated_beside_real(
     root: &Table,
     configuration: &Configuration,

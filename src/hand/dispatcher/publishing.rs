@@ -33,7 +33,7 @@ pub struct Publishing {
     events: MergedEvents,
     object: Option<ObjectView>,
     members: Arc<Vec<Member>>,
-    /// For each finger, the outlet that is exchanged for that of its black box.
+    /// For each finger, the outlet that the next publication exchanges for the outlet of the finger's black box.
     outlets: Vec<Outlet>,
     /// For each finger, the number of the next controller to publish.
     controllers: Vec<u32>,

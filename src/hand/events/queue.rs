@@ -104,7 +104,7 @@ impl EventQueue {
         Ok(readiness.insert(started).number())
     }
 
-    /// Returns the state that a listener needs to wait with a reason to stop.
+    /// Returns the state of the queue. A listener needs it for a wait that can also end without an event.
     pub(super) fn state(&self) -> &QueueState {
         &self.shared
     }

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredSimulation {
-    /// The named hand whose values the keys have that a configuration file omits. In Rust, this field only records the
-    /// name: [`Self::named`] constructs the values.
+    /// The named hand that gives the values of the keys that a configuration file omits. In Rust, this field only
+    /// records the name: [`Self::named`] constructs the values.
     pub hand: NamedHand,
     /// Masses of links 0, 1, 2 and of the tip, kg.
     pub masses: [f64; 4],

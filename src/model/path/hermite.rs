@@ -33,8 +33,8 @@ const ONLY: EndFactors = &[
     [-20.0, 10.0, -2.0, 1.0 / 6.0],
 ];
 
-/// Returns the coefficients of a piece from place to place, with the motion at its beginning and at its end. `jerk` is
-/// the jerk at the beginning if the piece is the first one. The last piece ends without jerk.
+/// Returns the coefficients of a piece with these places and motions at its beginning and its end. `jerk` is the jerk
+/// at the beginning if the piece is the first one. The last piece ends without jerk.
 pub(super) fn coefficients(
     (begin, end): (Vector3<f64>, Vector3<f64>),
     (from, to): (AtKnot, AtKnot),

@@ -9,9 +9,10 @@ use super::zeros::zero;
 use crate::failure::Failure;
 use sun2xp::calibration::{Findings, Identified, Task};
 
-/// A motor whose torque is off by more than this part is reported.
+/// A motor is reported if its torque deviates by more than this fraction from the commanded torque.
 const TORQUE: f64 = 0.15;
-/// A gauge whose gain relative to the others is off by more than this part since its weights is reported.
+/// A gauge is reported if its gain, relative to the other gauges, deviates by more than this fraction from the gain
+/// that was found with weights.
 const GAIN: f64 = 0.05;
 
 /// The step.

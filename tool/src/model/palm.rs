@@ -6,7 +6,7 @@ use super::shape::{Colour, Form, Shape};
 
 /// Thickness of the plate, cm.
 const THICKNESS: f64 = 1.2;
-/// Distance of the upper side of the plate below the axes of the joints 0, cm.
+/// Distance from the axes of the joints 0 down to the upper side of the plate, cm.
 const CLEARANCE: f64 = 1.4;
 /// Distance of the edges of the plate from the bases, cm.
 const MARGIN: f64 = 1.6;

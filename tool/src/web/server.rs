@@ -25,7 +25,7 @@ use tokio::sync::Semaphore;
 /// Largest number of pages.
 const PAGES: usize = 16;
 
-/// Time between two looks for a request to end.
+/// Interval at which the server checks whether a signal requests its end.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
 /// What the server serves.
@@ -73,7 +73,7 @@ impl Server {
     }
 }
 
-/// Waits for the request to end.
+/// Waits until a signal requests the end of the server.
 async fn ended(interrupt: Interrupt) {
     while !interrupt.requested() {
         tokio::time::sleep(BETWEEN_LOOKS).await;

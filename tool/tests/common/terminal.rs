@@ -21,7 +21,8 @@ pub fn on_terminal(command: &mut Command, columns: u16, errors: bool) -> (String
     command.env("TERM", "xterm-256color").stdin(Stdio::null()).stdout(end());
     command.stderr(if errors { end() } else { Stdio::null() });
     let mut process = command.spawn().expect("the tool runs");
-    // The terminal ends when no process has it open: neither this one nor the command, which keeps its ends.
+    // The terminal ends when no process has it open. `command` still holds descriptors of the terminal, so they are
+    // replaced, and `follower` is closed.
     command.stdout(Stdio::null()).stderr(Stdio::null());
     drop(follower);
     let mut written = Vec::new();

@@ -42,7 +42,7 @@ impl Socket {
         }
     }
 
-    /// Sends a text. The server may close the connection before it has taken all.
+    /// Sends a text. The server may close the connection before it has read the whole text.
     pub fn send(&mut self, text: &str) {
         let length = text.len();
         let mut frame = vec![0x81];

@@ -1,6 +1,6 @@
 """The messages of docs/remote-protocol.md, as bytes and as objects. This module does no input or output.
 
-Every function that reads returns None for bytes that are not a whole message of its type and of version 1.
+Each function read_... returns None if the bytes are not a whole message of its type and of version 1.
 """
 
 from __future__ import annotations

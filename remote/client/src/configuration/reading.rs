@@ -1,4 +1,4 @@
-//! The keys of the tables as they are in a file, with the lines of errors.
+//! Reads the keys of the tables from the text of a file, and finds the line of an error.
 
 use crate::error::RemoteError;
 use serde::de::Error;
@@ -50,7 +50,7 @@ fn client_name<'de, D: Deserializer<'de>>(from: D) -> Result<Option<ClientName>,
 pub struct Places(Document<String>);
 
 impl Places {
-    /// The place of a key; of the table if it has no such key.
+    /// Returns the place of a key. If the table has no such key, returns the place of the table.
     pub fn of(&self, key: &str) -> Option<Range<usize>> {
         let table = self.0.get("remote")?;
         table.get(key).and_then(toml_edit::Item::span).or_else(|| table.span())
@@ -80,7 +80,7 @@ impl Wrong {
         Self { span, reason }
     }
 
-    /// The error of a file with this text.
+    /// Converts this to the error of a file whose text is `text`.
     pub fn in_file(self, file: &Path, text: &str) -> RemoteError {
         let before = self.span.and_then(|span| text.get(..span.start));
         let line = before.map(|before| before.matches('\n').count() + 1);

@@ -22,11 +22,11 @@ pub struct FakeHand {
     pub stage: Stage,
     /// The text with which the next Target that has parts is refused.
     pub refuse: Option<String>,
-    /// The next event.
+    /// The events to publish, the last one first.
     pub events: Vec<Event>,
     /// The version byte of its Status.
     pub version: u8,
-    /// Publishes nothing.
+    /// Whether the server publishes nothing.
     pub silent: bool,
     pub ended: bool,
     pub session: Option<Session>,

@@ -25,7 +25,7 @@ fn opening_and_closing_leaks_nothing() {
         hand.send_position(1, [0.5; 3]).expect("sent");
         hand.close().expect("released");
         assert!(events.is_closed());
-        // What is made once and kept is there after the first runs.
+        // The first runs create everything that is created once and then kept.
         if run == 50 {
             before = used();
         }

@@ -51,8 +51,8 @@ impl Noise {
     }
 }
 
-/// Decodes a payload as every type. Returns whether one of them accepts it. What is accepted must encode to a payload
-/// that is accepted too, and gives the same payload.
+/// Decodes a payload as every type. Returns whether one of them accepts it. A message that is accepted must encode to a
+/// payload of the same length.
 pub fn decode_every_kind(payload: &[u8]) -> bool {
     [
         Target::decode(payload).ok().map(|message| (message.encode(), "Target")),

@@ -190,7 +190,7 @@ impl World {
         self.state = self.controller.start(&feedback);
     }
 
-    /// Makes the finger the spring of its belief.
+    /// Makes the finger the spring that `belief` describes.
     pub fn become_spring(&mut self) {
         let belief = self.belief.clone();
         self.restart(&belief);
