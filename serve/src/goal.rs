@@ -12,7 +12,7 @@ pub enum Destination {
     None,
     /// At these joint angles, rad.
     Joints(Vector3<f64>),
-    /// With the tip where these joint angles, rad, have it.
+    /// With the tip at its position for these joint angles, rad.
     Tip(Vector3<f64>),
     /// On a path that ends at these joint angles, rad.
     Path(Vector3<f64>),
@@ -74,7 +74,7 @@ impl Goal {
         }
     }
 
-    /// Notes that something was sent to the finger that had this report.
+    /// Notes that a set point was sent to the finger. `report` is the report on which the set point was based.
     pub fn note_sent(&mut self, report: &FingerReport, whole: bool) {
         (self.springs, self.whole) = (report.springs, whole);
     }

@@ -1,5 +1,6 @@
 //! What the program says. A terminal that has closed or a disk that is full must not end a server that moves a hand, so
-//! a text that cannot be written is lost. Texts of others cannot change the state of a terminal.
+//! a text that cannot be written is lost. Control characters are escaped, because a text from another program must not
+//! change the state of a terminal.
 
 use std::io::{Write, stderr, stdout};
 use sun2xp::model::one_line;

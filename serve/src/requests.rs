@@ -194,7 +194,7 @@ fn recover(hand: &Hand, finger: Option<Finger>) -> Result<(), HandError> {
             Ok(())
         })
         .collect();
-    // All of them have ended before the first error is returned.
+    // All recoveries have ended before the first error is returned.
     recovered.into_iter().collect()
 }
 
@@ -210,7 +210,7 @@ fn number(finger: Finger) -> i32 {
     i32::from(finger.number())
 }
 
-/// The Answer if this was done, or else the refusal.
+/// Returns `answer` if `done` is a success, or else the refusal.
 fn result(answer: &Answer, done: Result<(), HandError>) -> Answer {
     match done {
         Ok(()) => answer.clone(),

@@ -2,7 +2,7 @@
 
 use sun2xp::plant::Plant;
 
-/// Lets a finger with motors without torque move for 0.6 s, and panics if it gains energy.
+/// Lets a finger whose motors have no torque move for 0.6 s, and panics if it gains energy.
 ///
 /// Semi-implicit Euler conserves H - h/2 dq/dt dV/dq, not H. A mode of w rad/s therefore shows an energy error of up to
 /// w h/2 of the swinging energy. `error` is this factor for the stiffest mode. Over 100 ms the error averages out, and

@@ -137,7 +137,7 @@ fn settles(emulated: Emulated) {
         let losses = hand.losses(1).map_err(text)?;
         let (from_simulated, from_truth) = (farthest(positions, expected), farthest(joints, expected));
         let found = format!(
-            "{from_simulated:.4} rad from the simulated hand, in truth {from_truth:.4} rad from it, {} of {} replies \
+            "{from_simulated:.4} rad from the simulated hand, in truth {from_truth:.4} rad, {} of {} replies \
              lost",
             losses.lost_replies, losses.cycles
         );

@@ -26,7 +26,7 @@ class Recording:
             fields. A number that a cycle does not have is NaN.
         marks: changes of stages, events, warnings, faults and gaps, in the order of the file.
         description: the hand: its name, the time at which it was opened, and its configuration.
-        complete: whether the file has its end. It has none while its recorder runs, and if the recorder was killed.
+        complete: whether the recorder has finished the file. False while the recorder runs, and if it was killed.
     """
 
     cycles: Dict[int, numpy.ndarray]

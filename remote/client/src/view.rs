@@ -82,8 +82,8 @@ impl View {
         self.newest[finger.index()].as_ref()
     }
 
-    /// The age of the newest record of a finger, ns. It includes the time since its reception, and the delay on the way
-    /// beyond the smallest one.
+    /// The age of the newest record of a finger, ns. It includes the time since its reception, and the part of its
+    /// delay on the way that exceeds the smallest delay.
     pub fn age(&self, finger: Finger, now: u64) -> Option<u64> {
         self.clock.age(self.newest(finger)?.begin, now)
     }

@@ -170,7 +170,8 @@ fn only_certificates_of_the_authority_get_in_and_a_name_opens_only_its_own_keys(
     let server = server("tls", clients, &endpoint, Some(ours.path()));
     let connect = |client: &str, files: Option<Files<'_>>| Raw::connect(&endpoint, "hand", client, files);
 
-    // Another authority, in both directions; another authority's certificate with ours as authority; no TLS.
+    // Three clients are refused. The first trusts another authority, and has a certificate of that authority. The
+    // second trusts our authority, but has a certificate of the other one. The third has no TLS.
     let foreign = Certificate::of(&theirs, "planner");
     assert!(connect("planner", Some(foreign.files())).is_err());
     let planner = Certificate::of(&ours, "planner");

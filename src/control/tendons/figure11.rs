@@ -21,9 +21,9 @@ const SLACK: f64 = 0.2;
 /// eq. 22 is multiplied by 1/g. g follows t / pull through a low-pass filter, where pull is the pull that acted when t
 /// was measured.
 ///
-/// Only the conversion from tension to torque is adapted. In (RM)^-T the same letter M is geometry. An estimate there
-/// would change the measured joint angles, the angles would change the tensions, and the tensions would change the
-/// estimate.
+/// Only the conversion from tension to torque is adapted. In (RM)^-T the letter M stands for geometry. An estimate of
+/// that M would change the measured joint angles, the angles would change the tensions, and the tensions would change
+/// the estimate.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure11 {
     /// Fraction of the remaining difference by which the estimate changes in a cycle.
