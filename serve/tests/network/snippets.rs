@@ -2,6 +2,8 @@
 
 use super::security::{clients_of, loopback, simulated};
 use std::error::Error;
+use std::thread::sleep;
+use std::time::Duration;
 use sun2xp_remote_client::{RemoteConfiguration, RemoteHand};
 use sun2xp_serve::server::Server;
 
@@ -14,6 +16,9 @@ fn planner(endpoint: &str) -> Result<(), Box<dyn Error>> {
     let hand = RemoteHand::open(&configuration)?;
     hand.send_stiffness(1, [[3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]])?;
     hand.send_position(1, [0.0, 0.5, 0.9])?;
+    while !hand.progress(1)?.arrived {
+        sleep(Duration::from_millis(5));
+    }
     println!("{:?}", hand.position(1)?);
     Ok(())
 }

@@ -38,10 +38,11 @@ impl Exchange {
         Ok(record)
     }
 
-    /// What a finger has done since the newest command. A refusal that no call has reported is reported here.
+    /// What a finger has done since the newest command. Refuses as [`Exchange::admit`] does.
     pub fn progress(&mut self, number: i32, now: u64) -> Result<RemoteProgress, RemoteError> {
-        self.outbox.take_refusal().map_or(Ok(()), |text| Err(RemoteError::Refused(text)))?;
-        let &Record { finger, arrived, settled, .. } = self.moving(number, now)?;
+        let finger = self.finger(number)?;
+        self.refuse_unless_ready(now, [finger])?;
+        let &Record { arrived, settled, .. } = self.record(number, now)?;
         let applied = self.outbox.is_applied(finger);
         Ok(RemoteProgress { applied, arrived: applied && arrived, settled: applied && settled })
     }

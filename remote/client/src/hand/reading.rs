@@ -53,7 +53,8 @@ impl RemoteHand {
     /// What finger 1, 2 or 3 has done since the newest command of this client.
     ///
     /// # Errors
-    /// Returns the errors of [`RemoteHand::position`], and the refusal of a command that no call has reported yet.
+    /// Returns the errors of [`RemoteHand::position`]. Returns an error if this client does not own the hand, or if the
+    /// hand has refused a command and no call has reported it yet.
     pub fn progress(&self, finger: i32) -> Result<RemoteProgress, RemoteError> {
         self.link.shared.lock().progress(finger, now())
     }
