@@ -341,7 +341,7 @@ int sun2xp_set_log(sun2xp_log callback, void *user);
 /*
  sun2xp_version - the version of the library that runs
 
- Returns a text such as "0.1.0", which stays valid. SUN2XP_VERSION is that of the header.
+ Returns a text such as "0.1.0", which stays valid. SUN2XP_VERSION is the version of the header.
 
  Threads: any. Works in a forked child too.
  */
@@ -610,11 +610,11 @@ int sun2xp_open_io_text(const char *configuration, int count, const struct sun2x
    position   position[3]: desired angles of joints 0, 1, 2, rad
 
  All three angles take effect together. From the next cycle on, the anchor of the fingertip's spring moves
- to position, along a straight line in joint angles and at a bounded speed. The stiffness is the one sent
- last. When the anchor is at position, the force of the fingertip is Kx (tip - p) at any distance: tip is
- the place of the fingertip at the angles in position, and p is its present place. With controller.law =
- "report" the finger follows the law of the report, which holds for small distances. The call does not
- wait until the finger arrives. sun2xp_limits reads the joint limits.
+ to the angles in position, along a straight line in joint angles and at a bounded speed. The stiffness is
+ the one sent last. When the anchor has arrived, the force of the fingertip is Kx (tip - p) at any
+ distance: tip is the place of the fingertip at the angles in position, and p is its present place. With
+ controller.law = "report" the finger follows the law of the report, which holds for small distances. The
+ call does not wait until the finger arrives. sun2xp_limits reads the joint limits.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -673,8 +673,8 @@ int sun2xp_send_stiffness(sun2xp_hand *hand, int finger, const double *stiffness
    finger     1 to 3
    position   result: position[3]: measured angles of joints 0, 1, 2, rad, from the last cycle
 
- While the servo thread does not run, the angles stay those of its last cycle, and skipped_periods of
- sun2xp_status grows.
+ While the servo thread does not run, the angles stay those of its last cycle, and the member
+ skipped_periods of sun2xp_status grows.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1049,8 +1049,8 @@ struct sun2xp_path_pose {
  Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only
  pose is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
  continuous. Because they are fed forward, the finger follows without the lag of sun2xp_send_position.
- Between two poses that have a Kx, Kx changes linearly. Before the first pose that has one, Kx changes
- linearly from the one in force at the beginning.
+ Between two poses that have a Kx, Kx changes linearly. Until the first pose that has a Kx, Kx changes
+ linearly from its value at the beginning of the path.
 
  The whole path is checked before anything moves: against the joint limits, and against speed,
  acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -1390,8 +1390,9 @@ int sun2xp_tare_touch(sun2xp_hand *hand, int finger);
 /*
  Result of sun2xp_object. Vectors are in the palm's frame.
 
- time stops while the machine is too busy for the simulation. rotation is the unit matrix at the start.
- force has no errors of gauges, and is zero for a finger that does not touch the object.
+ The member time stops while the machine is too busy for the simulation. The member rotation is the unit
+ matrix at the start. The member force has no errors of gauges, and is zero for a finger that does not
+ touch the object.
  */
 struct sun2xp_object {
     size_t size;                            /* sizeof (struct sun2xp_object), set before the call. */
@@ -1954,8 +1955,8 @@ int sun2xp_identify(sun2xp_hand *hand, int finger);
 /*
  An event: something that happened to a finger in one cycle of its servo.
 
- part is 0 if the event concerns the whole finger. All events of a cycle have the same time. The oldest
- events are lost first.
+ The member part is 0 if the event concerns the whole finger. All events of a cycle have the same time.
+ The oldest events are lost first.
  */
 struct sun2xp_event {
     size_t size;                            /* sizeof (struct sun2xp_event), set before the call. */
@@ -2092,28 +2093,32 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 #define SUN2XP_WHEN_EVENT 1                 /* An event of the finger occurs. The member named event gives its kind. */
 #define SUN2XP_WHEN_OTHER_FINGER 2          /* An event of another finger occurs. The member named event gives its
                                                kind, and the one named finger gives that finger. */
-#define SUN2XP_WHEN_FORCE_ABOVE 3           /* The force of the surroundings on the tip is above bound, N. */
-#define SUN2XP_WHEN_TENSION_ABOVE 4         /* The tension of any tendon is above bound, N. */
-#define SUN2XP_WHEN_TENSION_BELOW 5         /* The tension of any tendon is below bound, N. */
-#define SUN2XP_WHEN_JOINT_ABOVE 6           /* The angle of the member joint is above bound, rad. */
-#define SUN2XP_WHEN_JOINT_BELOW 7           /* The angle of the member joint is below bound, rad. */
+#define SUN2XP_WHEN_FORCE_ABOVE 3           /* The force of the surroundings on the tip is above the value in the
+                                               member bound, N. */
+#define SUN2XP_WHEN_TENSION_ABOVE 4         /* The tension of any tendon is above the value in the member bound, N. */
+#define SUN2XP_WHEN_TENSION_BELOW 5         /* The tension of any tendon is below the value in the member bound, N. */
+#define SUN2XP_WHEN_JOINT_ABOVE 6           /* The angle of the joint with the number in the member joint is above
+                                               the value in the member bound, rad. */
+#define SUN2XP_WHEN_JOINT_BELOW 7           /* The angle of the joint with the number in the member joint is below
+                                               the value in the member bound, rad. */
 #define SUN2XP_WHEN_LINK_LOST 8             /* The board has not replied for the time in the member bound, s. */
 #define SUN2XP_WHEN_PLANNER_SILENT 9        /* The planner has sent no set point for the time in the member bound, s. */
 #define SUN2XP_THEN_STOP 1                  /* The finger stops with a fault. */
 #define SUN2XP_THEN_HOLD 2                  /* The finger stays where it is. */
-#define SUN2XP_THEN_SOFTEN 3                /* The tip gets the member stiffness. */
-#define SUN2XP_THEN_RETRACT 4               /* The finger goes to the member position. */
+#define SUN2XP_THEN_SOFTEN 3                /* The tip gets the Kx in the member stiffness. */
+#define SUN2XP_THEN_RETRACT 4               /* The finger goes to the joint angles in the member position. */
 #define SUN2XP_THEN_GRIP 5                  /* The tip presses harder. Its force rises by the member named value, to
                                                at most the one named largest, both in N. This needs a Kx without an
                                                eigenvalue of 0. */
-#define SUN2XP_THEN_DAMP 6                  /* The tip gets the member value as its damping ratio. */
+#define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio in the member value. */
 
 /*
  A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.
 
- With refractory 0 the rule fires again only after its condition was false. During inhibition the finger
- ignores set points of the planner. For SUN2XP_THEN_GRIP, position is the direction in the finger's frame
- in which the tip presses harder; 0, 0, 0 is the direction in which its spring presses.
+ If the member refractory is 0, the rule fires again only after its condition was false. After a reaction,
+ the finger ignores set points of the planner for the time in the member inhibition. For SUN2XP_THEN_GRIP,
+ the member position is the direction in the finger's frame in which the tip presses harder; 0, 0, 0 is the
+ direction in which its spring presses.
  */
 struct sun2xp_reflex {
     size_t size;                            /* sizeof (struct sun2xp_reflex), set before the call. */
@@ -2145,17 +2150,18 @@ struct sun2xp_reflex {
 
  A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
  later calls that change a part of a set point start from the new one. The next sun2xp_send_position
- moves the finger again; inhibition delays that. A rule stays until sun2xp_remove_reflex or sun2xp_close.
+ moves the finger again. The finger ignores a set point that is sent within the time in the member
+ inhibition. A rule stays until sun2xp_remove_reflex or sun2xp_close.
 
  Returns the number of the rule, above 0, or a negative number with
    EPERM    forked child
    EFAULT   reflex is null
    ENODEV   no such hand
-   EINVAL   size is too small; no such finger, joint, condition, reaction or event; position or stiffness is
-            NaN
-   ERANGE   another value is NaN or outside its range; sun2xp_send_position would refuse position, or
-            sun2xp_send_stiffness would refuse stiffness, with ERANGE
-   EDOM     sun2xp_send_stiffness would refuse stiffness with EDOM
+   EINVAL   size is too small; no such finger, joint, condition, reaction or event; the member position
+            or stiffness is NaN
+   ERANGE   another value is NaN or outside its range; sun2xp_send_position would refuse the member
+            position, or sun2xp_send_stiffness the member stiffness, with ERANGE
+   EDOM     sun2xp_send_stiffness would refuse the member stiffness with EDOM
    ENOSPC   the finger has 16 rules
 
  Threads: any. Never waits for a servo. Takes a few us.

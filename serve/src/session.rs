@@ -26,7 +26,8 @@ const LONGEST_WAIT: &str = "50000";
 /// `largest` bytes, [`LARGEST_OF_HAND`] or [`LARGEST_OF_ROUTER`].
 ///
 /// # Errors
-/// Returns an error if a file of TLS is missing, if the server cannot listen, or if a router cannot be reached.
+/// Returns an error if a file of TLS is missing, or if the server cannot listen. A router that cannot be reached is no
+/// error: the session connects when the router starts.
 pub fn open(settings: &Settings, access: &str, largest: u16) -> Result<Session, ServeError> {
     let config = config(settings, access, largest)?;
     let doing = format!(
