@@ -202,7 +202,7 @@ pub enum Cause {
     /// as long as the cycle was late.
     Pause,
     /// A poll that returned late, or other threads, kept the thread off its core. The run time of the thread was at
-    /// most the part of a period that remains after the latest reply. If the thread had kept its core, the cycle would
+    /// most the part of a period that is left after [`REPLY_WINDOW`]. If the thread had kept its core, the cycle would
     /// have met its deadline.
     KeptFromCore,
     /// The run time of the thread was longer than in [`Cause::KeptFromCore`], but the computation was not the cause.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// Number of blocks that the writer writes. The ring has room for one.
 const BLOCKS: u64 = 2;
 
-/// Words of a block with eight bytes: their number, the mark, and the bytes.
+/// Number of words of a block with eight bytes: one word for the number of bytes, one for the mark, one for the bytes.
 const BLOCK_WORDS: usize = 3;
 
 #[derive(Clone)]

@@ -114,8 +114,8 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
 /// The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 ///
 /// When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
-/// called again. If they are called by the callback itself, they do not wait for it, and it is not called
-/// again after it has returned.
+/// called again. If the callback itself makes one of these calls, the call does not wait for the callback.
+/// The callback is not called again after it has returned.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

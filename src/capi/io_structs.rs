@@ -66,13 +66,14 @@ pub struct sun2xp_io_command {
     pub deadline: f64,
 }
 
-/// What the sensors of a finger measured. The library sets all members to 0 before the call, and then size.
+/// What the sensors of a finger measured. Before the call the library sets size, and all other members to 0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_io_sample {
     /// sizeof (struct sun2xp_io_sample) in the library.
     pub size: usize,
-    /// Time of the measurement, s of any clock that advances evenly; 0: when the exchange returned.
+    /// Time of the measurement, s of any clock that advances evenly. 0 stands for the time at which the
+    /// exchange returned.
     pub time: f64,
     /// Tensions at the gauges, N.
     pub tensions: [f64; 4],

@@ -41,7 +41,7 @@ pub struct sun2xp_path_pose {
 ///   finger    1 to 3
 ///   count     number of poses, 1 to 128
 ///   poses     poses[count], in the order of their times; set size of every pose
-///   seconds   how long the end of the path is valid, s; 0 for finger.motion.valid_ms
+///   seconds   how long the path stays valid after its end, s; 0 for finger.motion.valid_ms
 ///
 /// The path begins at once. Its first point is the present place of the anchor of the fingertip's spring,
 /// and it continues the anchor's motion. It passes every pose at its time and rests at the last one.

@@ -53,7 +53,7 @@ pub struct sun2xp_status {
     pub wake_up_p99: f64,
     /// Maximum delay, us.
     pub wake_up_maximum: f64,
-    /// Fraction of the joint torque within the tension limits, 0 to 1.
+    /// Fraction of the joint torque that the tension limits permit, 0 to 1.
     pub torque_scale: f64,
     /// Cycles since sun2xp_open.
     pub cycles: c_ulong,

@@ -1,8 +1,8 @@
 //! The gate of a hand: lets the set points of a group take effect in the same period in every servo thread.
 //!
 //! A planner first gives each finger of the group its set point, and then posts the group. The servo that sees the
-//! posted group first decides its period. If the planner chose the period instead, a planner that is preempted before
-//! it has sent every set point would choose one that some servos have already begun.
+//! posted group first decides its period. If the planner chose the period instead, and were preempted before it had
+//! sent every set point, some servos would begin that period without their set points.
 
 use crate::realtime::atomics::{AtomicU64, Ordering};
 use crate::realtime::{LockedMemory, Pages, SharedPages};
@@ -23,8 +23,8 @@ pub struct GroupGate(SharedPages<Shared>);
 struct Shared {
     /// Number of the newest group. The first group has the number 1.
     newest: AtomicU64,
-    /// The state of group g is at index g modulo [`REMEMBERED`]. The low bits of g are above [`PERIOD_BITS`], so that a
-    /// servo recognises the state of another group.
+    /// The state of group g is at index g modulo [`REMEMBERED`]. Its bits above the lowest [`PERIOD_BITS`] hold the low
+    /// bits of g, so that a servo recognises the state of another group.
     states: [AtomicU64; REMEMBERED],
 }
 
@@ -56,8 +56,8 @@ impl GroupGate {
     /// period.
     ///
     /// The result is the same for every servo, and no servo has begun that period before the group was posted:
-    /// - A servo reads the time after it has seen the posted group. Cycles of other servos that have not seen it are in
-    ///   the present period or an earlier one.
+    /// - A servo reads the time after it has seen the posted group. If another servo begins a cycle without seeing it,
+    ///   that cycle is in the present period or an earlier one.
     /// - A servo that sees the posted group cannot leave the period undecided. If the first servo is preempted before
     ///   it decides, the next servo that sees the group decides. So no servo passes the period before it is decided.
     pub(super) fn period(&self, group: u64, now: impl FnOnce() -> u64) -> Option<u64> {

@@ -279,7 +279,7 @@ impl ServoEnd {
         }
         let sent = self.set_points.output_buffer();
         self.held = sent.group > self.in_effect;
-        // A group that was sent later and is in effect already includes this set point.
+        // If a group that was sent later is in effect, it includes this set point.
         (sent.group == self.in_effect).then_some(*sent)
     }
 

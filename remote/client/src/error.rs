@@ -71,7 +71,7 @@ pub enum RemoteError {
         /// The configured endpoint.
         endpoint: String,
     },
-    /// Nothing was heard of the hand for too long to send set points.
+    /// The client has heard nothing of the hand for so long that it does not send the set point.
     #[error(
         "nothing was heard of the hand {hand} for {age_ms} ms, and remote.stale_ms is {stale_ms}, so the set point is \
          not sent: check the line to {endpoint} and the server, and send a new set point when the position can be read"

@@ -22,7 +22,7 @@ pub struct Part {
 /// Where a finger is to be.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Place {
-    /// Where its set point is.
+    /// At the set point that it already has.
     #[default]
     Kept,
     /// At these joint angles, rad.

@@ -50,7 +50,7 @@ pub struct Outcome {
     pub ended: f64,
     /// Largest distance of the held set point from the joint angles of the cycle, rad.
     pub distance: f64,
-    /// Longest time between two cycles of a finger meanwhile, ms: pauses of the machine and lost telemetry.
+    /// Longest time between two observed cycles of a finger, ms. Pauses of the machine and lost telemetry prolong it.
     pub pause: f64,
     /// Cycles that telemetry has lost.
     pub lost: u64,

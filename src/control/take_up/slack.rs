@@ -30,21 +30,21 @@ const QUIET: f64 = 0.006;
 /// A tendon with more than this fraction of t_min is taut before its motor moves. The zero of a gauge that was not
 /// calibrated may be off by almost as much.
 const TAUT: f64 = 0.12;
-/// The same fraction where gravity acts, because such a tendon may hold the finger. It is not lower, because the zero
-/// of a gauge drifts.
+/// The same fraction if gravity acts on the finger. It is lower than `TAUT`, because a tendon with little tension may
+/// then hold the finger. It is not lower still, because the zero of a gauge drifts.
 const HOLDS: f64 = 0.012;
 /// Tendons that all have more than this fraction of t_min at the start need no winding.
 const ALL_TAUT: f64 = 0.2;
 
 /// Pull in the paying-out direction with which a motor reverses at a taut tendon, in multiples of t_min.
 const REVERSAL: f64 = 16.0;
-/// Longest time of this pull, s, and distance from the taut tendon at which it ends, m.
+/// Longest time of this pull, s, and the paid-out length at which it ends, m.
 const LONGEST_REVERSAL: f64 = 0.004;
 const REVERSED: f64 = 1e-5;
 /// Length that a motor pays out after its tendon has been taut, m.
 const GAP: f64 = 0.0004;
 
-/// Gain from the missing fraction of the pretension to the speed of the common stretch, 1/s, from 1000 Hz up.
+/// Gain from the missing fraction of the pretension to the speed of the common stretch at 1000 Hz and above, 1/s.
 const GAIN: f64 = 20.0;
 /// Largest pull while the tendons are slack, in multiples of t_min. It must exceed the friction of a motor.
 const STRONGEST_SLACK: f64 = 2.0;
@@ -212,8 +212,8 @@ impl SlackTakeUp {
                 slack.targets.travel[motor] = travel - GAP;
                 slack.targets.integral[motor] = 0.0;
             } else {
-                // With more noise, only the inertia of the finger raises the tension of a taut tendon above the noise,
-                // so the winding is faster.
+                // Only the inertia of the finger lets the tension of a taut tendon rise above strong noise. A faster
+                // winding makes use of it.
                 let noise = (gauge.noise / (QUIET * self.minimum)).max(1.0);
                 let speed = (SPEED + ACCELERATION * slack.seconds) * noise;
                 slack.targets.speed[motor] = speed;

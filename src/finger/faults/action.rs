@@ -1,4 +1,4 @@
-//! The operations that remedies of faults and errors name.
+//! The operations that are named in the remedies of faults and errors.
 
 /// An operation of the library that a remedy asks the caller to perform. The texts describe the operation in words. The
 /// C interface adds the name of its call.

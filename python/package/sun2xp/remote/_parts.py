@@ -46,10 +46,10 @@ def _part(set_point: SetPoint, status: FingerStatus) -> Part:
 def path(
     finger: int, times: numpy.typing.ArrayLike, joints: numpy.typing.ArrayLike, status: FingerStatus
 ) -> Part:
-    """Returns the part of a path. Its command number is not set.
+    """Returns the Part that sends a path. Its command number is not set.
 
     Raises:
-        Refused: a wrong shape, times that do not rise from a number above 0, or joint angles outside their limits.
+        Refused: a wrong shape, times that are not above 0 or do not rise, or joint angles outside their limits.
     """
     instants = _array("times", times, (None,))
     count = len(instants)
