@@ -130,7 +130,7 @@
    jumps out of a call that opens a hand, that call writes no handle, and the hand stays open until exit.
 
    Undefined behaviour: the behaviour is undefined if a signal handler jumps out of any other call
-   (longjmp, siglongjmp). The same holds if a handler that interrupted a call calls pthread_exit or, in
+   (longjmp, siglongjmp). The same holds if a handler interrupts a call and then calls pthread_exit or, in
    C++, lets an exception escape.
 
    Memory: opening allocates the memory for the servos, for closing and for all calls that are not slow,
@@ -502,11 +502,11 @@ struct sun2xp_io_terms {
     double torque_constants[4];             /* Torque constant of each motor, N cm/A. */
 };
 
-/* What the sensors of a finger measured. The library sets all members to 0 before the call, and then size. */
+/* What the sensors of a finger measured. Before the call the library sets size, and all other members to 0. */
 struct sun2xp_io_sample {
     size_t size;                            /* sizeof (struct sun2xp_io_sample) in the library. */
-    double time;                            /* Time of the measurement, s of any clock that advances evenly; 0: when
-                                               the exchange returned. */
+    double time;                            /* Time of the measurement, s of any clock that advances evenly. 0 stands
+                                               for the time at which the exchange returned. */
     double tensions[4];                     /* Tensions at the gauges, N. */
     int encoders[4];                        /* Counts of the motor encoders. */
     unsigned int faults;                    /* Sum of SUN2XP_IO_... for faults that are present. Each faults the
@@ -962,7 +962,7 @@ struct sun2xp_set_point {
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
  "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
- This happens about once whenever two of the clocks have drifted apart by another period.
+ This happens about once each time two of the clocks have drifted apart by one more period.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1042,7 +1042,7 @@ struct sun2xp_path_pose {
    finger    1 to 3
    count     number of poses, 1 to 128
    poses     poses[count], in the order of their times; set size of every pose
-   seconds   how long the end of the path is valid, s; 0 for finger.motion.valid_ms
+   seconds   how long the path stays valid after its end, s; 0 for finger.motion.valid_ms
 
  The path begins at once. Its first point is the present place of the anchor of the fingertip's spring,
  and it continues the anchor's motion. It passes every pose at its time and rests at the last one.
@@ -1525,7 +1525,7 @@ struct sun2xp_status {
     double wake_up_median;                  /* Median delay of the start of a cycle, us (jitter). */
     double wake_up_p99;                     /* Delay that 99 of 100 cycles did not exceed, us. */
     double wake_up_maximum;                 /* Maximum delay, us. */
-    double torque_scale;                    /* Fraction of the joint torque within the tension limits, 0 to 1. */
+    double torque_scale;                    /* Fraction of the joint torque that the tension limits permit, 0 to 1. */
     unsigned long cycles;                   /* Cycles since sun2xp_open. */
     unsigned long skipped_periods;          /* Whole periods in which no cycle began because the previous cycle was
                                                not over or the servo thread did not run, up to now. One late cycle
@@ -2037,8 +2037,8 @@ int sun2xp_wait_event(sun2xp_hand *hand, struct sun2xp_event *event, double seco
  The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 
  When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
- called again. If they are called by the callback itself, they do not wait for it, and it is not called
- again after it has returned.
+ called again. If the callback itself makes one of these calls, the call does not wait for the callback.
+ The callback is not called again after it has returned.
 
  Returns 0, or a negative number with
    EPERM    forked child

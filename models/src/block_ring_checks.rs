@@ -23,7 +23,7 @@ impl AsRef<[AtomicU64]> for Memory {
 fn take(reader: &mut BlockReader<Memory>, arrived: &mut Vec<u64>) -> Found {
     let mut bytes = Vec::new();
     let found = reader.read(&mut bytes);
-    assert_ne!(found, Found::Damaged, "the positions of different blocks");
+    assert_ne!(found, Found::Damaged, "the reader mixed the positions of different blocks");
     if let Found::Block([mark]) = found {
         let value = u64::from_le_bytes(bytes.try_into().expect("parts of different blocks"));
         assert_eq!(value, mark, "parts of different blocks");

@@ -69,7 +69,7 @@ pub(super) mod tests {
         assert!(identities.add(FingerNumber::THREE, Path::new("/dev/right"), &identity(6)).is_ok());
         let error = identities
             .add(FingerNumber::THREE, Path::new("/dev/right"), &identity(5))
-            .expect_err("the number of fingers 1 and 2");
+            .expect_err("fingers 1 and 2 have this number");
         assert!(
             matches!(error, HandError::SameNumber { fingers: [FingerNumber::ONE, FingerNumber::THREE], .. }),
             "{error}"

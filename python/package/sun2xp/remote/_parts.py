@@ -56,7 +56,7 @@ def path(
     if not 1 <= count <= MOST_POSES:
         raise _refused(f"a path has 1 to {MOST_POSES} poses, and not {count}")
     if instants[0] <= 0 or (numpy.diff(instants) <= 0).any():
-        raise _refused(f"the times of a path rise from a number above 0, and not {instants.tolist()}")
+        raise _refused(f"the times of a path must be above 0 and must rise: {instants.tolist()}")
     poses = _joints(finger, joints, (count, 3), status)
     return Part(finger, 0, PATH, poses=[(instant, *pose) for instant, pose in zip(instants, poses)])
 
