@@ -95,8 +95,11 @@ mod tests {
             panic!("a test");
         }));
         assert!(panicked.is_err());
-        assert_eq!((*mutex.lock(), mutex.try_lock().map(|value| *value)), (1, Some(1)));
-        assert_eq!((*lock.read(), lock.try_read().map(|value| *value), *lock.write()), (2, Some(2), 2));
+        assert_eq!(*mutex.lock(), 1);
+        assert_eq!(mutex.try_lock().map(|value| *value), Some(1));
+        assert_eq!(*lock.read(), 2);
+        assert_eq!(lock.try_read().map(|value| *value), Some(2));
+        assert_eq!(*lock.write(), 2);
     }
 
     #[test]
