@@ -116,7 +116,9 @@ const CLANG_AFTER_APT: (&str, &str) =
 fn nothing_is_installed_if_nothing_is_missing() {
     let (passed, output) = run_script(&[CARGO, APT, SUDO, ("looks-for-clang", "exit 0")], None);
     assert!(passed, "{output}");
-    assert_eq!(output, "CI=true: cargo test --locked --workspace --test hand\n");
+    let (fetched, tested) = output.split_once('\n').expect("two lines");
+    assert_eq!(fetched, "CI=: cargo fetch --locked --quiet");
+    assert_eq!(tested, "CI=true: cargo test --locked --workspace --test hand\n");
 }
 
 #[test]
@@ -137,11 +139,14 @@ fn a_failed_installation_is_reported_with_the_remedy() {
     let remedy = "Run as root: apt-get install --no-install-recommends clang libc6-dev";
     let never = ("looks-for-clang", "exit 1");
     let failing = ("apt-get", "echo no network; exit 100");
+    let without_network = ("cargo", "echo cargo $*; [ $1 != fetch ]");
+    let found = ("looks-for-clang", "exit 0");
     for (programs, reason) in [
         (&[CARGO, failing, SUDO, never][..], remedy),
         (&[CARGO, APT, SUDO, never], "still missing after the packages were installed: clang"),
         (&[CARGO, SUDO, never], "apt-get is missing"),
         (&[APT, SUDO, never], "cargo is missing"),
+        (&[without_network, APT, SUDO, found], "the crates were not downloaded. Check the network"),
     ] {
         let (passed, output) = run_script(programs, None);
         assert!(!passed && output.contains(reason) && !output.contains("cargo test --locked"), "{output}");
