@@ -56,14 +56,12 @@ impl Fingers {
     pub fn progress(&self) -> [Arrival; FINGERS] {
         std::array::from_fn(|index| {
             let number = index as i32 + 1;
-            let (Ok(arrival), Ok(report)) = (self.hand.arrival(number), self.hand.report(number)) else {
-                return Arrival::default();
-            };
+            let Ok((in_force, report)) = self.hand.newest_in_force(number) else { return Arrival::default() };
             let goal = &self.goals[index];
-            let follows = report.stage == Stage::Running && !report.expired;
+            let follows = in_force && report.stage == Stage::Running && !report.expired;
             Arrival {
-                arrived: follows && arrival.arrived && (goal.whole || !goal.is_commanded()),
-                settled: follows && arrival.settled,
+                arrived: follows && report.arrival.arrived && (goal.whole || !goal.is_commanded()),
+                settled: follows && report.arrival.settled,
             }
         })
     }

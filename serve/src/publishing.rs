@@ -3,16 +3,14 @@
 
 use crate::ServeError;
 use crate::cycles::{Cycles, Taken};
-use crate::goal::Goal;
 use crate::shared::Shared;
 use crate::status::status;
-use std::iter::from_fn;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use sun2xp::events::{Event, EventKind, EventQueue};
 use sun2xp::nalgebra::Vector3;
 use sun2xp::realtime::{Clock, MonotonicClock, now};
-use sun2xp_remote_protocol::{Event as Message, FINGERS, FieldError, Finger, State};
+use sun2xp_remote_protocol::{Event as Message, FieldError, Finger, State};
 use zenoh::pubsub::Publisher;
 use zenoh::qos::CongestionControl;
 use zenoh::{Session, Wait};
@@ -92,12 +90,10 @@ impl Publishing {
         };
         let missing = u32::try_from(missing).unwrap_or(u32::MAX);
         send(&self.state, State { missing, number: self.states, time, owner, records }.encode());
-        let events: Vec<Event> = from_fn(|| self.events.next()).take(MOST_EVENTS).collect();
-        // Read after the events, because the owner may have sent a new destination since the State.
-        let goals = self.shared.desk.lock().goals();
-        for event in &events {
-            if self.is_of_destination(event, &goals) {
-                self.publish_event(event);
+        for _ in 0..MOST_EVENTS {
+            let Some(event) = self.events.next() else { break };
+            if self.is_of_destination(&event) {
+                self.publish_event(&event);
             }
         }
         if self.states % STATES_PER_STATUS == 1 {
@@ -109,14 +105,16 @@ impl Publishing {
 
     /// Returns false for an arrival at a place that is not the owner's destination. This is a set point on the way,
     /// which the bound of the lead makes, or the place where the finger was caught.
-    fn is_of_destination(&self, event: &Event, goals: &[Goal; FINGERS]) -> bool {
+    fn is_of_destination(&self, event: &Event) -> bool {
         if event.kind != EventKind::Arrived {
             return true;
         }
         let index = event.finger.index();
         let tolerance = self.shared.hand.configuration().fingers[index].events.arrived_degrees.to_radians();
         let [first, second, third, _] = event.values;
-        goals[index].is_reached(&Vector3::new(first, second, third), tolerance)
+        // Read after the event, because the owner may have sent a new destination since the State.
+        let goal = self.shared.desk.lock().goals()[index];
+        goal.is_reached(&Vector3::new(first, second, third), tolerance)
     }
 
     fn publish_event(&mut self, event: &Event) {

@@ -1,7 +1,7 @@
 //! Waiting until fingers have arrived at their set points, or have come to rest.
 
 use crate::control::events::Arrival;
-use crate::finger::Stage;
+use crate::finger::{FingerReport, Stage};
 use crate::hand::{Hand, HandError};
 use crate::model::FingerNumber;
 use std::thread::sleep;
@@ -80,14 +80,12 @@ impl Waiting {
 }
 
 impl Hand {
-    /// The progress of finger 1, 2 or 3 toward the set point that was sent last. The finger has neither arrived nor
-    /// settled while this set point is not in force.
+    /// The newest report of finger 1, 2 or 3, and whether the set point that was sent last is in force in it.
     ///
     /// # Errors
     /// Returns an error if there is no such finger.
-    pub fn arrival(&self, finger: i32) -> Result<Arrival, HandError> {
-        let (in_force, report) = self.dispatcher.member(finger.try_into()?)?.mailbox.newest_in_force();
-        Ok(if in_force { report.arrival } else { Arrival::default() })
+    pub fn newest_in_force(&self, finger: i32) -> Result<(bool, FingerReport), HandError> {
+        Ok(self.dispatcher.member(finger.try_into()?)?.mailbox.newest_in_force())
     }
 
     /// Waits until the condition holds for every one of these fingers at the same time, for the set points that were
