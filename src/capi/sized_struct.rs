@@ -1,7 +1,8 @@
 //! Structs of the caller that begin with their size, so that later versions of the library can add members at the end.
-//! There is one rule: `size` is the size that the caller's compiler knows. It must not be smaller than the first
-//! version of the struct. If it is larger than the struct of this library, the program was compiled with a newer
-//! header: the members that this library does not know are set to zero in a result, and ignored in an argument.
+//! There is one rule: `size` is the size that the caller's compiler knows. It must not be smaller than the struct of
+//! this library, which is the first version of the struct until a member is added. If it is larger, the program was
+//! compiled with a newer header: the members that this library does not know are set to zero in a result, and ignored
+//! in an argument.
 
 use crate::capi::hand_table;
 use crate::capi::handle::Handle;

@@ -11,6 +11,8 @@ pub use client::Client;
 use std::net::TcpListener;
 use std::path::Path;
 use std::time::{Duration, Instant};
+use sun2xp::hand::parse_configuration;
+use sun2xp::model::configuration::NamedHand;
 use sun2xp::{Configuration, Hand, RealTime};
 use sun2xp_serve::server::{Server, prepare};
 use sun2xp_serve::settings::{Overrides, Settings};
@@ -37,9 +39,21 @@ impl Rig {
 
     /// Starts a server with these tables. Paths begin in `folder`.
     pub fn from_text(text: &str, folder: &Path, endpoint: String) -> Self {
+        Self::with_hand(Configuration::default(), text, folder, endpoint)
+    }
+
+    /// Starts a server on loopback with the simulated hand of this name.
+    pub fn named(hand: NamedHand, text: &str) -> Self {
+        let endpoint = format!("tcp/127.0.0.1:{}", free_port());
+        let text = format!("[serve]\nlisten = ['{endpoint}']\n{text}\n{CLIENTS}");
+        let configuration = format!("[finger.simulation]\nhand = {:?}\n", hand.name());
+        let configuration = parse_configuration(&configuration).unwrap_or_else(|error| panic!("{error}"));
+        Self::with_hand(configuration, &text, Path::new("."), endpoint)
+    }
+
+    fn with_hand(mut configuration: Configuration, text: &str, folder: &Path, endpoint: String) -> Self {
         let settings = Settings::from_text(text, &folder.join("sun2xp.toml"), &Overrides::default());
         let settings = settings.unwrap_or_else(|error| panic!("{error}"));
-        let mut configuration = Configuration::default();
         configuration.hand.real_time = RealTime::Ignore;
         prepare(&mut configuration, &settings.limits);
         let hand = Hand::open(configuration).expect("the simulated hand");

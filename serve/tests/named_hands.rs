@@ -1,0 +1,81 @@
+//! The hands whose tendons rub and which differ from their configuration, commanded over the network.
+
+mod common;
+
+use common::client::{part, request};
+use common::{Rig, wait_for};
+use sun2xp::finger::FingerReport;
+use sun2xp::model::configuration::NamedHand;
+use sun2xp::nalgebra::Vector3;
+use sun2xp::{FaultKind, Stage};
+use sun2xp_remote_client::{RemoteConfiguration, RemoteHand};
+use sun2xp_remote_protocol::Action;
+
+fn report(rig: &Rig, finger: i32) -> FingerReport {
+    rig.hand().report(finger).expect("a report")
+}
+
+/// Moves every finger to three places, and waits until it has settled. Each joint must then be `near` its set point, rad.
+/// The tips touch nothing.
+fn follows(name: NamedHand, near: f64) {
+    let rig = Rig::named(name, "end_ms = 20000");
+    let (hand, client) = ("hand".parse().expect("a name"), "alice".parse().expect("a name"));
+    let hand = RemoteHand::open(&RemoteConfiguration::new(&rig.endpoint, hand, client)).expect("open");
+    for place in [[0.1, 0.5, 0.9], [-0.1, 0.7, 0.6], [0.0, 0.4, 1.0]] {
+        (1..=3).for_each(|finger| hand.send_position(finger, place).expect("sent"));
+        for finger in 1..=3 {
+            wait_for("rest", || hand.progress(finger).is_ok_and(|progress| progress.settled).then_some(()));
+            let error = (Vector3::from(hand.position(finger).expect("a position")) - Vector3::from(place)).amax();
+            println!("{}: finger {finger} is {error:.4} rad from {place:?}", name.name());
+            assert!(error < near, "{error} rad");
+            assert_eq!(report(&rig, finger).stage, Stage::Running);
+        }
+    }
+    drop(hand);
+    rig.server.end();
+}
+
+/// Moves finger 1 and falls silent on its way. Until its end state, the finger must hold the place where it was caught.
+/// Each joint must stay as `near` as this, rad.
+fn is_caught(name: NamedHand, near: f64) {
+    let rig = Rig::named(name, "");
+    let mut alice = rig.connect("alice");
+    alice.acquire_with(request(Action::Acquire));
+    let wanted = [0.1, 0.5, 0.9];
+    alice.repeat_until(&[part(1, wanted)], "set point", |_| (rig.set_point() == wanted).then_some(()));
+    let caught = wait_for("catch", || Some(report(&rig, 1)).filter(|report| report.expired));
+    assert_eq!(caught.set_point.stiffness[(0, 0)], 1.0, "the soft stiffness");
+    let mut farthest = 0f64;
+    let fault = wait_for("end state", || {
+        let now = report(&rig, 1);
+        let Stage::Faulted(fault) = now.stage else {
+            farthest = farthest.max((now.cycle.joints - caught.set_point.joints).amax());
+            return None;
+        };
+        Some(fault)
+    });
+    println!("{}: {farthest:.4} rad from the place of the catch", name.name());
+    assert!(matches!(fault.kind, FaultKind::SetPointExpired | FaultKind::FingerStopCall), "{fault}");
+    assert!(farthest < near, "{farthest} rad");
+    rig.server.end();
+}
+
+#[test]
+fn a_worn_hand() {
+    follows(NamedHand::Worn, 0.05);
+    is_caught(NamedHand::Worn, 0.03);
+}
+
+#[test]
+fn a_sheathed_hand() {
+    follows(NamedHand::Sheathed, 0.03);
+    is_caught(NamedHand::Sheathed, 0.03);
+}
+
+/// The gauges and moment arms of this hand are wrong by as much as a force of 1 N at the tip. The default Kx of 3 N/cm
+/// gives way by 3 mm, and the soft Kx of 1 N/cm of the catch by 1 cm.
+#[test]
+fn a_cheap_hand() {
+    follows(NamedHand::Cheap, 0.12);
+    is_caught(NamedHand::Cheap, 0.2);
+}
