@@ -1,10 +1,14 @@
 //! `sun2xp calibrate`, started by a person and by a script.
 
+#[path = "common/board_at_port.rs"]
+mod board_at_port;
+
+use board_at_port::Board;
 use serde_json::Value;
 use std::fs;
-use std::io::{BufRead, BufReader, Write};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
 /// A configuration file in a temporary folder.
@@ -50,33 +54,12 @@ fn contains(text: &str, parts: &[&str]) {
     }
 }
 
-/// A board with finger 1 at a pseudo-terminal.
-struct Board(Child);
-
-impl Board {
-    fn start(link: &Path) -> Self {
-        let mut board = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
-        board.args(["board", "--finger", "1", "--patient", "500", "--priority", "20", "--link"]).arg(link);
-        let mut board = board.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().expect("the board runs");
-        let mut line = String::new();
-        BufReader::new(board.stdout.take().expect("a pipe")).read_line(&mut line).expect("its port");
-        Self(board)
-    }
-}
-
-impl Drop for Board {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
 /// The other fingers have neither boards nor ports.
 #[test]
 fn a_person_is_asked_to_hold_one_finger_in_its_pose() {
     let links = tempfile::tempdir().expect("a folder");
     let link = links.path().join("board");
-    let _board = Board::start(&link);
+    let _board = Board::start(1, &link);
     let desk = Desk::new(&format!(
         "[hand]\nrate = 500\n[finger.1]\nport = \"{}\"\n[finger.1.zeroing]\npose_degrees = [0.0, -10.0, 60.0]\n\
          [finger.2]\nport = \"/dev/sun2xp-none-2\"\n[finger.3]\nport = \"/dev/sun2xp-none-3\"\n",
@@ -119,6 +102,7 @@ fn a_finger_that_nobody_holds_is_refused_with_what_to_do() {
                 "--finger 3 --zero --identify\n",
             ],
         );
+        assert!(!said(&output).contains("\\n"), "{}", said(&output));
         assert_eq!(said(&output).contains("Press Enter"), !input.is_empty());
         assert!(desk.unchanged());
     }
@@ -130,7 +114,7 @@ fn a_finger_that_nobody_holds_is_refused_with_what_to_do() {
 fn signs_are_stored_before_a_zero_that_is_refused() {
     let links = tempfile::tempdir().expect("a folder");
     let link = links.path().join("board");
-    let _board = Board::start(&link);
+    let _board = Board::start(1, &link);
     let desk = Desk::new(&format!(
         "[hand]\nrate = 500\n[finger.1]\nport = \"{}\"\n[finger.1.encoder]\nsign = [-1, 1, 1, 1]\n\
          [finger.1.zeroing]\npose_degrees = [0.0, -10.0, 60.0]\n\
