@@ -35,8 +35,8 @@ fn main() {
     }
 }
 
-/// Whether the loader of the C library knows packed addresses: that of glibc does since 2.36. A library for another
-/// system is not packed.
+/// Whether the loader of the C library knows packed addresses. The loader of glibc knows them since version 2.36. A
+/// library for another system is not packed.
 fn loader_unpacks() -> bool {
     let native = env::var("TARGET").is_ok_and(|target| Ok(target) == env::var("HOST"));
     native && glibc().is_some_and(|version| version >= (2, 36))

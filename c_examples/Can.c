@@ -19,7 +19,7 @@
 /* The watchdog of the simulated drives has a long time limit, because a busy machine may delay the drives. */
 #define CONFIGURATION "[hand]\nend_state = \"release\"\nwatchdog_ms = 200\n"
 
-/* Longest wait for simulated drives in an exchange, s. For real drives it is the deadline of the command. */
+/* Longest wait for the simulated drives in an exchange, s. With real drives, wait until the deadline in the command. */
 #define PATIENCE 0.08
 
 struct drives {

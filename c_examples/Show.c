@@ -1,8 +1,8 @@
 /* Show.c - three fingers take a ball and move it about, for people who watch: run sun2xp monitor beside it.
 
    The hand is that of grasp.toml, as in Grasp.c. The fingers lift the ball, move it along a circle while they change
-   their stiffness, and put it down. The argument is the time of the circling, s. It is 10 s without an argument. The
-   exit status is 0 if the fingers still have the ball at the end. C99. */
+   their stiffness, and put it down. The argument is the time for which the ball moves along the circle, s; 10 by
+   default. The exit status is 0 if the fingers still have the ball at the end. C99. */
 
 #include <math.h>
 #include <stdio.h>
@@ -79,7 +79,7 @@ static double between(double from, double to, double part)
     return from + (to - from) * (HALF - HALF * cos(HALF * TURN * part));
 }
 
-/* Moves from one grip to another. The time is that of the simulation, which passes more slowly on a busy machine. */
+/* Moves from one grip to another. The seconds are simulated time, which passes more slowly on a busy machine. */
 static struct Grip glide(struct Grip From, struct Grip To, double seconds)
 {
     const struct timespec tick = {0, 10000000};

@@ -65,8 +65,8 @@ static double rubbed(double speed, double loss)
     return fabs(speed) <= loss ? 0 : speed - (speed > 0 ? loss : -loss);
 }
 
-/* The inverse of the inertia of the joints. Joint 0 is decoupled: inverse is that of joint 0, of joint 1, of joint 2,
-   and the entry that couples joints 1 and 2. */
+/* Inverts the inertia matrix of the joints. Joint 0 is decoupled. inverse gets the diagonal entries of joints 0, 1 and
+   2 of the inverse matrix, and then the entry that couples joints 1 and 2. */
 static void invert_inertia(const struct finger_physics *finger, double inverse[4])
 {
     double c1 = cos(finger->theta[1]), c12 = cos(finger->theta[1] + finger->theta[2]);

@@ -143,7 +143,8 @@
    A child that is forked after OpenHand has no hand: each call but HandError is refused with EPERM.
    When a planner exits with its hand open, the library brings the fingers to their end state, as
    CloseHand does. The servo threads block all signals and run under SCHED_FIFO if the system permits it.
-   Chapters 5 and 6 of sun2xp.h have the details, and calls for status, faults and everything else.
+   Chapters 5 and 6 of sun2xp.h have the details. sun2xp.h also has the calls for status, faults and
+   everything else.
 
 
    7. CONFIGURATION
@@ -175,8 +176,9 @@
        [finger.1]
        port = "/dev/ttyUSB0"
 
-   With a table [remote], its keys endpoint and hand name a hand that sun2xp serve offers on another
-   machine, such as "tls/cell:7447" and "left" (docs/installation.md).
+   If the file has a table [remote], OpenHand opens a hand that sun2xp serve offers on another machine.
+   The keys "endpoint" and "hand" of that table select the hand, for example with the values
+   "tls/cell:7447" and "left" (docs/installation.md).
    OpenHand then needs libsun2xp_remote.so, and EBUSY also means that another planner commands the hand.
    SendPos does not wait for the network. GetPos is refused with ETIMEDOUT if its data are too old.
 
@@ -414,9 +416,9 @@ int GetPosD(int, double *);
      const char *HandError(void);
 
  Returns the text of the calling thread's last refused call, or an empty string if no call was
- refused. A call that succeeds does not change the text, as it does not change errno. So read the
- text only after a call has returned -1. The pointer is never null. Do not free the text: it belongs
- to the library, and is valid until the next refused call of the same thread.
+ refused. A call that succeeds changes neither the text nor errno. So read the text only after a call
+ has returned -1. The pointer is never null. Do not free the text: it belongs to the library, and is
+ valid until the next refused call of the same thread.
 
  Threads: any; each has its own text. Works in a forked child too.
  */

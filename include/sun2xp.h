@@ -8,8 +8,8 @@
        2. Results and errors      5. Threads, signals, fork, exit
        3. Units, frames, order    6. Servo and real time
 
-   The calls follow in sections, each with its manual. Sun2Xp.h has the five calls of 1990, which share
-   their hand with this header: sun2xp_default_hand returns its handle.
+   The calls follow in sections, each with its manual. Sun2Xp.h has the five calls of 1990. The calls of
+   this header work on the hand of those calls too: sun2xp_default_hand returns the handle of that hand.
 
 
    1. QUICK START
@@ -71,8 +71,8 @@
    Arrays, structs and texts are read and written only during the call. An output is written only if the
    call succeeds, and by sun2xp_next_event and sun2xp_wait_event only if they return 1.
 
-   The first refusal of each kind in a process is also a message, unless hand.print_refusals is false.
-   Messages go to the callback of sun2xp_set_log, or to standard error.
+   The first refusal of each kind in a process is also reported in a message, unless hand.print_refusals
+   is false. Messages go to the callback of sun2xp_set_log, or to standard error.
 
 
    3. UNITS, FRAMES, ORDER
@@ -153,17 +153,17 @@
    forked from it is refused with EPERM, except sun2xp_error, sun2xp_error_text, sun2xp_version,
    sun2xp_version_number, sun2xp_abi_version, sun2xp_default_hand, sun2xp_fault_text and sun2xp_stop_all;
    the parent is not affected. This applies to children of fork, of _Fork and of the system calls fork and
-   clone, and already inside handlers of pthread_atfork. Before Linux 4.14 it applies only to children of
-   fork, and only after these handlers have run. A child that shares the memory of its parent (vfork) may
-   only call exec. A child that calls exec starts afresh. A hand that is closed releases its ports even if
-   forked children are alive. If the program ends without closing, its ports stay locked until those
-   children have ended too.
+   clone. It also applies while handlers of pthread_atfork run. Before Linux 4.14 it applies only to
+   children of fork, and only after these handlers have run. A child that shares the memory of its parent
+   (vfork) may only call exec. A child that calls exec starts afresh. A hand that is closed releases its
+   ports even if forked children are alive. If the program ends without closing, its ports stay locked
+   until those children have ended too.
 
-   Descriptors: a daemon must detach before it opens a hand. The library's descriptors close at exec. Their
-   numbers are 512 or more if the limit (ulimit -n) permits it, so a program may close all descriptors up
-   to 255 and keep its hands. If a program closes all descriptors, the fingers fault with
+   Descriptors: a daemon must detach before it opens a hand. The library's descriptors close at exec.
+   Their numbers are 512 or more if the limit (ulimit -n) permits it, so a program may close all
+   descriptors up to 255 and keep its hands. If a program closes all descriptors, the fingers fault with
    SUN2XP_FAULT_PORT_CLOSED or SUN2XP_FAULT_PORT_VANISHED. The library does not touch files that the
-   program then opens under these numbers. Closing and opening start a hand again.
+   program then opens under these numbers. To start a hand again, close and open it.
 
    Exit: when a program exits with hands open, an exit handler of the library brings the fingers to their
    end state, as closing does. The first opening registers that handler (atexit). Exit handlers that the
@@ -205,7 +205,7 @@
 #pragma pack(push, 16)
 #endif
 
-/* Some calls have the name of their struct, which -Wshadow of g++ takes for a hidden constructor. */
+/* Some calls have the name of their struct. -Wshadow of g++ warns that such a call hides a constructor. */
 #if defined(__cplusplus) && defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"
@@ -229,7 +229,7 @@ typedef struct sun2xp_hand sun2xp_hand;
 #define SUN2XP_ERROR_DEFECT 1               /* The library has a defect. Please report it. */
 #define SUN2XP_ERROR_FORKED 2               /* The process is a forked child, which has no servo threads. */
 #define SUN2XP_ERROR_EXITING 3              /* The process is exiting, and its hands are closed. */
-#define SUN2XP_ERROR_NO_HAND 4              /* The handle is not that of an open hand. */
+#define SUN2XP_ERROR_NO_HAND 4              /* The handle does not belong to an open hand. */
 #define SUN2XP_ERROR_BUSY 5                 /* Hand or finger is busy: being opened, closed, calibrated or recovered.
                                                Call again later. */
 #define SUN2XP_ERROR_TOO_MANY 6             /* Too many hands, groups or reflexes. */
@@ -255,7 +255,7 @@ typedef struct sun2xp_hand sun2xp_hand;
 /*
  A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread.
 
- remedy names calls only. It is empty if no call helps. The text then contains the remedy.
+ The member remedy names calls only. It is empty if no call helps. The member text then contains the remedy.
  */
 struct sun2xp_error {
     size_t size;                            /* sizeof (struct sun2xp_error), set before the call. */
@@ -336,7 +336,7 @@ int sun2xp_set_log(sun2xp_log callback, void *user);
 
 /* ---- VERSIONS ---------------------------------------------------------------------------------------------------- */
 
-#define SUN2XP_ABI_VERSION 0                /* Rises only when programs must be compiled again. */
+#define SUN2XP_ABI_VERSION 0                /* This number rises only when programs must be compiled again. */
 
 /*
  sun2xp_version - the version of the library that runs
@@ -350,7 +350,8 @@ const char *sun2xp_version(void);
 /*
  sun2xp_version_number - the version as a number that rises
 
- Returns 10000 times the major, plus 100 times the minor, plus the patch number, as SUN2XP_VERSION_NUMBER.
+ Returns 10000 times the major, plus 100 times the minor, plus the patch number.
+ SUN2XP_VERSION_NUMBER is the same number for the header.
 
  Threads: any. Works in a forked child too.
  */
@@ -360,7 +361,7 @@ unsigned int sun2xp_version_number(void);
  sun2xp_abi_version - the number of the binary interface
 
  A program must not run if this differs from its SUN2XP_ABI_VERSION. The number is part of the name of the shared
- library, so only a program that loads the library by dlopen needs to compare.
+ library, so only a program that loads the library by dlopen needs this comparison.
 
  Threads: any. Works in a forked child too.
  */
@@ -454,9 +455,9 @@ int sun2xp_open_named(const char *name, sun2xp_hand **hand);
 /*
  sun2xp_close - stop a hand
 
- Brings every finger to the configured end state and stops the servos, as CloseHand does. The handle
- is not that of an open hand afterwards, and no later hand has the same handle. At exit the library
- closes all hands that are still open.
+ Brings every finger to the configured end state and stops the servos, as CloseHand does. Afterwards the
+ handle does not belong to an open hand, and no later hand has the same handle. At exit the library closes
+ all hands that are still open.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -577,7 +578,7 @@ struct sun2xp_io {
    ENOMEM   there is not enough memory
    EMFILE   16 hands are open
    ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
-   EINVAL   the configuration is unusable, or gauge.newton_per_count is that of another board
+   EINVAL   the configuration is unusable, or gauge.newton_per_count or gauge.zero was set for another board
    others   as sun2xp_open, and the errno that start has returned
 
  Threads: any.
@@ -699,13 +700,14 @@ int sun2xp_position(sun2xp_hand *hand, int finger, double *position);
 /*
  Result of sun2xp_tip. Vectors are in the finger's frame.
 
- force is computed from the measured tensions, so it includes friction, weight and inertia of the finger.
- It is never NaN. Near singular poses there are directions that the joints cannot measure. Along these,
- force and stiffness are zero. contact_force does not contain constant errors of the gauges. It is zero
- while the finger is not running. stiffness contains the part of Kx that the finger applies at present.
- The joint limits, a tip near the axis of joint 0 and the rotational stiffness of a contact add to it.
- stiffness is zero while the finger is not running. slide_speed is 0 while touching is 0. While touching
- is 1, the tip slides on the object at this speed, or tip and object move together at this speed.
+ The member force is computed from the measured tensions, so it includes friction, weight and inertia of
+ the finger. It is never NaN. Near singular poses there are directions that the joints cannot measure.
+ Along these, the members force and stiffness are zero. The member contact_force does not contain constant
+ errors of the gauges. The member stiffness contains the part of Kx that the finger applies at present.
+ The joint limits, a tip near the axis of joint 0 and the rotational stiffness of a contact add to it. The
+ members contact_force and stiffness are zero while the finger is not running. The member slide_speed is 0
+ while the member touching is 0. While touching is 1, the tip slides on the object at this speed, or tip
+ and object move together at this speed.
  */
 struct sun2xp_tip {
     size_t size;                            /* sizeof (struct sun2xp_tip), set before the call. */
@@ -940,9 +942,10 @@ int sun2xp_send_joint_torque(sun2xp_hand *hand, int finger, const double *torque
 struct sun2xp_set_point {
     size_t size;                            /* sizeof (struct sun2xp_set_point), the same in every set point. */
     int finger;                             /* Finger, 1 to 3. */
-    const double *position;                 /* Angles of sun2xp_send_position. Null: tip decides, or the pose stays. */
-    const double *tip;                      /* Position of sun2xp_send_tip. Null: position decides, or the pose
-                                               stays. */
+    const double *position;                 /* Angles of sun2xp_send_position. Null: the member tip gives the pose,
+                                               or the pose stays. */
+    const double *tip;                      /* Position of sun2xp_send_tip. Null: the member position gives the pose,
+                                               or the pose stays. */
     const double *stiffness;                /* Matrix of sun2xp_send_stiffness. Null: the stiffness stays. */
     double damping;                         /* Ratio of sun2xp_send_damping. 0: the damping stays. */
 };
@@ -1008,7 +1011,7 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
    ENODEV   no such hand, or it was closed meanwhile
    EINVAL   no such finger; no such until; seconds is negative or NaN
    EIO      a finger is faulted
-   EBUSY    a finger is limp, calibrated or closed
+   EBUSY    a finger is limp, is being calibrated, or is closed
    ETIMEDOUT  the time is over; sun2xp_error_text names a finger that has not arrived or settled
 
  Threads: any.
@@ -1026,11 +1029,12 @@ int sun2xp_wait(sun2xp_hand *hand, int finger, int until, double seconds);
 /*
  Pose of a path (sun2xp_send_path).
 
- is_tip is the same in every pose of a path.
+ The member is_tip must be the same in every pose of a path.
  */
 struct sun2xp_path_pose {
     size_t size;                            /* sizeof (struct sun2xp_path_pose), the same in every pose of the path. */
-    int is_tip;                             /* 0: place holds joint angles. 1: a position of the tip. */
+    int is_tip;                             /* 0: the member place holds joint angles. 1: it holds a position of the
+                                               tip. */
     double time;                            /* Time since the beginning of the path, s. */
     double place[3];                        /* Joint angles, rad, or x, y, z of the tip, finger's frame, cm. */
     const double *stiffness;                /* Matrix of sun2xp_send_stiffness. Null: no effect on stiffness. */
@@ -1145,7 +1149,8 @@ struct sun2xp_palm_pose {
    jacobian   result: jacobian[9], row by row: entry [row][column] is the motion of the tip
               along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8)
 
- A force f on the tip acts on joint k as the sum over the axes of entry [axis][k] times f[axis], N cm.
+ A force f on the tip exerts a torque on joint k: the sum over the axes of entry [axis][k] times f[axis],
+ N cm.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1323,9 +1328,9 @@ int sun2xp_limits(sun2xp_hand *hand, int finger, struct sun2xp_limits *limits);
 /*
  Result of sun2xp_touch.
 
- If valid is 0, pressed, count and force are 0 too. force is the count minus its zero, times
- newton_per_count of the configuration. Events are lost if they do not fit into the queue of the board,
- or if their element is not configured.
+ If the member valid is 0, the members pressed, count and force are 0 too. The member force is the count
+ minus its zero, times newton_per_count of the configuration. Events are lost if they do not fit into the queue of
+ the board, or if their element is not configured.
  */
 struct sun2xp_touch {
     size_t size;                            /* sizeof (struct sun2xp_touch), set before the call. */
@@ -1343,7 +1348,7 @@ struct sun2xp_touch {
    element   element, from 0, in the order of [finger.touch] in the configuration
    touch     result; set touch->size before the call
 
- A board reports an element when its reading changes. The servo fetches one such event of a finger in
+ A board reports a changed reading of an element as an event. The servo fetches one event of a finger in
  each period in which the line has time for it. A faulted finger keeps its last readings.
 
  Returns 0, or a negative number with
@@ -1509,12 +1514,12 @@ int sun2xp_adjust(sun2xp_hand *hand, int finger, const char *keys);
 /*
  Result of sun2xp_status.
 
- measured_rate is the cycles divided by the time up to this call: it falls while the servo does not run.
- The delays count since sun2xp_open or sun2xp_reset_timing. torque_scale applies to all joints alike,
- so the torque keeps its direction. stiffness_scale is below 1 in poses in which the tendons cannot provide
- the whole Kx, for example near the straight pose. A joint beyond its limit can reduce it too, because the
- spring of the limit needs a part of what the tendons provide. sun2xp_tip gives the stiffness that
- results.
+ The member measured_rate is the number of cycles divided by the time up to this call: it falls while the
+ servo does not run. The delays cover the cycles since sun2xp_open or sun2xp_reset_timing. The member
+ torque_scale applies to all joints alike, so the torque keeps its direction. The member
+ stiffness_scale is below 1 in poses in which the tendons cannot provide the whole Kx, for example near
+ the straight pose. A joint beyond its limit can reduce it too, because the spring of the limit needs a
+ part of what the tendons provide. sun2xp_tip gives the stiffness that results.
  */
 struct sun2xp_status {
     size_t size;                            /* sizeof (struct sun2xp_status), set before the call. */
@@ -1536,10 +1541,10 @@ struct sun2xp_status {
                                                sun2xp_timing.foreign_frames. */
     double calibration;                     /* Progress of a calibration, 0 to 1. It is 0 if no calibration runs. */
     int memory_locked;                      /* 1: sun2xp_open has locked the memory of every servo thread, so that no
-                                               servo thread waits for a page. 0: the memory of at least one is not
-                                               locked. If the planner calls munlockall later, this memory is unlocked
-                                               too, and this member stays 1. sun2xp_close and sun2xp_open lock the
-                                               memory again. */
+                                               servo thread waits for a page. 0: the memory of at least one servo
+                                               thread is not locked. If the planner calls munlockall later, this
+                                               memory is unlocked too, and this member stays 1. sun2xp_close and
+                                               sun2xp_open lock the memory again. */
     int on_core;                            /* 1: each servo thread with a configured core runs on it. */
     double stiffness_scale;                 /* Fraction of Kx in force in the last cycle, 0 to 1. */
 };
@@ -1584,7 +1589,7 @@ int sun2xp_status(sun2xp_hand *hand, int finger, struct sun2xp_status *status);
 #define SUN2XP_STAGE_COMPUTE 5              /* Computing the command and the report. */
 #define SUN2XP_STAGE_CYCLE 6                /* From the scheduled start of a cycle to the end of its computation. */
 #define SUN2XP_STAGE_AGE 7                  /* Age of the newest measurement when the command computed from it takes
-                                               effect, by the board's clock. One period if nothing is late. */
+                                               effect, by the board's clock. It is one period if nothing is late. */
 
 /*
  Result of sun2xp_timing. All times are in ns, accurate to 1 %, at most 4.29e9, and 0 if no cycle had the
@@ -1599,7 +1604,8 @@ struct sun2xp_timing {
     unsigned long p99;                      /* 99 of 100 cycles took no longer. */
     unsigned long p999;                     /* 999 of 1000 cycles took no longer. */
     unsigned long maximum;                  /* Longest time of the stage. */
-    unsigned long cycles;                   /* All cycles of the finger. From here on, no member depends on stage. */
+    unsigned long cycles;                   /* All cycles of the finger. This member and all later ones do not depend
+                                               on the stage. */
     unsigned long overruns;                 /* Cycles that were not over when the next one was due. */
     unsigned long skipped_periods;          /* Whole periods in which no cycle began because the previous cycle was
                                                not over or the servo thread did not run, up to the last cycle. */
@@ -1843,7 +1849,7 @@ int sun2xp_stop(sun2xp_hand *hand, int finger);
    EINVAL   no such finger
    EIO      the finger faults again; or its board is not the one found by sun2xp_open, or has lost its
             zero; or its servo thread has failed (SUN2XP_FAULT_SERVO_PANIC), which only sun2xp_close and
-            sun2xp_open remedy. sun2xp_error_text says which
+            sun2xp_open remedy. sun2xp_error_text gives the reason
    ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: the port is not there yet, the board
             does not answer, or the servo does not run. Call again
 
@@ -1965,8 +1971,9 @@ struct sun2xp_event {
     int part;                               /* Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0. */
     unsigned long cycle;                    /* Cycle of the event, as in sun2xp_status and sun2xp_record. */
     unsigned long lost;                     /* Events lost since sun2xp_open because they were not taken in time. */
-    double time;                            /* Beginning of that cycle, s of CLOCK_MONOTONIC. */
-    double values[4];                       /* Values of the kind (docs/events.md); unused ones are 0. */
+    double time;                            /* Beginning of the event's cycle, s of CLOCK_MONOTONIC. */
+    double values[4];                       /* Values, whose meaning depends on the kind (docs/events.md). Unused
+                                               ones are 0. */
 };
 
 /*
@@ -2092,7 +2099,7 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 
 #define SUN2XP_WHEN_EVENT 1                 /* An event of the finger occurs. The member named event gives its kind. */
 #define SUN2XP_WHEN_OTHER_FINGER 2          /* An event of another finger occurs. The member named event gives its
-                                               kind, and the one named finger gives that finger. */
+                                               kind, and the member named finger gives the number of that finger. */
 #define SUN2XP_WHEN_FORCE_ABOVE 3           /* The force of the surroundings on the tip is above the value in the
                                                member bound, N. */
 #define SUN2XP_WHEN_TENSION_ABOVE 4         /* The tension of any tendon is above the value in the member bound, N. */
@@ -2107,9 +2114,9 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 #define SUN2XP_THEN_HOLD 2                  /* The finger stays where it is. */
 #define SUN2XP_THEN_SOFTEN 3                /* The tip gets the Kx in the member stiffness. */
 #define SUN2XP_THEN_RETRACT 4               /* The finger goes to the joint angles in the member position. */
-#define SUN2XP_THEN_GRIP 5                  /* The tip presses harder. Its force rises by the member named value, to
-                                               at most the one named largest, both in N. This needs a Kx without an
-                                               eigenvalue of 0. */
+#define SUN2XP_THEN_GRIP 5                  /* The tip presses harder. Its force rises by the amount in the member
+                                               value, but to at most the amount in the member largest, both in N.
+                                               This needs a Kx without an eigenvalue of 0. */
 #define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio in the member value. */
 
 /*
@@ -2205,8 +2212,9 @@ int sun2xp_remove_reflex(sun2xp_hand *hand, int finger, int number);
 /*
  Result of sun2xp_record: one cycle of a finger, from the black box.
 
- All cycles from oldest to newest are stored. If the finger was already faulted, or if a simulated finger
- had not answered, computed is 0, and so are all members after it.
+ The library stores all cycles from the member oldest to the member newest. If the finger was already
+ faulted, or if a simulated finger had not answered, the member computed is 0, and so are all members
+ after it.
  */
 struct sun2xp_record {
     size_t size;                            /* sizeof (struct sun2xp_record), set before the call. */

@@ -110,7 +110,7 @@ pub mod groups {
     pub use crate::hand::{FingerCommand, Pose, Until, Waiting};
 }
 
-/// Hardware of the program instead of boards at serial ports: [`Hand::open_with_io`].
+/// Hardware that the program provides, instead of boards at serial ports: [`Hand::open_with_io`].
 pub mod io {
     pub use crate::board::{FingerIo, HandIo, IoCommand, IoFaults, IoProperties, IoSample, IoTerms};
 }

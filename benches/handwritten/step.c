@@ -1,8 +1,8 @@
 /*
  * One servo step of Figures 9 and 10, from counts to motor torques and report, as handwritten C for this one finger.
- * The library's step is compared with it. It has the same arithmetic and the same features as Controller::cycle while a
- * fingertip is a spring with the report's law. Gravity compensation is off in both. It does not estimate the contact
- * force, which the library does in every step.
+ * The library's step is compared with it. This step has the arithmetic and the features of Controller::cycle for a
+ * fingertip that is a spring with the report's law. Gravity compensation is off in both. This step does not estimate
+ * the contact force, which the library does in every step.
  *
  * The units are those of the library: rad, cm, N, N cm, s. by_hand.rs repeats the structures of structures.h.
  */

@@ -45,9 +45,9 @@ const PRIORITY: u8 = 80;
 const BOARD_PRIORITY: u8 = 20;
 const WATCH_PRIORITY: u8 = 90;
 
-/// The machine counts as paused if a core did not run a thread for this long in total, ns, although the priority of
-/// this thread is above that of all servos. A reply may take half of a period. A board or a servo that loses this much
-/// of the other half misses its period.
+/// The machine counts as paused during a delay if the pauses of one core within the delay add up to this time, ns. A
+/// core pauses while it does not run its watch thread, whose priority is above that of all servos. Command and Reply
+/// take a part of each period. A board or a servo that loses this much of the rest can miss its period.
 const PAUSE: u64 = PERIOD / 5;
 
 /// Longest time until the fingers are under control.
@@ -189,7 +189,7 @@ fn start(
         let Finger { mailbox, port, schedule, board, uncollected: (timings, black_box), start } = finger;
         let ended = ended.clone();
         servos.push(spawn("servo", Priority { fifo: PRIORITY, core: None }, move |_| {
-            // A hand constructs the servo of a finger with its own line in the same way.
+            // A hand in which every finger has its own line constructs its servos in the same way.
             let mut servo = Servo::new(MonotonicClock, schedule, vec![port.with_requests(1)]);
             while !ended.load(Relaxed) {
                 servo.cycle();

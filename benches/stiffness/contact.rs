@@ -22,8 +22,8 @@ pub struct Residual {
     pub early: f64,
 }
 
-/// Returns the number of poses that do not come to rest within 2 s against a wall on any side, without friction, and
-/// the largest residual motion, cm rms.
+/// Moves the anchors of fingers without friction into walls on every side. Returns the number of poses in which a
+/// finger does not come to rest within 2 s at one or more of the walls, and the largest residual motion, cm rms.
 pub fn against_walls(case: &Case, stiffness: f64) -> (usize, f64) {
     let of_pose = each(&case.poses(), |_, pose| {
         let runs = WALLS.iter().flat_map(|&wall| axes().map(move |outward| (wall, outward)));

@@ -1,4 +1,4 @@
-//! Measurements for the table that push the tip slowly and measure its deflection.
+//! Measurements for the table: the tip is pushed slowly, and its deflection is measured.
 
 use crate::cases::{Case, Friction, axes};
 use crate::closed_loop::{ClosedLoop, Held, Senses};
@@ -40,7 +40,7 @@ pub fn fidelity(held: &Held) -> Fidelity {
 pub struct Pushed {
     /// Forces, N.
     pub forces: Vec<Vector3<f64>>,
-    /// Deflection of the true tip from the middle of each pair of pushes, cm.
+    /// For each pair of opposite pushes: half of the difference between the two positions of the true tip, cm.
     pub deflections: Vec<Vector3<f64>>,
     /// The reported stiffness as a part of Kx.
     pub scale: f64,

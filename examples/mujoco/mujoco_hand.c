@@ -81,8 +81,8 @@ static int start(void *user, const struct sun2xp_io_terms *terms, struct sun2xp_
     return 0;
 }
 
-/* The exchange of finger 1 advances the simulation by one period, with the torques of the last cycle. The samples of
-   all fingers are those of the end of that period. The torques of this cycle act in the next period. */
+/* The exchange of finger 1 advances the simulation by one period, with the torques of the last cycle. All fingers are
+   sampled at the end of that period. The torques of this cycle act in the next period. */
 static int exchange(void *user, const struct sun2xp_io_command *command, struct sun2xp_io_sample *sample)
 {
     struct finger *finger = user;

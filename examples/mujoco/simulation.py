@@ -19,7 +19,7 @@ import zlib
 import mujoco
 import numpy
 
-# Values that the model does not contain: those of docs/sun2xp.toml.
+# Values that the model does not contain. They are the defaults of docs/sun2xp.toml.
 MOTOR_RADIUS = 0.000475  # m, finger.geometry.motor_radius
 STIFFNESS = 30000.0  # N/m, finger.simulation.tendon_stiffness
 SHAFT_FRICTION = 0.05  # finger.simulation.shaft_friction
@@ -107,7 +107,7 @@ class Hand:
 
 
 class Memory:
-    """The memory that both processes have."""
+    """The memory that both processes share."""
 
     def __init__(self, path):
         numbers = FIRST_FINGER + 3 * SIZE

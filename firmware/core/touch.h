@@ -10,8 +10,8 @@ enum { TOUCH_ELEMENTS_MOST = 16, TOUCH_QUEUE = 16 };
 /* The properties of the elements that are fixed when the board is built, in counts of their converter. */
 struct touch_traits {
     uint16_t elements; /* 0 to TOUCH_ELEMENTS_MOST. */
-    uint16_t made;     /* An element is pressed when its count exceeds the one at power-up by more than this. */
-    uint16_t lost;     /* It is no longer pressed when its count exceeds that one by less than this. Below `made`. */
+    uint16_t made;     /* An element is pressed when its count exceeds its count at power-up by more than this. */
+    uint16_t lost;     /* It is released when its count exceeds that count by less than this. Below `made`. */
     uint16_t step;     /* A change by this much since the last event causes a pressure event. */
 };
 

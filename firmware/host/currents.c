@@ -1,4 +1,5 @@
-/* Tests the currents for torques, units, torque constants and limits of all sizes against the formula in 64 bits. */
+/* Compares the currents that the core sets with the formula in 64 bits, for torques, units, torque constants and limits
+   of all sizes. */
 
 #include "fake_hardware.h"
 #include "../core/protocol.h"

@@ -44,7 +44,7 @@ int main(void)
     static struct finger_traits traits;
     static struct finger finger;
     static struct board board;
-    /* First of all, so that nothing that follows can hang. */
+    /* The watchdog starts first, so that it also ends a hang in what follows. */
     watchdog_start();
     pins_start();
     drivers_start();

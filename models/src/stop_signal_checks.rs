@@ -4,7 +4,8 @@ use super::FaultKind;
 use super::stop_signal::{StopSignal, stop_all, stop_calls};
 use loom::thread;
 
-/// A recovery ignores the stop calls before its request, and no later one. Returns what the finger then has to do.
+/// A recovery ignores the stop calls before its request, and no later one. Returns the pending fault just after the
+/// recovery, and the pending fault after the later stop call.
 pub fn a_stop_call_during_a_recovery_is_not_lost() -> (Option<FaultKind>, Option<FaultKind>) {
     let mut signal = StopSignal::new(false, stop_calls());
     stop_all();

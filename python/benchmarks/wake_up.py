@@ -1,12 +1,12 @@
-"""Measures the wake-up of the servos with three planners: one burns Python, one sleeps, and one sleeps while another
-process burns Python. One run measures the three in turns. Prints the table of docs/python.md.
+"""Measures the wake-up of the servos with three planners: one burns Python (computes without a pause), one sleeps, and
+one sleeps while another process burns Python. One run measures the three in turns. Prints the table of docs/python.md.
 
     python wake_up.py [--rounds 10] [--seconds 10]
 
-The planner burns in as many threads as there are cores, and another thread reads and sends 1000 times a second. The
-other process burns in as many threads. It has no hand, so its interpreter lock cannot affect the servos. It shows
-the effect of cores that are in use. The figures are medians over all fingers and rounds. Run it on a quiet machine with
-real-time scheduling.
+The planner that burns Python does so in as many threads as there are cores, and another of its threads reads and sends
+1000 times a second. The other process burns Python in as many threads. It has no hand, so its interpreter lock cannot
+affect the servos. It shows the effect of cores that are in use. The figures are medians over all fingers and rounds.
+Run it on a quiet machine with real-time scheduling.
 """
 
 import argparse
@@ -19,7 +19,7 @@ import time
 
 import sun2xp
 
-# The planners, as they stand in the table.
+# The names of the planners in the table.
 SLEEPS, OTHER, PLANNER = "sleeps", "sleeps, and another process burns Python", "burns Python"
 
 
@@ -48,7 +48,7 @@ def plan(hand: sun2xp.Hand, stop: threading.Event, counts: list) -> None:
 
 
 def measure(hand: sun2xp.Hand, seconds: float, load: str) -> tuple:
-    """Returns the distributions of the wake-ups of all fingers, and the number of calls."""
+    """Returns the distributions of the wake-ups of all fingers, and how often the planner read and sent."""
     stop, counts = threading.Event(), []
     threads = []
     if load == PLANNER:
@@ -104,10 +104,11 @@ def main() -> None:
     late = {load: statistics.median(one.p999 for one in found[load]) for load in loads}
     rate = planned / arguments.rounds / (arguments.seconds + 0.5)
     print(
-        f"\nThe 99.9 % with the burning planner are {late[PLANNER] / late[SLEEPS]:.2f} times those of the planner that "
-        f"sleeps, and {late[PLANNER] / late[OTHER]:.2f} times those with another process that burns."
+        f"\nThe 99.9 % value with the planner that burns Python is {late[PLANNER] / late[SLEEPS]:.2f} times the value "
+        f"with the planner that sleeps, and {late[PLANNER] / late[OTHER]:.2f} times the value with another process "
+        f"that burns Python."
     )
-    print(f"It sent {rate:.0f} times a second.")
+    print(f"The planner that burns Python sent {rate:.0f} times a second.")
 
 
 if __name__ == "__main__":

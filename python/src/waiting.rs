@@ -25,7 +25,7 @@ pub fn in_thread<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + S
     // The thread inherits this mask, so that the threads of the program receive all signals.
     let blocked = SignalsBlocked::all();
     let started = Builder::new().name("sun2xp call".into()).stack_size(STACK_BYTES).spawn(move || {
-        // If nobody waits any more, the result is dropped here. A hand is closed by that.
+        // If nobody waits any more, the result is dropped here. This closes the hand if the result is a hand.
         let _ = sender.send(work());
     });
     drop(blocked);

@@ -51,7 +51,7 @@ def test_asyncio_follows_events_until_the_hand_is_closed(hand):
                 await asyncio.sleep(0.01)
 
         ticking = asyncio.create_task(tick())
-        # The generator begins with its first step, so the queue is made before the command.
+        # The generator `events_async` makes its queue at its first step. This queue exists before the command.
         events = hand.events()
         hand.send_position(1, AWAY)
         async for event in events:

@@ -35,7 +35,7 @@ def test_control_c_ends_the_tool():
 
 
 def test_a_black_box_has_the_last_cycles(hand):
-    # A stopped finger keeps the box of the time before, and moves no more.
+    # The black box of a stopped finger keeps the time before the stop. The finger no longer moves.
     hand.send_position(1, [0.1, 0.6, 0.9])
     hand.wait(1, timeout=30)
     events = hand.events()

@@ -69,7 +69,8 @@ def test_targets_come_every_20_ms_with_rising_times(double, hand):
     eventually(lambda: len(double.targets) >= 50)
     sent = numpy.array([target[0] for target in double.targets])
     assert (numpy.diff(sent) > 0).all() and 0.015e9 < numpy.median(numpy.diff(sent)) < 0.025e9
-    # Each repeats the newest time that the server has published, at most one State and the way ago.
+    # Each Target repeats the newest time that the server has published. The age of this time is at most one interval of
+    # the States and one transmission.
     seen = numpy.array([target[1] for target in double.targets])
     assert (numpy.diff(seen) >= 0).all() and numpy.median(sent - seen) < 0.03e9
     assert {target[2] for target in double.targets} == {100}
@@ -85,7 +86,7 @@ def test_a_refusal_is_raised_by_the_next_call_and_the_set_point_is_left_out(doub
     double.refusal = None
     double.targets.clear()
     eventually(lambda: len(double.targets) >= 3)
-    # The set point before is in force.
+    # The set point before the refused one is in force.
     assert [part[2] for part in double.targets[-1][3]] == [1]
     assert hand.state(1).command == 1
     hand.send_position(1, [0.1, 0.6, 0.9])

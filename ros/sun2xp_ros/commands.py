@@ -70,7 +70,8 @@ class Commands:
             try:
                 self._follow(path)
             except sun2xp.Error:
-                # The hand has no path of several fingers. None of them executes a trajectory that one has refused.
+                # A path moves one finger only. If a finger refuses its path, the fingers that have already accepted
+                # theirs hold their poses, so no finger executes the trajectory.
                 self._hold([before.finger for before in demanded[:place]])
                 raise
 

@@ -56,7 +56,7 @@ class Planner:
         return self.node.create_subscription(kind, topic, keep, qos)
 
     def wait(self, topic, condition=lambda message: True):
-        """Waits for a message after this call that has the property, and returns it."""
+        """Waits for a message that arrives after this call and fulfils the condition, and returns it."""
         deadline = time.monotonic() + LONGEST
         with self.changed:
             place = len(self.received.get(topic, []))
@@ -98,7 +98,7 @@ class Planner:
         return self.finish(self.begin(service))
 
     def ready(self):
-        """Waits until the node has the publishers of this planner."""
+        """Waits until the node has subscribed to the publishers of this planner, and a message of the node arrives."""
         deadline = time.monotonic() + LONGEST
         for publisher in (self.trajectories, self.targets, self.stiffnesses):
             while publisher.get_subscription_count() == 0:

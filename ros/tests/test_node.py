@@ -19,7 +19,7 @@ from geometry_msgs.msg import PointStamped
 from std_msgs.msg import Float64MultiArray
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-#: The environment of nodes that the node of the other tests does not see. Its topics have the same names.
+#: Environment of a second node, whose topics have the same names. Its ROS domain separates it from the first node.
 APART = {"ROS_DOMAIN_ID": str(int(os.environ.get("ROS_DOMAIN_ID", 0)) % 100 + 1)}
 
 JOINTS = [f"{PREFIX}finger{finger}_joint{joint}" for finger in (1, 2, 3) for joint in (0, 1, 2)]
@@ -67,7 +67,7 @@ def test_joint_states_are_complete_and_fresh(planner):
     message = planner.wait("joint_states")
     assert list(message.name) == JOINTS
     assert len(message.position) == len(message.velocity) == len(message.effort) == 9
-    # Tendons at 5 to 60 N with arms of about 1 cm: some 0.1 N m, and not N cm.
+    # Tendons at 5 to 60 N with moment arms of about 1 cm give some 0.1 N m. The unit is N m, and not N cm.
     assert 0.0 < max(abs(torque) for torque in message.effort) < 0.6
     now = planner.node.get_clock().now().nanoseconds * 1e-9
     age = now - (message.header.stamp.sec + message.header.stamp.nanosec * 1e-9)
@@ -119,7 +119,7 @@ def test_the_latched_description_is_the_hand(planner):
                 soft = robot.find(f"joint[@name='{name}']/safety_controller")
                 assert float(soft.get("soft_lower_limit")) == pytest.approx(limits[0, joint])
                 assert float(soft.get("soft_upper_limit")) == pytest.approx(limits[1, joint])
-            # The pose of the tip, in position and axes, is that of the library.
+            # The position and the axes of the tip agree with the pose that the library reports.
             pose, state = hand.palm_pose(finger), hand.position(finger)
             angles = dict(zip(JOINTS, 9 * [0.0])) | dict(zip(JOINTS[3 * finger - 3 :], state))
             found = frames(urdf, angles)
@@ -136,7 +136,7 @@ def test_the_latched_description_is_the_hand(planner):
 
 def test_a_trajectory_moves_a_finger_and_no_other(planner):
     before = planner.wait("joint_states")
-    # The joints in another order, and the present pose as the first point, as planners of ROS send it.
+    # The message has the joints in another order, and the present pose as its first point, as planners of ROS send it.
     names = [JOINTS[5], JOINTS[3], JOINTS[4]]
     now = dict(zip(before.name, before.position))
     planner.trajectories.publish(
@@ -201,7 +201,7 @@ def test_a_target_moves_the_tip(planner):
 
 def test_a_stiffness_is_taken_in_newtons_a_metre(planner):
     planner.stiffnesses.publish(Float64MultiArray(data=numpy.diag([900.0, 300.0, 300.0]).ravel().tolist()))
-    # The library names its own unit.
+    # The text of the library is in the library's own unit, N/cm.
     planner.wait("/rosout", refused("stiffness of finger1 refused", "9.000 N/cm"))
     planner.stiffnesses.publish(Float64MultiArray(data=[1.0, 2.0]))
     planner.wait("/rosout", refused("3 x 3"))

@@ -142,7 +142,8 @@ fn leaf(
     made: &mut Vec<PathBuf>,
 ) -> Result<(), ServeError> {
     let [certificate, key] = files(folder, name.as_str());
-    // A client cannot play the server with its certificate. A server may connect to a router.
+    // A client's certificate must not pass as the certificate of a server. A server may connect to a router, so its
+    // certificate is valid for a client too.
     let mut uses = vec![ExtendedKeyUsagePurpose::ClientAuth];
     if !addresses.is_empty() {
         uses.push(ExtendedKeyUsagePurpose::ServerAuth);

@@ -88,7 +88,7 @@ impl Cycles {
     }
 
     /// Adds a record, and counts the cycles that are missing before it. A record with a number that is not finite
-    /// cannot be sent, and is missing too.
+    /// cannot be sent, and counts as missing too.
     fn add(&mut self, record: Record, taken: &mut Taken) {
         let last = &mut self.last[record.finger.index()];
         taken.missing += record.cycle.saturating_sub(*last + 1);

@@ -1,6 +1,6 @@
-//! The desk of the hand: everything that clients want passes here, one after the other. It knows the owner, decides
-//! which Targets are taken, and counts how long the owner may still be silent. It sends to the mailboxes of the fingers
-//! and never waits.
+//! The desk of the hand. Everything that clients want passes through it, one message at a time. It knows the owner,
+//! decides which Targets are taken, and counts how long the owner may still be silent. It sends to the mailboxes of the
+//! fingers and never waits.
 
 use crate::acceptance::{Acceptance, Fresh, Rejection};
 use crate::fingers::Fingers;
@@ -101,8 +101,9 @@ impl Desk {
         Rejection::Malformed.count(&mut self.counts);
     }
 
-    /// Takes a Target, or counts why not. Returns an Answer for its sender if the hand refuses the Target. `client` is
-    /// the client whose key the Target has, and `now` is the time at which the Target was received, ns.
+    /// Takes a Target, or counts the reason why it is not taken. Returns an Answer for its sender if the hand refuses
+    /// the Target. `client` is the client whose key the Target has, and `now` is the time at which the Target was
+    /// received, ns.
     pub fn take_target(&mut self, client: &ClientName, payload: &[u8], now: u64) -> Option<Answer> {
         let tested = Target::decode(payload).map_err(|_: DecodeError| Rejection::Malformed).and_then(|target| {
             let owned = self.ownership.admits(client, target.epoch);

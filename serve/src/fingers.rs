@@ -71,7 +71,8 @@ impl Fingers {
         self.hand.fingers().members().map(|number| number.get())
     }
 
-    /// Begins the epoch of a new owner. A finger that follows a path of the owner before stays where its path is.
+    /// Begins the epoch of a new owner. A finger that follows a path of the previous owner stops at the present pose of
+    /// this path.
     pub fn begin_epoch(&mut self, silence: &Silence) {
         for number in self.numbers() {
             let mut goal = std::mem::take(&mut self.goals[number as usize - 1]);
@@ -156,7 +157,7 @@ impl Fingers {
     fn resume(&mut self, number: i32, report: &FingerReport, valid: Validity) {
         let goal = &mut self.goals[number as usize - 1];
         if let Destination::Path(_) = goal.destination {
-            // A path is in the past. The finger stays where it is, until the next command.
+            // The times of the path are in the past. The finger stays where it is, until the next command.
             goal.destination = Destination::None;
             return;
         }
@@ -207,7 +208,7 @@ impl Fingers {
         };
         let mut goal = self.goals[finger].with(part, destination, &report, now);
         if !is_path(part) && report.expired && matches!(goal.destination, Destination::Path(_)) {
-            goal.destination = Destination::None; // A path that was interrupted is in the past.
+            goal.destination = Destination::None; // The times of an interrupted path are in the past.
         }
         let mut command = FingerCommand::new(number).validity(valid);
         (command.stiffness, command.damping) = (part.stiffness, part.damping);

@@ -23,7 +23,7 @@ pub enum Destination {
 pub struct Goal {
     /// The command number that was taken last; 0 if none in this epoch.
     pub command: u32,
-    /// The command number before, and the time at which the last one was taken, ns.
+    /// The command number before `command`, and the time at which `command` was taken, ns.
     before: (u32, u64),
     pub destination: Destination,
     /// Kx, N/cm, and relative damping that are in force for the owner.

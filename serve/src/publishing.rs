@@ -103,8 +103,8 @@ impl Publishing {
         }
     }
 
-    /// Returns false for an arrival at a place that is not the owner's destination. This is a set point on the way,
-    /// which the bound of the lead makes, or the place where the finger was caught.
+    /// Returns false for an arrival at a place that is not the owner's destination. Such a place is a set point on the
+    /// way, which the bound of the lead makes, or the place where the finger was caught.
     fn is_of_destination(&self, event: &Event) -> bool {
         if event.kind != EventKind::Arrived {
             return true;

@@ -11,7 +11,7 @@ use sun2xp_remote_client::{
 };
 use sun2xp_serve::certificates::{Wanted, make};
 
-/// The machine may be busy: old positions are refused late, and the server waits long.
+/// Long time limits, because the machine may be busy: for the silence of the owner, and for the age of positions.
 const PATIENT: &str = "catch_ms = 5000\nend_ms = 20000\n";
 const STALE_MS: u32 = 4000;
 

@@ -77,7 +77,10 @@ pub enum LinkError {
         refused: Refused,
     },
     /// The board confirmed terms that differ from the terms that the host sent.
-    #[error("finger address {address} confirms terms that differ from those it was sent: update its faulty firmware")]
+    #[error(
+        "finger address {address} confirms terms that differ from the terms that the host sent: update its faulty \
+        firmware"
+    )]
     OtherTerms {
         /// The finger's address.
         address: u8,

@@ -48,8 +48,9 @@ pub struct Zeros {
 pub struct Identified {
     /// `tendon.stiffness`, N/cm.
     pub tendon_stiffness: Vector4<f64>,
-    /// `tendon.stiffness_tolerance`. The stretch per newton depends on the tension. This is the largest relative
-    /// difference from the stretch per newton of `tendon_stiffness`. It includes the uncertainty of the measurement.
+    /// `tendon.stiffness_tolerance`. The stretch per newton depends on the tension. The tolerance is the largest
+    /// relative difference from the stretch per newton that `tendon_stiffness` gives. It includes the uncertainty of
+    /// the measurement.
     pub stiffness_tolerance: f64,
     /// Part of the motors' travel that the identified elasticity does not explain: rms residual, cm.
     pub travel_residual: f64,

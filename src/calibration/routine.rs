@@ -91,10 +91,10 @@ impl Calibration {
     }
 
     /// Returns the configuration of the finger's controller while a routine runs at `rate`, Hz. The scheme is Figure
-    /// 10, and configured gains of Figure 10 stay in force. From 750 Hz up the gains on the tension error are lower
-    /// than otherwise: routines move slowly, and these gains are stable with gauges and amplifiers that lag by 1 ms.
-    /// State feedback is not used, because it relies on the stiffness, friction and zeros that a routine has yet to
-    /// find. Figure 11 is not used, because it would adapt to uncalibrated gauges.
+    /// 10, and configured gains of Figure 10 stay in force. From 750 Hz up, the gains on the tension error are lower
+    /// than without a routine. Routines move slowly, and the lower gains are stable with gauges and amplifiers that lag
+    /// by 1 ms. State feedback is not used, because it relies on the stiffness, friction and zeros that a routine has
+    /// yet to find. Figure 11 is not used, because it would adapt to uncalibrated gauges.
     pub fn controlled(finger: &ConfiguredFinger, rate: f64) -> ConfiguredFinger {
         let configured = &finger.controller;
         let controller = match configured.scheme(rate) {

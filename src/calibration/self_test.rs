@@ -3,7 +3,7 @@
 //!
 //! First each motor alone pulls until an encoder moves. Then the positions of all motors are controlled. All motors
 //! wind in until the tendons are tight. Each one then pulls for some milliseconds. Its own gauge shows this pull first,
-//! because the links delay the pull at the other gauges. At last all motors wind in a little more. The tensions of a
+//! because the links delay the pull at the other gauges. Finally, all motors wind in a little more. The tensions of a
 //! finger that nothing touches rise along the null vector of R, whatever the friction of the motors. So the rises of
 //! the gauges show whether their scales agree.
 

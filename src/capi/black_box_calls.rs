@@ -19,8 +19,9 @@ use std::path::PathBuf;
 
 /// Result of sun2xp_record: one cycle of a finger, from the black box.
 ///
-/// All cycles from oldest to newest are stored. If the finger was already faulted, or if a simulated finger
-/// had not answered, computed is 0, and so are all members after it.
+/// The library stores all cycles from the member oldest to the member newest. If the finger was already
+/// faulted, or if a simulated finger had not answered, the member computed is 0, and so are all members
+/// after it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_record {

@@ -228,9 +228,9 @@ pub unsafe extern "C" fn GetPosD(i: c_int, Pos: *mut f64) -> c_int {
 ///     const char *HandError(void);
 ///
 /// Returns the text of the calling thread's last refused call, or an empty string if no call was
-/// refused. A call that succeeds does not change the text, as it does not change errno. So read the
-/// text only after a call has returned -1. The pointer is never null. Do not free the text: it belongs
-/// to the library, and is valid until the next refused call of the same thread.
+/// refused. A call that succeeds changes neither the text nor errno. So read the text only after a call
+/// has returned -1. The pointer is never null. Do not free the text: it belongs to the library, and is
+/// valid until the next refused call of the same thread.
 ///
 /// Threads: any; each has its own text. Works in a forked child too.
 #[unsafe(no_mangle)]

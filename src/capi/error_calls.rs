@@ -12,7 +12,7 @@ use std::ffi::{c_char, c_int};
 
 /// A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread.
 ///
-/// remedy names calls only. It is empty if no call helps. The text then contains the remedy.
+/// The member remedy names calls only. It is empty if no call helps. The member text then contains the remedy.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_error {

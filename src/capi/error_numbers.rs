@@ -13,7 +13,7 @@ pub const SUN2XP_ERROR_FORKED: c_int = 2;
 /// The process is exiting, and its hands are closed.
 pub const SUN2XP_ERROR_EXITING: c_int = 3;
 
-/// The handle is not that of an open hand.
+/// The handle does not belong to an open hand.
 pub const SUN2XP_ERROR_NO_HAND: c_int = 4;
 
 /// Hand or finger is busy: being opened, closed, calibrated or recovered. Call again later.

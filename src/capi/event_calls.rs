@@ -78,7 +78,7 @@ pub unsafe extern "C" fn sun2xp_next_event(hand: *mut sun2xp_hand, event: *mut s
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut sun2xp_event, seconds: f64) -> c_int {
     let hand = Handle::of(hand);
-    // A negative time is no limit, and neither is one that is too long for the clock. NaN is no time.
+    // A negative time means no limit, and so does a time that is too long for the clock. NaN means no wait.
     let limit = if seconds.is_nan() { Some(Duration::ZERO) } else { Duration::try_from_secs_f64(seconds).ok() };
     let deadline = limit.and_then(|limit| Instant::now().checked_add(limit));
     loop {

@@ -24,8 +24,8 @@ pub struct sun2xp_event {
     pub cycle: c_ulong,
     /// Events lost since sun2xp_open because they were not taken in time.
     pub lost: c_ulong,
-    /// Beginning of that cycle, s of CLOCK_MONOTONIC.
+    /// Beginning of the event's cycle, s of CLOCK_MONOTONIC.
     pub time: f64,
-    /// Values of the kind (docs/events.md); unused ones are 0.
+    /// Values, whose meaning depends on the kind (docs/events.md). Unused ones are 0.
     pub values: [f64; 4],
 }

@@ -31,9 +31,9 @@ pub struct sun2xp_set_point {
     pub size: usize,
     /// Finger, 1 to 3.
     pub finger: c_int,
-    /// Angles of sun2xp_send_position. Null: tip decides, or the pose stays.
+    /// Angles of sun2xp_send_position. Null: the member tip gives the pose, or the pose stays.
     pub position: *const f64,
-    /// Position of sun2xp_send_tip. Null: position decides, or the pose stays.
+    /// Position of sun2xp_send_tip. Null: the member position gives the pose, or the pose stays.
     pub tip: *const f64,
     /// Matrix of sun2xp_send_stiffness. Null: the stiffness stays.
     pub stiffness: *const f64,
@@ -121,7 +121,7 @@ pub unsafe extern "C" fn sun2xp_send_group(
 ///   ENODEV   no such hand, or it was closed meanwhile
 ///   EINVAL   no such finger; no such until; seconds is negative or NaN
 ///   EIO      a finger is faulted
-///   EBUSY    a finger is limp, calibrated or closed
+///   EBUSY    a finger is limp, is being calibrated, or is closed
 ///   ETIMEDOUT  the time is over; sun2xp_error_text names a finger that has not arrived or settled
 ///
 /// Threads: any.

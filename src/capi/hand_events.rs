@@ -86,7 +86,7 @@ impl HandEvents {
         }
     }
 
-    /// Wraps the planner's callback in a function that lets [`in_callback`] and [`end`] know while the callback runs.
+    /// Wraps the planner's callback in a function that tells [`in_callback`] and [`end`] whether the callback runs.
     fn guarded(&'static self, mut callback: impl FnMut(&Event, u64)) -> impl FnMut(&Event, u64) {
         move |event, lost| {
             let _calling = self.calling.lock();

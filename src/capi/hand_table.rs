@@ -218,8 +218,8 @@ pub(super) fn command<T, E: Into<Refusal>>(
     with(handle, call)
 }
 
-/// Sends a command to a finger of an open hand: `local` to one of this machine, or `command` to one of another machine.
-/// It is refused while the process exits, as [`command`] is.
+/// Commands a finger of an open hand. For a hand of this machine it runs `local`. To a hand on another machine it sends
+/// the command that `command` returns. The call is refused while the process exits, as [`command`] is.
 #[inline]
 pub(super) fn send<E: Into<Refusal>>(
     handle: Handle,

@@ -13,11 +13,11 @@ pub struct sun2xp_hand {
     _private: [u8; 0],
 }
 
-/// The value of a handle; 0 is that of a null pointer.
+/// The value of a handle; 0 is the value of a null pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Handle(usize);
 
-/// Most hands that sun2xp_open has open at a time.
+/// Largest number of hands of sun2xp_open that can be open at the same time.
 pub(super) const MOST_HANDS: usize = 16;
 
 /// Bits of the place in the table.

@@ -49,7 +49,7 @@ use std::path::PathBuf;
 ///   ENOMEM   there is not enough memory
 ///   EMFILE   16 hands are open
 ///   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
-///   EINVAL   the configuration is unusable, or gauge.newton_per_count or gauge.zero is that of another board
+///   EINVAL   the configuration is unusable, or gauge.newton_per_count or gauge.zero was set for another board
 ///   others   as sun2xp_open, and the errno that start has returned
 ///
 /// Threads: any.

@@ -117,7 +117,8 @@ fn last_refusal(library: &RemoteLibrary, handle: *const sun2xp_hand) -> RemoteRe
         let text = "libsun2xp_remote gave no reason: please report this defect of the library".into();
         return RemoteRefusal::Other { number: SUN2XP_ERROR_DEFECT, errno: libc::EIO, text, actions: Vec::new() };
     };
-    // The name of the call and the remedy are removed here. The report adds those of the call that the planner made.
+    // The name of the call and the remedy are removed here. The report adds the name and the remedy of the
+    // call that the planner made.
     let text = text.strip_prefix(&format!("{call}: ")).unwrap_or(&text);
     let text = text.strip_suffix(&format!(" ({remedy})")).unwrap_or(text).to_owned();
     RemoteRefusal::Other { number, errno, text, actions: named(&remedy, Interface::Handles) }
@@ -243,7 +244,7 @@ impl RemoteHand for LoadedHand {
     fn close(&self) {
         let handle = self.handle.swap(null_mut(), Ordering::AcqRel);
         if !handle.is_null() {
-            // The only refusal is that of a hand that is closed already.
+            // The call is refused only if the hand is closed already.
             (self.library.close)(handle);
         }
     }

@@ -20,13 +20,13 @@ const MEMORY_OF_PATH: usize = 1 << 20;
 
 /// Pose of a path (sun2xp_send_path).
 ///
-/// is_tip is the same in every pose of a path.
+/// The member is_tip must be the same in every pose of a path.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_path_pose {
     /// sizeof (struct sun2xp_path_pose), the same in every pose of the path.
     pub size: usize,
-    /// 0: place holds joint angles. 1: a position of the tip.
+    /// 0: the member place holds joint angles. 1: it holds a position of the tip.
     pub is_tip: c_int,
     /// Time since the beginning of the path, s.
     pub time: f64,

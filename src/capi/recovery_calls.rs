@@ -93,7 +93,7 @@ pub extern "C" fn sun2xp_stop(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
 ///   EINVAL   no such finger
 ///   EIO      the finger faults again; or its board is not the one found by sun2xp_open, or has lost its
 ///            zero; or its servo thread has failed (SUN2XP_FAULT_SERVO_PANIC), which only sun2xp_close and
-///            sun2xp_open remedy. sun2xp_error_text says which
+///            sun2xp_open remedy. sun2xp_error_text gives the reason
 ///   ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: the port is not there yet, the board
 ///            does not answer, or the servo does not run. Call again
 ///

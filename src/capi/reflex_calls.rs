@@ -18,8 +18,8 @@ use std::ffi::{c_double, c_int};
 /// An event of the finger occurs. The member named event gives its kind.
 pub const SUN2XP_WHEN_EVENT: c_int = 1;
 
-/// An event of another finger occurs. The member named event gives its kind, and the one named finger gives
-/// that finger.
+/// An event of another finger occurs. The member named event gives its kind, and the member named finger gives
+/// the number of that finger.
 pub const SUN2XP_WHEN_OTHER_FINGER: c_int = 2;
 
 /// The force of the surroundings on the tip is above the value in the member bound, N.
@@ -55,8 +55,8 @@ pub const SUN2XP_THEN_SOFTEN: c_int = 3;
 /// The finger goes to the joint angles in the member position.
 pub const SUN2XP_THEN_RETRACT: c_int = 4;
 
-/// The tip presses harder. Its force rises by the member named value, to at most the one named largest, both
-/// in N. This needs a Kx without an eigenvalue of 0.
+/// The tip presses harder. Its force rises by the amount in the member value, but to at most the amount in the
+/// member largest, both in N. This needs a Kx without an eigenvalue of 0.
 pub const SUN2XP_THEN_GRIP: c_int = 5;
 
 /// The tip gets the damping ratio in the member value.

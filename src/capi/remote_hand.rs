@@ -1,5 +1,5 @@
-//! A hand on another machine, as the C calls use it. The package `remote/library` has one over the network. This
-//! library has one that passes the calls on to that package's library ([`crate::capi::loaded_hand`]).
+//! A hand on another machine, as the C calls use it. The package `remote/library` implements it over the network. This
+//! library implements it by passing the calls on to that package's library ([`crate::capi::loaded_hand`]).
 
 use crate::calibration::Task;
 use crate::capi::event_struct::sun2xp_event;
@@ -48,12 +48,12 @@ pub enum RemoteSource {
     Text(String),
 }
 
-/// A hand on another machine. Fingers are numbered 1 to 3, and only those calls take 0, all fingers, that say so. Units
-/// are those of `sun2xp.h`. Every call is refused, and changes nothing, if there is no such finger or if the hand
-/// cannot be reached.
+/// A hand on another machine. Fingers are numbered 1 to 3. The number 0 stands for all fingers, and only calls that say
+/// so accept it. Units are those of `sun2xp.h`. Every call is refused, and changes nothing, if there is no such finger
+/// or if the hand cannot be reached.
 #[allow(clippy::missing_errors_doc, reason = "the reasons are above")]
 pub trait RemoteHand: Send + Sync {
-    /// Sends commands to up to three fingers. Does not wait for the line.
+    /// Sends commands to up to three fingers. Does not wait for the network.
     fn send(&self, commands: &[FingerCommand]) -> Result<(), RemoteRefusal>;
 
     /// The measured joint angles, rad.
@@ -93,13 +93,13 @@ pub trait RemoteHand: Send + Sync {
     fn close(&self);
 }
 
-/// What opens a hand on another machine. The configuration is that of the source: its `[hand]` says whether values out
-/// of range are refused.
+/// A function that opens a hand on another machine. The configuration comes from the source: its table `[hand]` says
+/// whether values out of range are refused.
 pub type RemoteOpener = fn(RemoteSource, &Configuration) -> Result<Arc<dyn RemoteHand>, RemoteRefusal>;
 
 static OVER_THE_NETWORK: OnceLock<RemoteOpener> = OnceLock::new();
 
-/// Makes this library one that opens only hands on other machines, with this opener. Only the first call has an effect.
+/// Makes this library open only hands on other machines, with this opener. Only the first call has an effect.
 pub fn open_only_remote_hands(opener: RemoteOpener) {
     // A second call comes from a library that was initialised twice, with the same function.
     let _ = OVER_THE_NETWORK.set(opener);

@@ -28,8 +28,8 @@ impl Display for Shown<'_> {
                 formatter.write_str("no hand is open: call OpenHand first, and check its result")
             }
             (Refusal::NoHand, Interface::Handles) => formatter.write_str(
-                "the handle is not that of an open hand: pass one of sun2xp_open or sun2xp_default_hand whose hand has \
-                 not been closed, and check the results of these calls",
+                "the handle does not belong to an open hand: pass a handle of sun2xp_open or sun2xp_default_hand whose \
+                 hand has not been closed, and check the results of these calls",
             ),
             (refusal, interface) => {
                 write!(formatter, "{refusal}{}", Appendix(RemedyCalls(refusal.actions(), interface)))
@@ -39,7 +39,7 @@ impl Display for Shown<'_> {
 }
 
 /// Reports a refusal to the calling thread: sets errno, and stores number and text for the hand of the call. Passes the
-/// text on as a message if it is the first of its kind. Returns the result of the call.
+/// text on as a message if the refusal is the first of its kind. Returns the result of the call.
 pub(super) fn refuse(name: &'static str, handle: Handle, refusal: &Refusal) -> c_int {
     let interface = Interface::of(name);
     let (number, errno) = (number(refusal), refusal.errno());

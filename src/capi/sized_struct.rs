@@ -12,7 +12,7 @@ use crate::capi::remote_hand::{RemoteHand, RemoteRefusal};
 use crate::hand::{Hand, HandError};
 use std::any::type_name;
 
-/// No version of a struct is larger, bytes. A larger size is one that the caller has not set.
+/// Upper bound of the size of a struct in any version, bytes. A larger size means that the caller has not set it.
 const LARGEST: usize = 4096;
 
 /// A struct of the caller.
@@ -56,7 +56,7 @@ impl<T: Copy> SizedStruct<T> {
     /// Writes all members except `size`.
     ///
     /// # Safety
-    /// [`Self::check`] has succeeded, and the struct is the caller's to write.
+    /// [`Self::check`] has succeeded, and the caller may write to the struct.
     unsafe fn write(self, value: T) {
         let rest = self.size - size_of::<T>();
         let size_member = size_of::<usize>();
@@ -74,7 +74,7 @@ impl<T: Copy> SizedStruct<T> {
 /// Fills a struct of the caller.
 ///
 /// # Safety
-/// As for [`SizedStruct::new`], and the struct is the caller's to write.
+/// As for [`SizedStruct::new`], and the caller may write to the struct.
 pub(super) unsafe fn fill<T: Copy>(
     out: *mut T,
     name: &'static str,

@@ -28,12 +28,12 @@ pub const SUN2XP_STATE_CLOSED: c_int = 6;
 
 /// Result of sun2xp_status.
 ///
-/// measured_rate is the cycles divided by the time up to this call: it falls while the servo does not run.
-/// The delays count since sun2xp_open or sun2xp_reset_timing. torque_scale applies to all joints alike,
-/// so the torque keeps its direction. stiffness_scale is below 1 in poses in which the tendons cannot provide
-/// the whole Kx, for example near the straight pose. A joint beyond its limit can reduce it too, because the
-/// spring of the limit needs a part of what the tendons provide. sun2xp_tip gives the stiffness that
-/// results.
+/// The member measured_rate is the number of cycles divided by the time up to this call: it falls while the
+/// servo does not run. The delays cover the cycles since sun2xp_open or sun2xp_reset_timing. The member
+/// torque_scale applies to all joints alike, so the torque keeps its direction. The member
+/// stiffness_scale is below 1 in poses in which the tendons cannot provide the whole Kx, for example near
+/// the straight pose. A joint beyond its limit can reduce it too, because the spring of the limit needs a
+/// part of what the tendons provide. sun2xp_tip gives the stiffness that results.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_status {
@@ -68,8 +68,8 @@ pub struct sun2xp_status {
     /// Progress of a calibration, 0 to 1. It is 0 if no calibration runs.
     pub calibration: f64,
     /// 1: sun2xp_open has locked the memory of every servo thread, so that no servo thread waits for a page. 0: the
-    /// memory of at least one is not locked. If the planner calls munlockall later, this memory is unlocked too, and
-    /// this member stays 1. sun2xp_close and sun2xp_open lock the memory again.
+    /// memory of at least one servo thread is not locked. If the planner calls munlockall later, this memory is
+    /// unlocked too, and this member stays 1. sun2xp_close and sun2xp_open lock the memory again.
     pub memory_locked: c_int,
     /// 1: each servo thread with a configured core runs on it.
     pub on_core: c_int,

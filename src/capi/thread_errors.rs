@@ -59,7 +59,7 @@ thread_local! {
 }
 
 impl Errors {
-    /// The entry for a new refusal of a hand: that of the same hand, or else the oldest.
+    /// The entry for a new refusal of a hand: the entry of the same hand, or else the oldest entry.
     fn entry(&mut self, handle: Handle) -> &mut Entry {
         let newest = self.newest().count;
         let same = |entry: &Entry| entry.count != 0 && entry.handle == handle;

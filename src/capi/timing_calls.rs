@@ -36,8 +36,8 @@ pub const SUN2XP_STAGE_COMPUTE: c_int = 5;
 /// From the scheduled start of a cycle to the end of its computation.
 pub const SUN2XP_STAGE_CYCLE: c_int = 6;
 
-/// Age of the newest measurement when the command computed from it takes effect, by the board's clock. One
-/// period if nothing is late.
+/// Age of the newest measurement when the command computed from it takes effect, by the board's clock. It is
+/// one period if nothing is late.
 pub const SUN2XP_STAGE_AGE: c_int = 7;
 
 /// Result of sun2xp_timing. All times are in ns, accurate to 1 %, at most 4.29e9, and 0 if no cycle had the
@@ -61,7 +61,7 @@ pub struct sun2xp_timing {
     pub p999: c_ulong,
     /// Longest time of the stage.
     pub maximum: c_ulong,
-    /// All cycles of the finger. From here on, no member depends on stage.
+    /// All cycles of the finger. This member and all later ones do not depend on the stage.
     pub cycles: c_ulong,
     /// Cycles that were not over when the next one was due.
     pub overruns: c_ulong,

@@ -14,9 +14,9 @@ use std::ffi::{c_double, c_int, c_uint, c_ulong};
 
 /// Result of sun2xp_touch.
 ///
-/// If valid is 0, pressed, count and force are 0 too. force is the count minus its zero, times
-/// newton_per_count of the configuration. Events are lost if they do not fit into the queue of the board,
-/// or if their element is not configured.
+/// If the member valid is 0, the members pressed, count and force are 0 too. The member force is the count
+/// minus its zero, times newton_per_count of the configuration. Events are lost if they do not fit into the queue of
+/// the board, or if their element is not configured.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_touch {
@@ -40,7 +40,7 @@ pub struct sun2xp_touch {
 ///   element   element, from 0, in the order of [finger.touch] in the configuration
 ///   touch     result; set touch->size before the call
 ///
-/// A board reports an element when its reading changes. The servo fetches one such event of a finger in
+/// A board reports a changed reading of an element as an event. The servo fetches one event of a finger in
 /// each period in which the line has time for it. A faulted finger keeps its last readings.
 ///
 /// Returns 0, or a negative number with

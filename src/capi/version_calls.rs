@@ -3,7 +3,7 @@
 use crate::capi::boundary::uncancelled;
 use std::ffi::{CStr, c_char, c_uint};
 
-/// Rises only when programs must be compiled again.
+/// This number rises only when programs must be compiled again.
 pub const SUN2XP_ABI_VERSION: c_uint = 0;
 
 /// The version, ended by a zero byte.
@@ -21,7 +21,8 @@ pub extern "C" fn sun2xp_version() -> *const c_char {
 
 /// sun2xp_version_number - the version as a number that rises
 ///
-/// Returns 10000 times the major, plus 100 times the minor, plus the patch number, as SUN2XP_VERSION_NUMBER.
+/// Returns 10000 times the major, plus 100 times the minor, plus the patch number.
+/// SUN2XP_VERSION_NUMBER is the same number for the header.
 ///
 /// Threads: any. Works in a forked child too.
 #[unsafe(no_mangle)]
@@ -32,7 +33,7 @@ pub extern "C" fn sun2xp_version_number() -> c_uint {
 /// sun2xp_abi_version - the number of the binary interface
 ///
 /// A program must not run if this differs from its SUN2XP_ABI_VERSION. The number is part of the name of the shared
-/// library, so only a program that loads the library by dlopen needs to compare.
+/// library, so only a program that loads the library by dlopen needs this comparison.
 ///
 /// Threads: any. Works in a forked child too.
 #[unsafe(no_mangle)]

@@ -172,14 +172,14 @@ impl Controller {
 
     /// Sets the gravity that the next cycles compensate, m/s^2 in the finger's frame. This value is an input of every
     /// cycle, like the set point: a hand on a moving arm changes it all the time. A large change is spread over some
-    /// cycles, so that it is no jump in torque. The first value after a start takes effect at once.
+    /// cycles, so that it causes no jump in torque. The first value after a start takes effect at once.
     pub fn approach_gravity(&self, state: &mut State, gravity: &Vector3<f64>) {
         self.gravity.approach(&mut state.gravity, gravity);
     }
 
     /// Runs one cycle. Without feedback (the reply was lost), the last command is repeated and all integrators keep
-    /// their values. Two activities continue without feedback: a release, and state feedback, which uses its
-    /// predictions for some cycles.
+    /// their values. Three activities continue without feedback: a release, [`Activity::Turn`], and state feedback,
+    /// which uses its predictions for some cycles.
     pub fn cycle(&self, state: &mut State, feedback: Option<&Feedback>, activity: &Activity) -> (MotorCommand, Report) {
         let measured = feedback.map(|feedback| self.sensors.measured(feedback));
         self.cycle_measured(state, measured.as_ref(), activity)
@@ -253,7 +253,7 @@ impl Controller {
     }
 
     /// Returns the joint angles, rad, that the controller follows, and their motion. `set_point` is the set point of
-    /// the last cycle. A finger that is not a spring follows its measured pose.
+    /// the last cycle. For a finger that is not a spring, this is the measured pose.
     pub fn reference(&self, state: &State, set_point: &SetPoint) -> (Vector3<f64>, Motion) {
         match (&self.state_feedback, &state.state_feedback, &state.doing) {
             (Some(law), Some(elastic), Doing::Following(_)) => law.reference(elastic),

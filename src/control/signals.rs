@@ -56,8 +56,8 @@ impl SetPoint {
         Self { joints, law: Law::Exact, stiffness, damping: 1.0, motion: None, joint_spring: None }
     }
 
-    /// Replaces the stiffness by that of a fingertip, as in [`SetPoint::stiffness`]. The joint stiffness ends, and the
-    /// constant joint torque stays.
+    /// Replaces the stiffness by a stiffness of the fingertip, as in [`SetPoint::stiffness`]. The joint stiffness ends,
+    /// and the constant joint torque stays.
     pub fn stiffen_tip(&mut self, stiffness: Matrix6<f64>) {
         self.stiffness = stiffness;
         if let Some(spring) = self.joint_spring {
@@ -65,8 +65,8 @@ impl SetPoint {
         }
     }
 
-    /// Replaces the stiffness by that of the joints, K_theta, N cm/rad. The stiffness of the fingertip ends, and the
-    /// constant joint torque stays.
+    /// Replaces the stiffness by a stiffness of the joints, K_theta, N cm/rad. The stiffness of the fingertip ends, and
+    /// the constant joint torque stays.
     pub fn stiffen_joints(&mut self, k_theta: Matrix3<f64>) {
         self.stiffness = Matrix6::zeros();
         self.joint_spring = JointSpring { k_theta, ..self.joint_spring.unwrap_or_default() }.unless_zero();

@@ -19,8 +19,8 @@ const PERMISSIONS: u32 = 0o777;
 ///
 /// A reader sees either the complete old file or the complete new one, even after a power cut. If anything fails before
 /// the replacement, the old file stays unchanged. If the folder cannot be flushed afterwards, the call fails although
-/// the file is the new one. The new file gets the permissions of the old one, and its owner and group if this process
-/// may set them.
+/// the new file is in its place. The new file gets the permissions of the old one, and its owner and group if this
+/// process may set them.
 ///
 /// Symbolic links are not followed. A caller that wants to replace the target of a link must resolve the link first.
 ///

@@ -1,8 +1,8 @@
 //! The gate of a hand: lets the set points of a group take effect in the same period in every servo thread.
 //!
-//! A planner first gives each finger of the group its set point, and then posts the group. The servo that sees the
-//! posted group first decides its period. If the planner chose the period instead, and were preempted before it had
-//! sent every set point, some servos would begin that period without their set points.
+//! A planner first gives each finger of the group its set point, and then posts the group. The first servo that sees
+//! the posted group decides the period of the group. If the planner chose the period instead, and were preempted before
+//! it had sent every set point, some servos would begin that period without their set points.
 
 use crate::realtime::atomics::{AtomicU64, Ordering};
 use crate::realtime::{LockedMemory, Pages, SharedPages};

@@ -145,7 +145,7 @@ impl Controllers<'_> {
     }
 }
 
-/// Returns whether two controllers computed the same, to the last bit.
+/// Returns whether two controllers computed the same result, to the last bit.
 fn same(one: &ControlRecord, other: &ControlRecord) -> bool {
     bits(&one.command.motor_torques) == bits(&other.command.motor_torques) && one.report == other.report
 }

@@ -8,14 +8,14 @@ use crate::finger::{Fault, FaultKind};
 /// Window over which losses and overruns cause warnings, s.
 const WARNING_WINDOW: f64 = 1.0;
 
-/// Share of lost replies in the window above which a line counts as noisy.
+/// A line counts as noisy if the share of lost replies in the window is larger than this.
 const NOISY: f64 = 0.02;
 
-/// Share of overruns (skipped periods) in the window above which a servo counts as overrunning.
+/// A servo counts as overrunning if the share of overruns (skipped periods) in the window is larger than this.
 const OVERRUN: f64 = 0.02;
 
-/// Share of damaged replies in the time-out window above which the line counts as unusable. With one damaged reply in
-/// two, the finger is still under control.
+/// The line counts as unusable if the share of damaged replies in the time-out window is larger than this. With one
+/// damaged reply in two, the finger is still under control.
 const UNUSABLE: f64 = 0.6;
 
 /// Share of damaged replies above which a finger that gets no valid reply reports the damage as the cause of its fault.

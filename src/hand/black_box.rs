@@ -7,7 +7,7 @@ use crate::model::FingerNumber;
 use std::path::Path;
 
 impl Hand {
-    /// The last two seconds of finger 1, 2 or 3; of a faulted finger, the last two seconds before the fault.
+    /// The last two seconds of finger 1, 2 or 3. For a faulted finger they are the last two seconds before the fault.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if it has no cycle yet.

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Time that a board has to answer at one port, ns. A board answers within 50 ms, and a Hello may be lost.
+/// Time in which a board must answer at one port, ns. A board answers within 50 ms, and a Hello may be lost.
 const ANSWER: u64 = 160_000_000;
 
 /// Time for which the ports are searched again if a board is missing. Some boards restart when their port is opened.

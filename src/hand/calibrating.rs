@@ -128,7 +128,7 @@ impl Calibrating {
         }
         if report.orders != self.order {
             // The servo has not yet taken the order. If the hand was closed and opened again since the order was given,
-            // it never takes it: the new servo has not received this order, and counts its orders from 0.
+            // no servo ever takes it: the new servo has not received this order, and counts its orders from 0.
             if self.asked.elapsed() > ANSWER {
                 return Err(HandError::NoAnswer(finger));
             }
@@ -233,8 +233,8 @@ impl Hand {
         self.configuration.read().clone()
     }
 
-    /// Writes calibration results of finger 1, 2 or 3 into the configuration file that the hand was opened with, by
-    /// `store_findings`. It writes the results that no earlier call has written. Returns false if there is no such
+    /// Uses `store_findings` to write calibration results of finger 1, 2 or 3 into the configuration file with which
+    /// the hand was opened. It writes the results that no earlier call has written. Returns false if there is no such
     /// file, or nothing to write.
     ///
     /// # Errors

@@ -15,7 +15,7 @@ use toml_edit::{DocumentMut, Item, Value};
 /// Some editors put this at the beginning of a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// Writes those results into the configuration file at `path` that differ from the values in the file. Everything else
+/// Compares the results with the configuration file at `path`, and writes those that differ into it. Everything else
 /// in the file is kept, including changes that others have made since it was read. Several processes may store at the
 /// same time: each waits for the others, for at most 30 seconds.
 ///

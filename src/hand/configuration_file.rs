@@ -34,8 +34,8 @@ pub struct Configured {
 
 /// Finds and reads the configuration file: the file that `SUN2XP_CONFIG` names, or else `sun2xp.toml` in the working
 /// directory, or else `sun2xp/sun2xp.toml` in the user's configuration folder, or else in the system's
-/// (`XDG_CONFIG_DIRS`, or `/etc/xdg`). If none of them exists, the hand is simulated. An empty `SUN2XP_CONFIG` counts
-/// as unset.
+/// configuration folders (`XDG_CONFIG_DIRS`, or `/etc/xdg`). If none of them exists, the hand is simulated. An empty
+/// `SUN2XP_CONFIG` counts as unset.
 ///
 /// A program that is setuid or setgid, or whose file has capabilities, reads only `/etc/xdg/sun2xp/sun2xp.toml`,
 /// because its caller controls the environment and the working directory.

@@ -85,7 +85,7 @@ impl Dispatcher {
         std::mem::forget(self.collector.take());
     }
 
-    /// Joints 0, 1, 2 of a finger that is not faulted, rad.
+    /// Angles of joints 0, 1, 2 of a finger that is not faulted, rad.
     pub fn position(&self, finger: FingerNumber) -> Result<[f64; 3], HandError> {
         self.member(finger)?.mailbox.with_report(|report| match report.stage {
             finger::Stage::Faulted(fault) => Err(HandError::Faulted { finger, fault }),

@@ -8,7 +8,7 @@ impl Fingers {
     /// Selects only this finger: 1, 2 or 3.
     ///
     /// # Errors
-    /// There is no such finger.
+    /// Returns an error if there is no such finger.
     pub fn only(finger: i32) -> Result<Self, HandError> {
         FingerNumber::try_from(finger).map(Self::one)
     }
@@ -16,7 +16,7 @@ impl Fingers {
     /// Adds this finger to the selection: 1, 2 or 3.
     ///
     /// # Errors
-    /// There is no such finger.
+    /// Returns an error if there is no such finger.
     pub fn and(self, finger: i32) -> Result<Self, HandError> {
         FingerNumber::try_from(finger).map(|finger| self.with(finger))
     }
@@ -24,7 +24,7 @@ impl Fingers {
     /// Selects the fingers with these numbers, 1 to 3. An empty list selects every finger.
     ///
     /// # Errors
-    /// There is no such finger.
+    /// Returns an error if there is no such finger.
     pub fn of(numbers: &[i32]) -> Result<Self, HandError> {
         match numbers {
             [] => Ok(Self::ALL),

@@ -36,7 +36,8 @@ pub struct FingerTip {
 }
 
 impl Hand {
-    /// Position and force of the tip and tendon tensions of finger 1, 2 or 3, at most one cycle old.
+    /// Position and force of the tip of finger 1, 2 or 3, and the tensions of its tendons. They are at most one cycle
+    /// old.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted.

@@ -4,7 +4,7 @@ use crate::hand::{Hand, HandError};
 use crate::model::{Section, UnusableConfiguration};
 
 impl Hand {
-    /// Sets gravity in the palm's frame, m/s^2: `hand.gravity` for the time until the hand is closed. Every finger
+    /// Sets gravity in the palm's frame, m/s^2. It replaces `hand.gravity` until the hand is closed. Every finger
     /// compensates the new gravity within a cycle. If gravity changes by more than 2 m/s^2 in a period of 1 ms, this
     /// takes several cycles, so that the torque does not jump. The new gravity also acts on simulated fingers and on a
     /// simulated object. Every record of the black box and of telemetry contains the gravity of its cycle.

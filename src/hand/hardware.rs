@@ -87,7 +87,7 @@ fn fit(gauge: &mut ConfiguredGauge, unit: f64) -> Result<(), Unusable> {
     if let Some(scale) = gauge.newton_per_count.into_iter().find(|&scale| foreign(scale)) {
         let reason = format!(
             "{scale} N is configured for a count, but the hardware of the program gives tensions in steps of {unit} N: \
-             remove the key, which is that of another board, and calibrate the finger with this hardware"
+             remove the key, which was set for another board, and calibrate the finger with this hardware"
         );
         return Err(Unusable { key: "gauge.newton_per_count", reason });
     }
@@ -95,7 +95,7 @@ fn fit(gauge: &mut ConfiguredGauge, unit: f64) -> Result<(), Unusable> {
     if let Some(zero) = gauge.zero.into_iter().find(|&zero| away(zero)) {
         let reason = format!(
             "count {zero} is configured for zero tension, but with the hardware of the program it is near \
-             {ZERO_COUNT}: remove the key, which is that of another board, and zero the finger with this hardware"
+             {ZERO_COUNT}: remove the key, which was set for another board, and zero the finger with this hardware"
         );
         return Err(Unusable { key: "gauge.zero", reason });
     }

@@ -13,8 +13,8 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 pub struct JointTorques {
     /// R t of eq. 13 with the measured tensions t.
     pub measured: [f64; 3],
-    /// What the controller commands: the torques of spring, damper, limits and gravity compensation, scaled by what
-    /// the tension bounds permit.
+    /// What the controller commands: the torques of spring, damper, limits and gravity compensation, scaled to the part
+    /// that the tension bounds permit.
     pub commanded: [f64; 3],
 }
 

@@ -17,8 +17,8 @@ impl Hand {
         Self::open_from(configuration, None, Fingers::ALL, Hardware::new(io), false)
     }
 
-    /// Does the same as [`Hand::open_with_io`] for a configuration that was found in a file, or in none. Calibration
-    /// results are stored in the file.
+    /// Does the same as [`Hand::open_with_io`] for a configuration that may come from a file. If it does, calibration
+    /// results are stored in that file.
     pub(crate) fn open_as_with_io(mut configured: Configured, io: HandIo) -> Result<Self, HandError> {
         let hardware = Hardware::new(io);
         hardware.members().for_each(|finger| configured.provides(finger));

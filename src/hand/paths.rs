@@ -17,7 +17,8 @@ pub struct PathPose {
     /// Time since the beginning of the path, s.
     pub time: f64,
     /// Where the finger is at this time. All poses of a path are of one kind. Between the poses the joint angles, or
-    /// the tip, follow a spline. From rest to a single position of the tip, the tip moves along a straight line.
+    /// the tip, follow a spline. If the path begins at rest and its only pose is a position of the tip, the
+    /// tip moves along a straight line.
     pub pose: Pose,
     /// Kx in the finger's frame, N/cm: `rows[row][column]`. Kx reaches this value at the time of the pose. It changes
     /// linearly from the last pose with a Kx, or from the beginning of the path. Without it the pose does not affect
@@ -28,7 +29,7 @@ pub struct PathPose {
 impl Hand {
     /// Sends a path to finger 1, 2 or 3. The path begins at once where the set point is, continues its motion, passes
     /// every pose at its time, and rests at the last one. Joint angles, rates, accelerations and jerk are continuous.
-    /// The finger follows without the lag of a set point that is sent by itself.
+    /// The finger follows without the lag with which it follows a single set point.
     ///
     /// The whole path is checked against the joint limits and the limits of `[finger.motion]` before anything moves. A
     /// later path, or a later place for the finger, replaces the path without a jump. A later Kx takes effect at once,

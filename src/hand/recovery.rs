@@ -2,9 +2,9 @@
 //! opening.
 //!
 //! The servo releases its link when every finger on it is at rest, because opening a port and shaking hands take too
-//! long for a servo. A recovery call does both on the planner's thread. If `finger.reconnect` is set, a separate thread
-//! tries both before that. If another finger of the port runs, the servo keeps the link and relays the handshake of the
-//! recovering finger.
+//! long for a servo. A recovery call opens the port and shakes hands on the planner's thread. If `finger.reconnect` is
+//! set, a separate thread already tries to do so before the call. If another finger of the port runs, the servo keeps
+//! the link and relays the handshake of the recovering finger.
 
 use crate::finger::{FingerReport, Mailbox, Stage, StopCounts, stop_calls};
 use crate::hand::reconnection::RepairablePort;
@@ -85,9 +85,9 @@ impl Recovering {
         Ok(Self { task: Some(task), begun })
     }
 
-    /// Repairs the connection of the finger, and makes it take up slack. If no finger of the port runs, this opens the
-    /// port and shakes hands with all of its boards, which may take a second, and every faulted finger of the port
-    /// takes up slack. Only calls that repair the same port or close the hand wait for it.
+    /// Repairs the connection of the finger, and makes the finger take up slack. If no finger of the port runs, this
+    /// call opens the port and shakes hands with all of its boards. That may take a second. Every faulted finger of the
+    /// port then takes up slack. Only calls that repair the same port or close the hand wait for this call.
     ///
     /// # Errors
     /// Returns an error if the port or a board does not work, if a board is not the same as at open, if the servo has

@@ -68,7 +68,7 @@ impl Hand {
         Self::open_as(find_configuration()?)
     }
 
-    /// Opens the hand of a configuration that was found in a file ([`Configured::read`]), or in none.
+    /// Opens the hand of a configuration, which may come from a file ([`Configured::read`]).
     ///
     /// # Errors
     /// Returns the errors of [`Hand::open`].

@@ -27,7 +27,7 @@ impl Hand {
     /// time. If nothing else is sent within this time, the finger reacts as `[finger.motion]` says.
     ///
     /// # Errors
-    /// Returns the same errors.
+    /// Returns the errors of [`Hand::send_position`].
     pub fn send_position_for(&self, finger: i32, joints: [f64; 3], valid: Option<Duration>) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, (Replaced::Place, Validity::hold_after(valid)), |admission| {

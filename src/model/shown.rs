@@ -29,8 +29,8 @@ impl Display for Shown<'_> {
     }
 }
 
-/// Displays a path with the characters escaped as by [`Shown`]. Of a long path the beginning and the end are shown,
-/// because a message must leave room for cause and remedy.
+/// Displays a path. Characters are escaped in the same way as in [`Shown`]. Of a long path the beginning and the end
+/// are shown, because a message must leave room for cause and remedy.
 #[derive(Clone, Copy, Debug)]
 pub struct ShownPath<'a>(pub &'a Path);
 
@@ -62,7 +62,7 @@ pub fn one_line(message: &str) -> String {
     line
 }
 
-/// Writes a message with the characters escaped as by [`one_line`], without a copy of the message.
+/// Writes a message without making a copy of it. Characters are escaped in the same way as in [`one_line`].
 pub struct OneLine<'a, W>(pub &'a mut W);
 
 impl<W: Write> Write for OneLine<'_, W> {

@@ -1,6 +1,6 @@
-//! Serialisation of large types that is compiled once. Serde compiles the code of a type again for each format: TOML,
-//! JSON and the format of telemetry. So a value is first copied to a snapshot, and only the snapshot is written in each
-//! format.
+//! Serialises large types with code that is compiled only once for each type. Serde itself compiles the code of a type
+//! again for each format: TOML, JSON and the format of telemetry. So a value is first copied to a snapshot, and only
+//! the snapshot is written in each format.
 
 mod copying;
 mod value;
@@ -9,7 +9,7 @@ pub use copying::snapshot;
 use serde::ser::Error;
 use serde::{Serialize, Serializer};
 
-/// Serialises a field as the type of the field does. It is for the attribute `serialize_with`.
+/// Serialises a field through a snapshot of its value. The attribute `serialize_with` of a field names this function.
 ///
 /// # Errors
 /// Returns the error of the format.

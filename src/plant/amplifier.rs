@@ -24,7 +24,7 @@ impl Amplifier {
         Self {
             delay,
             lag: finger.simulation.amplifier_lag_ms * 1e-3,
-            // A thread that must not allocate may compute the physics.
+            // The memory is reserved here, because the physics may run in a thread that must not allocate.
             waiting: VecDeque::with_capacity((delay / shortest_step).round() as usize + 2),
             torques: Vector4::zeros(),
         }

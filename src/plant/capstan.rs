@@ -102,7 +102,8 @@ impl Contacts {
 fn slid(contact: f64, [upper, lower]: [(f64, f64); 2], ratio: f64, elasticity: &Elasticity) -> f64 {
     let above = elasticity.signed_tension((upper.0 - contact) / upper.1);
     let below = elasticity.signed_tension((contact - lower.0) / lower.1);
-    // A slack tendon has no friction. Its sections then have the same share of the slack.
+    // A slack tendon has no friction. The slack is then divided between the two sections in proportion to their shares
+    // of the compliance.
     let ratio = if above <= 0.0 && below <= 0.0 { 1.0 } else { ratio };
     let (gain_above, gain_below) = if above > ratio * below {
         (1.0, ratio)
@@ -201,7 +202,8 @@ mod tests {
         ) {
             let capstans = Capstans::new(conduit, pulleys).expect("there is friction");
             let (tensions, work, stored) = moved(&capstans, hardening, &corners);
-            // The trapezoidal rule is off by the square of a step's stretch: at most 6e-6 m on the stiffest section.
+            // The error of the trapezoidal rule is proportional to the square of the stretch in one step. This stretch
+            // is at most 6e-6 m. The bound below uses the stiffness of the stiffest section.
             let rounding = 400.0 * 5.0 * 1.5e5 * 2.0 * (6e-6f64).powi(2);
             prop_assert!(stored <= work + rounding, "{stored} {work}");
             prop_assert!(tensions.motor <= (1.0 + conduit) * tensions.gauge + 1e-6);

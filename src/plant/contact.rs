@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 /// Returns the force on the tip, N, in the finger's frame. `tip` is in cm.
 ///
-/// The force is zero for a wall without a normal, and at the centre of a ball, because there it has no direction.
+/// At a wall without a normal, and at the centre of a ball, the force has no direction. It is zero there.
 pub(super) fn force(surface: &Surface, tip: &Vector3<f64>) -> Vector3<f64> {
     let (depth, outward, stiffness) = touch(surface, tip);
     outward * (depth * stiffness)

@@ -200,7 +200,8 @@ impl Plant {
         self.tendons.tensions(&self.theta, &self.motor).joint
     }
 
-    /// Returns the tensions that the gauge amplifiers pass on, N: those at the gauges, after the amplifiers' low-pass.
+    /// Returns the tensions that the gauge amplifiers pass on, N: those at the gauges, after the amplifiers' low-pass,
+    /// plus the weights of [`Plant::hang`].
     pub fn filtered_tensions(&self) -> Vector4<f64> {
         self.gauge_filter.as_ref().map_or_else(|| self.tensions(), |filter| filter.shown) + self.hung
     }

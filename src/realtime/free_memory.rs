@@ -1,5 +1,5 @@
 //! A check for free memory before work that needs memory. A failed allocation in the middle of that work would end the
-//! process, and with it a hand in motion.
+//! process while a hand may be in motion.
 
 use std::hint::black_box;
 

@@ -1,6 +1,7 @@
-//! Locks between threads that are not servos. They are those of the standard library, which wait on a futex word and
-//! never allocate. Locks with a table of waiting threads, such as those of parking_lot, allocate when a thread waits
-//! for the first time, and would end a process that is out of memory, and with it a hand in motion.
+//! Locks between threads that are not servos. This module uses the locks of the standard library, which wait on a futex
+//! word and never allocate. Locks with a table of waiting threads, such as the locks of parking_lot, allocate when a
+//! thread waits for the first time. If the process is out of memory, this allocation would end it while a hand may be
+//! in motion.
 //!
 //! A lock stays usable after a panic of the thread that held it. The C interface catches panics, and a hand must be
 //! closed after them too.
@@ -48,7 +49,8 @@ impl<T> RwLock<T> {
         Self(sync::RwLock::new(value))
     }
 
-    /// Waits until no thread writes. A thread must not read again while it reads: a writer that waits would block both.
+    /// Waits until no thread writes. A thread must not read again while it reads: if a writer waits, the second read
+    /// would wait for the writer, and the writer would wait for the end of the first read.
     pub fn read(&self) -> RwLockReadGuard<'_, T> {
         self.0.read().unwrap_or_else(PoisonError::into_inner)
     }

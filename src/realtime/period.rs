@@ -8,8 +8,9 @@ pub struct Schedule {
     period: u64,
     /// Beginning of period 0, which the schedules of all threads have in common, ns.
     origin: u64,
-    /// Added to a time before it is rounded down to the number of its period, ns. It is half the stagger between two
-    /// threads, so that a shift of the schedule by less than that does not change the number of a cycle's period.
+    /// [`Schedule::number`] adds this margin to a time, ns, before it rounds the sum down to the number of a period.
+    /// The margin is half the stagger between two threads, so that a shift of the schedule by less than the margin does
+    /// not change the number of a cycle's period.
     margin: u64,
 }
 

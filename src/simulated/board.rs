@@ -53,7 +53,7 @@ impl SimulatedBoard {
         Ok(Self { scene: Scene::new(hand), ..Self::without_object(hand, fingers)? })
     }
 
-    /// Creates a board as [`SimulatedBoard::new`] does, whose fingers touch no object.
+    /// Does the same as [`SimulatedBoard::new`], but the board has no object.
     pub(super) fn without_object(hand: &Configuration, fingers: &[FingerNumber]) -> Result<Self, SimulatedBoardError> {
         let mut board = Self { decoder: Decoder::default(), fingers: Vec::new(), scene: None, time: None };
         for &number in fingers {

@@ -1,7 +1,7 @@
-//! Simulated boards at serial ports of their own, whose fingers touch one object.
+//! Simulated boards, each at a serial port of its own. The fingers of all boards touch the same object.
 //!
 //! One thread runs all of these boards and the object in steps of the same time, so no thread waits for another. To its
-//! host, each port looks like that of a [`SimulatedPort`](crate::simulated::SimulatedPort).
+//! host, each port looks like the port of a [`SimulatedPort`](crate::simulated::SimulatedPort).
 
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, FINGERS};

@@ -57,7 +57,7 @@ pub enum Defect {
     },
     /// Two parts are connected in each other's place.
     Swapped(WiredPart, u8, u8),
-    /// A part is connected backwards. A tendon cannot be.
+    /// A part is connected backwards. A tendon cannot have this defect.
     Reversed(WiredPart, u8),
     /// The gain of a gauge has changed.
     GaugeGain {

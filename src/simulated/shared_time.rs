@@ -34,8 +34,8 @@ struct Host {
 }
 
 impl SharedTime {
-    /// Creates a boards' time that is 0 when the real time is `now`, ns. The hosts have `rate` cycles per second, and a
-    /// command is valid for one period.
+    /// Creates the boards' time, which is 0 when the real time is `now`, ns. The hosts have `rate` cycles per second,
+    /// and a command is valid for one period.
     pub fn new(rate: f64, now: u64) -> Self {
         Self { grace: (1e9 / rate) as u64, board: 0, woken: now, hosts: Default::default() }
     }
@@ -71,7 +71,8 @@ impl SharedTime {
         self.hosts[finger] = Host { controls, received_at: self.board, silence: 0 };
     }
 
-    /// Notes whether the motors of this finger follow commands. They do not after its watchdog has tripped.
+    /// Notes whether the motors of this finger follow commands. After its watchdog has tripped, the motors no longer
+    /// follow commands.
     pub fn set_control(&mut self, finger: usize, controls: bool) {
         self.hosts[finger].controls = controls;
     }

@@ -43,8 +43,8 @@ impl Wiring {
         self.encoder_at.swap(one, other);
     }
 
-    /// Leads two tendons to each other's motor. A motor and its encoder move together, so seen from the board both pull
-    /// the other tendon.
+    /// Connects each of two tendons to the motor of the other one. A motor and its encoder turn together. To the board,
+    /// it therefore looks as if the cables of both motors and of both encoders were swapped.
     pub fn swap_tendons(&mut self, one: usize, other: usize) {
         self.swap_motors(one, other);
         self.swap_encoders(one, other);

@@ -41,9 +41,10 @@ impl OneCycleMap {
     /// does not come to rest after a pulse, or a tendon is slack.
     ///
     /// The map of plant and controller is periodic with the period of the servo. So the response to a pulse depends on
-    /// the instant of the pulse within a period. The admittance is the mean over all instants. This mean is the part of
-    /// the response to a sinusoidal force that has the frequency of the force. The velocities are those in the middle
-    /// of each plant step, because a force and the velocity at the end of its step differ in phase.
+    /// the instant of the pulse within a period. The admittance is the mean over all instants. A sinusoidal force
+    /// causes a response with several frequencies, and this mean describes the part at the frequency of the force. The
+    /// velocities are those in the middle of each plant step, because a force and the velocity at the end of its step
+    /// differ in phase.
     pub fn admittances(&self, rest: &Rest, frequencies: &[f64]) -> Option<Vec<Admittance>> {
         let settled = self.settled(rest);
         let mut still = Vec::with_capacity(self.cycles(OBSERVED) * self.steps);

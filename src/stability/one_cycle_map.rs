@@ -47,8 +47,9 @@ const DRIFT: f64 = 0.3;
 /// Time after which an amplifier has reached a constant command, in time constants of its lag.
 const AMPLIFIED: f64 = 20.0;
 
-/// Amplitude of the joint rates at which joint friction counts as a damper for a finger that touches a wall, rad/s. The
-/// tip of a finger of 10 cm has this rate when it vibrates by 50 um rms at 250 Hz, a usual frequency for stiff walls.
+/// Amplitude of the joint rates at which joint friction counts as a damper for a finger that touches a wall, rad/s. A
+/// joint of a finger of 10 cm has this rate when the tip vibrates by 50 um rms at 250 Hz, a usual frequency for stiff
+/// walls.
 const VIBRATION: f64 = 1.0;
 
 /// A finger without Coulomb friction and with exact sensors. Its parameters are equal to those in the configuration of

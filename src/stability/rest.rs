@@ -12,7 +12,7 @@ const LEAST_LEVER: f64 = 0.5;
 /// An eigenvalue of a stiffness is zero if it is at most this fraction of the largest.
 const RANK: f64 = 1e-9;
 
-/// A finger at rest at `joints`. Forces on the tip hold it at `deflection` from the anchor of its spring.
+/// A finger at rest at `joints`. Forces on the tip hold the finger at `deflection` from the anchor of its spring.
 #[derive(Clone, Copy, Debug)]
 pub struct Rest {
     /// Joint angles, rad.
@@ -35,8 +35,8 @@ pub struct Rest {
 pub struct Wall {
     /// Stiffness, N/cm.
     pub stiffness: f64,
-    /// The outward normal has the direction of this vector minus the direction in which the spring pulls the tip. Its
-    /// length is below 1, so the tip presses against the wall.
+    /// The outward normal has the direction of this vector minus the direction in which the spring pulls the tip. The
+    /// length of this vector is below 1, so the tip presses against the wall.
     pub tilt: Vector3<f64>,
 }
 

@@ -1,9 +1,9 @@
 //! A ring of blocks of bytes with one writer and any number of readers.
 //!
-//! The writer overwrites the oldest blocks, and knows no reader. Positions count words since the beginning, and never
-//! decrease. Before the writer overwrites words, it stores the position up to which it will write. A reader that has
-//! copied words reads that position afterwards, and discards its copy if the words may have changed meanwhile. It then
-//! continues with the newest block.
+//! The writer overwrites the oldest blocks, and does not know of any reader. Positions count words since the beginning,
+//! and never decrease. Before the writer overwrites words, it stores the position up to which it will write. A reader
+//! that has copied words reads that position afterwards, and discards its copy if the words may have changed
+//! meanwhile. It then continues with the newest block.
 //!
 //! A reader does not trust the contents of the memory. Whatever they are, it neither panics nor reads beyond the ring.
 
@@ -49,7 +49,7 @@ pub enum Found {
     Nothing,
     /// The writer has overwritten the next block. The reader continues with the newest one.
     Overtaken,
-    /// No writer leaves the memory like this.
+    /// The memory has contents that no writer produces.
     Damaged,
 }
 

@@ -1,5 +1,5 @@
-//! The numbers that a block carries besides its bytes. They are in a file of their own, because the package in
-//! `models/` checks blocks with fewer numbers.
+//! Marks: the numbers that a block carries besides its bytes. Their count is in a file of its own, because the package
+//! in `models/` checks blocks with fewer marks.
 
-/// Number of these numbers: one for each finger.
+/// Number of marks in a block: one for each finger.
 pub const MARKS: usize = 3;

@@ -47,7 +47,7 @@ pub fn hands() -> io::Result<Vec<String>> {
     Ok(names.into_iter().filter(|name| is_open(name)).collect())
 }
 
-/// Returns the names of the listening sockets in the table that begin with `prefix`, without the prefix.
+/// Returns the names of those listening sockets in the table whose names begin with `prefix`. The prefix is removed.
 fn listed(table: &str, prefix: &str) -> BTreeSet<String> {
     let name = |line: &str| {
         let columns: Vec<&str> = line.split_whitespace().collect();

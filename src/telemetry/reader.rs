@@ -1,4 +1,4 @@
-//! A reader of a hand's telemetry, in another process or in that of the hand.
+//! A reader of a hand's telemetry, in another process or in the hand's own process.
 
 use super::attach_error::AttachError;
 use super::block_ring::{BlockReader, Found};

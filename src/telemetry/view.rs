@@ -20,7 +20,7 @@ struct FingerView {
     to_palm: Isometry3<f64>,
     /// The finger as it was configured at open, for cycles whose controller has not been announced.
     configured: Mechanics,
-    /// For each controller, by its number, the finger that it is made for.
+    /// For the number of each controller, the finger for which the controller is made.
     adjusted: BTreeMap<u32, Mechanics>,
     /// The last cycle in which the controller ran.
     last: Option<ControlRecord>,

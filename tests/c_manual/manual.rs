@@ -97,7 +97,8 @@ impl Manual {
 }
 
 impl Entry {
-    /// The errnos of an entry in the order in which they are reported. A line of the list begins with one or several.
+    /// The errnos of an entry in the order in which they are reported. A line of the list begins with one errno or with
+    /// several.
     pub fn errnos(&self) -> Vec<&str> {
         let Some((_, list)) =
             self.text.split_once("or -1 with\n").or(self.text.split_once("or a negative number with\n"))

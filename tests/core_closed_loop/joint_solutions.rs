@@ -48,7 +48,7 @@ fn arrive(finger: impl Fn(&ConfiguredFinger) -> ConfiguredFinger, joint_2: [[f64
     for scheme in SCHEMES {
         let finger = finger(&finger_with(scheme));
         let links = finger.links();
-        // With Figures 9 and 11, friction holds a finger at 1 N/cm near the straight pose.
+        // Not 1 N/cm: with Figures 9 and 11, friction holds such a soft finger near the straight pose.
         for stiffness in [3.0, 6.0] {
             let mut random = Pcg64::seed_from_u64(7);
             for held in [false, true] {

@@ -4,7 +4,7 @@ import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshLambertMaterial, Vecto
 
 /// Length of the arrow for a force of 1 N, cm.
 export const CM_PER_NEWTON = 1;
-/// A smaller force, N, has no arrow: friction and dither cause as much.
+/// A force below this, N, has no arrow, because friction and dither alone cause such forces.
 const LEAST = 0.15;
 const LONGEST_CM = 12;
 const HEAD = 0.75;

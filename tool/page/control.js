@@ -10,7 +10,7 @@ const TIP_STEP_CM = 0.08;
 const AXES = ["x", "y", "z"];
 const MESSAGE_MS = 6000;
 
-/// Calls `act` at once and again while the button is held, and `end` when it is released.
+/// Calls `act` at once, and repeatedly while the button is held. Calls `end` when the button is released.
 function held(button, act, end = () => {}) {
   let timer = null;
   const stop = () => {
@@ -114,7 +114,7 @@ export class Control {
         this.last = null;
         this.wanted[joint] = input.value / DEGREES;
       });
-      // A real finger goes on only while the slider is held.
+      // A real finger moves towards the slider only while the slider is held.
       input.addEventListener("change", () => finger.simulated || (this.wanted = null));
       return { input, value: element("span", "number", "") };
     });

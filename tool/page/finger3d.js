@@ -15,7 +15,7 @@ const FORCE = ["f0", "f1", "f2"];
 /// The ghost is invisible if no joint is farther from the set point than this, rad, and clearest at four times that.
 const GHOST_FROM = 0.03;
 const GHOST_OPACITY = 0.4;
-/// Part of the way to a new force that the arrow goes in each picture.
+/// In each picture, the arrow goes this part of the way to a new force.
 const SMOOTHING = 0.35;
 
 /// The links as groups, each inside the group of its parent.

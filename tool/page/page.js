@@ -70,7 +70,7 @@ const control = new Control(byId("control"), byId("control-toggle"), {
   opened: (width) => view.setPanel(width),
 });
 
-/// A hand: the first one, the same after a gap, or another one.
+/// Handles the description of a hand: of the first hand, of the same hand after a gap, or of another hand.
 function begin(message) {
   linked.hand = true;
   const again = hand && hand.identity === message.identity;
@@ -116,7 +116,7 @@ function batch(message) {
   countLost(message);
 }
 
-/// Cycles that the monitor has lost, and those of batches that this page was too slow for.
+/// Counts the cycles that the monitor has lost, and the cycles of the batches that this page was too slow to get.
 function countLost({ number, lost, cycles: [own, all] }) {
   if (received.number && number > received.number + 1) received.skipped += all - own - received.cycles;
   Object.assign(received, { number, lost, cycles: all });

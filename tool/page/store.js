@@ -33,7 +33,7 @@ export class Samples {
     return this.values[place * this.width + column];
   }
 
-  /// Returns how many samples are newer than `time`: the age of the newest one that is not.
+  /// Returns how many samples are newer than `time`. This is the age of the newest sample that is not newer.
   ageAt(time) {
     let [low, high] = [0, this.count - 1];
     while (low < high) {
@@ -44,7 +44,7 @@ export class Samples {
     return low;
   }
 
-  /// Returns the values of the columns at `time`, between two samples in proportion to the time.
+  /// Returns the values of the columns at `time`, by linear interpolation between two samples.
   between(time, columns) {
     if (!this.count) return null;
     const age = this.ageAt(time);
@@ -81,7 +81,8 @@ export class Clock {
   /// Notes the time of the newest sample.
   note(time) {
     const offset = performance.now() / 1000 - time;
-    // A batch that was late must not delay the picture from then on; a clock that drifts is followed.
+    // A late batch must not delay the picture permanently. So a batch raises the offset by at most 0.5 ms. In this
+    // way the offset still follows a clock that drifts.
     const jumped = this.offset === null || Math.abs(offset - this.offset) > 2;
     this.offset = jumped ? offset : Math.min(this.offset + 0.0005, offset);
     this.newest = Math.max(jumped ? 0 : this.newest, time);

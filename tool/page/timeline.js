@@ -36,7 +36,7 @@ export class Timeline {
     this.list.replaceChildren();
   }
 
-  /// Adds events. Those that came before are ignored: the server repeats them after a gap.
+  /// Adds events. Events that are already here are ignored, because the server repeats events after a gap.
   add(events) {
     for (const event of events) {
       if (event.number <= this.last) continue;

@@ -79,7 +79,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                     format!("{error}. {instructions}").into()
                 }
             })?;
-            // The last zeroing is compared with a file that the first one has corrected already.
+            // A second zeroing measures the errors of zeros that the first zeroing has already corrected. So only the
+            // first result is reported.
             if !tasks[..done].contains(&task) {
                 calibrated.measured.extend(Measured::all(&found));
             }

@@ -42,7 +42,7 @@ pub struct Arguments {
     /// Beginning of the time that is drawn, s since the first cycle.
     #[arg(long, value_name = "S", value_parser = seconds)]
     from: Option<f64>,
-    /// End of the time that is drawn, s since the first cycle. The stiffness is that of this moment.
+    /// End of the time that is drawn, s since the first cycle. The kind `stiffness` shows the stiffness at this time.
     #[arg(long, value_name = "S", value_parser = seconds)]
     to: Option<f64>,
     /// Width of the picture, pixels.

@@ -13,7 +13,7 @@ const PROGRAM: &str = "sun2xp-serve";
 
 /// Offers the hand to planners on other machines, with the program sun2xp-serve beside this one.
 ///
-/// Every option is one of sun2xp-serve: `sun2xp serve -- --help` lists them.
+/// All options are passed to sun2xp-serve. `sun2xp serve -- --help` lists them.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Options of sun2xp-serve, such as --config FILE, --router and --make-certificates FOLDER.

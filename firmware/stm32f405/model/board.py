@@ -1,4 +1,6 @@
-"""The image of the board on a Cortex-M4 (Unicorn) with models of its registers. Time is the computed number of cycles."""
+"""The image of the board on a Cortex-M4 (Unicorn) with models of its registers.
+
+Time is the computed number of cycles."""
 
 import struct
 import zlib
@@ -23,9 +25,10 @@ LINE, WAIT_STATES, CACHE_LINES = 16, 5, 64
 
 
 class Board:
-    """`cached` is the accelerator of the flash as RM0090, 3.5.2, describes it: the 64 lines of instructions that were used
-    last need no wait states. Prefetch is off. Constants beside the code always wait; the table of the checksum is in the
-    cache for data. Without `cached`, every new line and every load, even from memory, waits: the upper bound."""
+    """`cached` is the accelerator of the flash as RM0090, 3.5.2, describes it: the 64 lines of instructions that were
+    used last need no wait states. Prefetch is off. A load of a constant beside the code always waits. A load from the
+    table of the checksum does not wait, because the table is in the cache for data. Without `cached`, every new line
+    and every load, even from memory, waits: the upper bound."""
 
     def __init__(self, image, binary, cached=True):
         self.program = Program(image)
@@ -136,7 +139,7 @@ class Board:
         self.run(lambda: self.registers.now >= end)
 
     def send(self, wire, baud, after=0):
-        """Sends bytes to the board. Returns when the last of them arrives, in cycles."""
+        """Sends bytes to the board. Returns the time at which the last of them arrives, in cycles."""
         byte = MEGAHERTZ * 10_000_000 // baud
         begin = self.registers.now + after
         self.arrivals += [(begin + (n + 1) * byte, value) for n, value in enumerate(wire)]

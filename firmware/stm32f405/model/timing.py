@@ -2,8 +2,8 @@
 
     timing.py stm32f405.elf stm32f405.bin
 
-Fails if the upper bound of the time from a Command to its Reply is longer than the protocol allows, or if the time of a
-Command to an idle line lacks its margin."""
+Fails if the upper bound of the time from a Command to its Reply is longer than the protocol allows, or if the computed
+time on an otherwise idle line leaves less than the required margin."""
 
 import sys
 
@@ -12,7 +12,7 @@ from registers import GPIOB, BSRR, MEGAHERTZ, TIM2, TIM3, TIM4, TIM5
 
 # docs/board-protocol.md, us.
 ALLOWED = 100
-# Of the computed cycles to what is allowed.
+# Least ratio of the allowed time to the computed time.
 MARGIN = 3
 BAUD = 2_000_000
 BYTE = MEGAHERTZ * 10_000_000 // BAUD

@@ -13,7 +13,7 @@ TYPES = {0x9: "Identity", 0xA: "Configured", 0xB: "Reply", 0xC: "Stopped", 0xD: 
 STATUS_AT = {0xA: 58, 0xB: 2, 0xC: 2}
 STOP, SUPPLY, DRIVER = 1 << 6, 1 << 7, 1 << 8
 ZERO_VALID = 1 << 5
-# Waits that take longer in the model than they are worth, ms.
+# Longest wait in a conversation, ms. Conversations with longer waits are left out, because the model is slow.
 LONGEST = 200
 STREAMS = 60
 

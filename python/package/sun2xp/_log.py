@@ -25,7 +25,8 @@ def start() -> None:
             _thread = threading.Thread(target=_pass_on, name="sun2xp log", daemon=True)
             _sun2xp.take_messages()
             _thread.start()
-            # Handlers run in the reverse order: the hands are closed later, when messages go to standard error again.
+            # atexit calls the newest function first, so the hands are closed after `_end`. Messages then go to standard
+            # error again.
             atexit.register(_end)
 
 

@@ -50,7 +50,7 @@ pub struct Environment {
 
 impl Environment {
     /// Makes the environment `name` with the wheel and the packages of a list, which `tests/run` has downloaded into
-    /// the folder `downloaded`. Returns `None`, and lists the test as skipped, if it has not.
+    /// the folder `downloaded`. If the packages are not there, returns `None` and lists the test as skipped.
     pub fn new(name: &str, list: &str, downloaded: &str) -> Option<Self> {
         let python = tools::python(name)?;
         let wheels = python.ancestors().nth(2).expect("the folder of the environment").join(downloaded);
@@ -81,7 +81,7 @@ impl Environment {
         run(install.arg(&self.wheels).args(packages));
     }
 
-    /// Deletes the environment, which takes some hundreds of megabytes. That of a failed test stays.
+    /// Deletes the environment, which takes some hundreds of megabytes. The environment of a failed test stays.
     pub fn delete(self) {
         let _ = fs::remove_dir_all(self.folder.join("environment"));
     }

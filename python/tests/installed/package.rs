@@ -21,14 +21,14 @@ fn the_wheel_works_in_an_empty_environment() {
 }
 
 /// Returns the path of `sun2xp-serve`, for the tests of `sun2xp.remote`. Cargo builds it here, because it belongs to
-/// another package. Cargo selects the features of `cargo test --workspace`, in which Zenoh is compiled already, only
-/// for a build with an example or a test.
+/// another package. The build includes an example, because Cargo then selects the same features as for
+/// `cargo test --workspace`. With these features Zenoh is compiled already.
 fn server() -> PathBuf {
     let mut build = Command::new(env!("CARGO"));
     build.args(["build", "--quiet", "--offline", "--workspace", "--bin", "sun2xp-serve"]);
     build.args(["--example", "spring"]).current_dir(ROOT);
     run(&mut build);
-    // This test is in the folder deps, beside which programs are.
+    // This test is in the folder deps. The programs are in the folder that contains deps.
     let here = std::env::current_exe().expect("the path of this test");
     here.ancestors().nth(2).expect("the folder of the profile").join("sun2xp-serve")
 }

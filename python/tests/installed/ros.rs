@@ -18,7 +18,7 @@ fn command(program: &Path) -> Command {
     }
     println!("This process may not make a network namespace. The nodes use the loopback interface of the machine.");
     let mut beside = Command::new(program);
-    // Of the numbers up to 101, which use no ports of short-lived connections.
+    // The domains up to 101 use no ports of short-lived connections.
     beside.env("ROS_DOMAIN_ID", (1 + std::process::id() % 101).to_string());
     beside
 }

@@ -16,7 +16,7 @@ use sun2xp::nalgebra::Vector3;
 use sun2xp::{Configuration, FingerNumber, HandError};
 use sun2xp_remote_client as client;
 
-/// Interval at which a wait looks at the newest records, which arrive every 10 ms.
+/// Interval at which a wait inspects the newest records, which arrive at least every 10 ms.
 const LOOK: Duration = Duration::from_millis(5);
 
 /// Longest wait for an event before the thread checks whether the hand was closed.

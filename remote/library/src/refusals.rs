@@ -1,5 +1,5 @@
-//! Conversion of the client's errors to refusals of the C calls. A reason that a hand of this machine has too gets the
-//! same errno and text as there.
+//! Conversion of the client's errors to refusals of the C calls. If a hand of this machine can refuse a call for the
+//! same reason, errno and text are the same.
 
 use sun2xp::capi::RemoteRefusal;
 use sun2xp::finger::Action;
@@ -43,7 +43,8 @@ fn numbers(kind: Kind) -> (i32, i32) {
         Kind::NotInHand => (number::NOT_SUPPORTED, libc::ENODEV),
         Kind::OutOfRange | Kind::Refused => (number::LIMIT, libc::ERANGE),
         Kind::NotASpring => (number::LIMIT, libc::EDOM),
-        // A planner that fell silent has lost the hand, and its fingers have stopped: as after a fault, it opens again.
+        // A planner that fell silent has lost the hand, and the fingers have stopped. As after a fault, the planner
+        // opens the hand again.
         Kind::Faulted | Kind::NotOwner => (number::FAULTED, libc::EIO),
         Kind::Busy | Kind::Owned => (number::BUSY, libc::EBUSY),
         Kind::NotConnected => (number::PORT, libc::ENOTCONN),

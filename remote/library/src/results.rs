@@ -1,4 +1,5 @@
-//! Conversion of what the server tells to the structs of `sun2xp.h`. What it does not tell is NaN, or 0 in an integer.
+//! Converts what the server reports into the structs of `sun2xp.h`. A value that the server does not report is NaN, or
+//! 0 in an integer.
 
 use sun2xp::capi::{sun2xp_event, sun2xp_fault, sun2xp_limits, sun2xp_status, sun2xp_tip};
 use sun2xp_remote_client::{Event, FingerStatus, Record, Stage, Status};

@@ -12,8 +12,8 @@ const ENDPOINT: &str = "SUN2XP_TEST_CLIENT";
 /// The joint angles that the client commands for finger 1, rad.
 pub const WANTED: [f64; 3] = [0.1, 0.7, 0.9];
 
-/// Owns the hand and repeats a Target, until it is killed, if this is the process of a client. The test with the name
-/// that [`start`] gets must call it.
+/// If this is the process of a client, owns the hand and repeats a Target until the process is killed. Otherwise
+/// returns at once. The test whose name is passed to [`start`] must call this function.
 pub fn run_if_child() {
     let Ok(endpoint) = std::env::var(ENDPOINT) else { return };
     let mut client = Client::connect(&endpoint, "alice", None).expect("connected");

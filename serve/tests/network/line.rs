@@ -61,7 +61,7 @@ impl Line {
         Ok(Self { left, right, shapers, ends, relay: Some(relay) })
     }
 
-    /// Changes the conditions of one direction. A cut also loses what is under way. Returns when it was done.
+    /// Changes the conditions of one direction. A cut also loses what is under way. Returns the time of the change.
     pub fn set(&self, direction: Direction, conditions: Conditions) -> Instant {
         let mut shaper = lock(&self.shapers[direction as usize]);
         shaper.conditions = conditions;
@@ -71,7 +71,7 @@ impl Line {
         Instant::now()
     }
 
-    /// Changes the conditions of both directions. Returns when it was done.
+    /// Changes the conditions of both directions. Returns the time of the change.
     pub fn set_both(&self, conditions: Conditions) -> Instant {
         self.set(Direction::Right, conditions);
         self.set(Direction::Left, conditions)

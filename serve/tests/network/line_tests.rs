@@ -19,7 +19,7 @@ fn arrivals(shaper: &mut Shaper, now: Instant) -> Vec<u32> {
     std::iter::from_fn(|| shaper.arrived(now)).map(number).collect()
 }
 
-/// Offers packets that are 1 ms apart. Returns when the last one was offered.
+/// Offers packets that are 1 ms apart. Returns the time at which the last one was offered.
 fn offer_all(shaper: &mut Shaper, start: Instant) -> Instant {
     for number in 0..PACKETS {
         shaper.offer(start + Duration::from_millis(number.into()), number.to_le_bytes().to_vec());

@@ -1,4 +1,4 @@
-//! Network namespaces: a computer's network of its own, for the threads and programs that run in it.
+//! Network namespaces. The threads and programs in a namespace have a network of their own, as on a separate computer.
 #![allow(unsafe_code, reason = "namespaces are entered by system calls")]
 
 use std::fs::File;

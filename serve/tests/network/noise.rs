@@ -4,7 +4,7 @@ use super::raw::joints;
 use super::shaper::Random;
 use sun2xp_remote_protocol::{Place, Target};
 
-/// Offsets of the page docs/remote-protocol.md in a Target and in its first part.
+/// Offsets of fields in a Target and in its first part, from docs/remote-protocol.md.
 const COUNT: usize = 2;
 const VALIDITY: usize = 4;
 const EPOCH: usize = 8;
@@ -88,7 +88,7 @@ impl Noise {
         payload
     }
 
-    /// A Target in force with one field that the page or the hand does not allow.
+    /// A Target in force with one field that the protocol or the hand does not allow.
     fn spoiled(&mut self, next: &Target) -> Vec<u8> {
         let mut payload = self.good(next);
         let number = |payload: &mut Vec<u8>, at: usize, value: f64| {

@@ -30,7 +30,7 @@ impl Observer {
         }
     }
 
-    /// Returns the cycles that have arrived, after waiting for some for at most `timeout`. The hand must be open.
+    /// Waits for cycles for at most `timeout`, and returns those that have arrived. The hand must be open.
     pub fn samples(&mut self, timeout: Duration) -> Vec<Sample> {
         self.messages.clear();
         self.reader.read(timeout, &mut self.messages).unwrap_or_else(|ended| panic!("{ended}"));

@@ -41,7 +41,7 @@ impl Failure {
         [Self::Killed, Self::Stopped, Self::Unplugged, Self::PlannerUnheard, Self::ServerUnheard];
 }
 
-/// What the hand did, ms after the outage: the last finger counts.
+/// What the hand did. `caught` and `ended` are times of the last finger, in ms.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outcome {
     /// From the outage to the first cycle in which the finger was held softly.

@@ -113,7 +113,7 @@ fn watch(configuration: &str) {
     }
 }
 
-/// Opens the hand. On a busy machine the connection may be too young for an answer.
+/// Opens the hand. On a busy machine, a new connection may not give an answer yet. Then this tries again.
 fn opened(configuration: &str) -> RemoteHand {
     let deadline = Instant::now() + OPENS;
     loop {
@@ -146,12 +146,13 @@ fn run(configuration: &str, motion: Motion) {
             println!("planner moves");
             let _ = std::io::stdout().flush();
         }
-        // A planner in real time. The tests measure what the hand does, and not what this one does.
+        // The planner keeps real time. The tests measure what the hand does, and not what the planner does.
         std::thread::sleep((begin + time + INTERVAL).saturating_duration_since(Instant::now()));
     }
 }
 
-/// Returns whether this process was started as a planner. Then it has been one, and shall end.
+/// If this process was started as a planner, runs the planner, and returns true when the planner has ended. The process
+/// then has to end. Otherwise returns false.
 pub fn ran() -> bool {
     let Ok(configuration) = std::env::var(CONFIGURATION) else { return false };
     match std::env::var(MOTION).as_deref() {

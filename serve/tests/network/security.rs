@@ -63,7 +63,7 @@ fn only_fresh_targets_of_the_owner_are_taken() {
     let start = planner.status().expect("an answer").counts;
     let elsewhere = || vec![joints(1, 2, [0.3, 0.9, 0.5])];
 
-    // Replayed: byte for byte, with a lower sequence number, and with an earlier time.
+    // Three replays: the same bytes, a sequence number that was used already, and an earlier time.
     planner.put(good.encode().expect("a good Target"));
     let mut replayed = planner.target(elsewhere());
     replayed.sequence = good.sequence;
@@ -73,7 +73,7 @@ fn only_fresh_targets_of_the_owner_are_taken() {
     planner.put(earlier.encode().expect("a good Target"));
     planner.until(|status| status.counts.replayed == start.replayed + 3);
 
-    // Older than its validity, and from the future.
+    // A Target that is older than its validity, and one from the future.
     let mut late = planner.target(elsewhere());
     late.seen -= 150_000_000;
     planner.put(late.encode().expect("a good Target"));
@@ -83,7 +83,7 @@ fn only_fresh_targets_of_the_owner_are_taken() {
     planner.put(future.encode().expect("a good Target"));
     planner.until(|status| status.counts.malformed == start.malformed + 1);
 
-    // With the right epoch under the key of another client, and with an old epoch.
+    // A Target with the right epoch under the key of another client, and one with an old epoch.
     let stolen = planner.target(elsewhere());
     planner.put_as(&"other".parse().expect("a name"), stolen.encode().expect("a good Target"));
     planner.until(|status| status.counts.old_epoch == start.old_epoch + 1);

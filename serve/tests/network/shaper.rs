@@ -73,7 +73,7 @@ impl Shaper {
         self.under_way.pop().map(|Reverse((_, _, packet))| packet)
     }
 
-    /// Returns when the next packet arrives.
+    /// Returns the time at which the next packet arrives.
     pub fn next_arrival(&self) -> Option<Instant> {
         self.under_way.peek().map(|Reverse((arrival, ..))| *arrival)
     }

@@ -1,4 +1,4 @@
-//! What the hardware of a program reports instead of the identity of a board.
+//! The identity of hardware that the program provides. It replaces the identity of a board.
 
 use super::finger_io::IoProperties;
 use crate::board::protocol::{Capabilities, FirmwareVersion, Identity, VERSION};

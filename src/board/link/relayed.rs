@@ -2,8 +2,8 @@
 
 use crate::board::protocol::MAX_WIRE;
 
-/// Number of periods in which the answer may arrive. The longest answer ends in the period after its request; the rest
-/// is for a USB bridge.
+/// Number of periods in which the answer may arrive. The longest answer ends in the period after its request. The other
+/// periods allow for the delay of a USB bridge.
 const ANSWER_PERIODS: u8 = 20;
 
 /// The request of the next period, and the time left for the answer to the last one.

@@ -21,8 +21,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Every type in use. 0x0, 0x7, 0x8 and 0xF are free. 0x5 is free too, but its answer type would be that of
-    /// Refused.
+    /// Every type in use. 0x0, 0x7, 0x8 and 0xF are free. 0x5 is free too, but its answer would have the type 0xD,
+    /// which is the type of Refused.
     pub const ALL: [Kind; 11] = [
         Kind::Hello,
         Kind::Configure,

@@ -1,5 +1,5 @@
-//! Frames with header and fields, and their bytes on the wire. There a frame has a check, is byte-stuffed, and ends
-//! with a zero.
+//! Frames with header and fields, and their bytes on the wire. On the wire, a frame has a check, is byte-stuffed, and
+//! ends with a zero.
 
 use super::fields::{FieldReader, FieldWriter};
 use super::packet::{CHECK, MAX_FRAME, MAX_WIRE, PREFIX, WIRE_OVERHEAD, check};

@@ -17,13 +17,14 @@ impl Status {
     pub const HOLDING: Status = Status(1 << 4);
     /// The encoder counts have not been lost since they were last referenced to a zero, so the host's zero is valid.
     pub const ZERO_VALID: Status = Status(1 << 5);
-    /// The emergency stop input for this finger is active, or was since the last Configure.
+    /// The emergency stop input for this finger is active, or was active at some time since the last Configure.
     pub const EMERGENCY_STOP: Status = Status(1 << 6);
-    /// The motor supply is missing or out of range, or was since the last Configure.
+    /// The motor supply is missing or out of range, or was so at some time since the last Configure.
     pub const SUPPLY_FAULT: Status = Status(1 << 7);
-    /// A motor driver reports a fault (over-current, over-temperature, short circuit), or did since the last Configure.
+    /// A motor driver reports a fault (over-current, over-temperature, short circuit), or has reported one since the
+    /// last Configure.
     pub const DRIVER_FAULT: Status = Status(1 << 8);
-    /// An encoder or gauge cannot be read, or could not since the last Configure.
+    /// An encoder or gauge cannot be read, or could not be read at some time since the last Configure.
     pub const SENSOR_FAULT: Status = Status(1 << 9);
     /// At least one torque of this Command exceeded a limit and was clipped to it.
     pub const TORQUE_CLIPPED: Status = Status(1 << 10);

@@ -28,9 +28,9 @@ const ROUNDS: usize = 5;
 /// Weight of the assumption that all pulleys have the same friction, N cm. It decides only where the motions do not
 /// distinguish the tendons.
 const LIKENESS: f64 = 0.3;
-/// Weight of the configured viscous friction, rad/s. The motions show C more closely than b.
+/// Weight of the configured viscous friction, rad/s. The motions determine C more accurately than b.
 const KNOWN: f64 = 0.2;
-/// A tendon that moves more slowly than this part of the fastest one has no certain direction.
+/// If the speed of a tendon is below this part of the speed of the fastest tendon, its direction is uncertain.
 const DIRECTED: f64 = 0.05;
 /// Largest plausible friction of the pulleys.
 const LARGEST: f64 = 0.6;

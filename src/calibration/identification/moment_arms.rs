@@ -1,9 +1,9 @@
 //! Determines the moment arms of the tendons from the motor travel between the stops of the joints.
 //!
 //! While one joint moves from its lower to its upper stop and the others rest, the travel of every motor, less the
-//! change of the stretch, is the moment arm times the range of the joint. Two readings at the lower stop, before and
-//! after, eliminate what changes slowly. If the angles of the stops are not known exactly, only the ratios of the
-//! moment arms of a joint are measured.
+//! change of the stretch, is the moment arm times the range of the joint. The mean of two readings at the lower stop,
+//! one before and one after the motion, eliminates slow drift. If the angles of the stops are not known exactly, only
+//! the ratios of the moment arms of a joint are measured.
 
 use super::tendon_stiffness::StiffnessFound;
 use crate::calibration::instruments::Instruments;
@@ -45,7 +45,7 @@ pub(super) struct MomentArms {
 pub(super) struct MomentArmsFound {
     /// R, cm.
     pub r: Matrix3x4<f64>,
-    /// Motor travel at all joints at zero and without tension, cm.
+    /// Motor travel with all joints at zero and without tension, cm.
     pub at_zero: Vector4<f64>,
 }
 

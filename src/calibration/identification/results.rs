@@ -97,7 +97,8 @@ impl Identification {
     ) -> [i32; 4] {
         let stretched = |tensions: &Vector4<f64>| elasticity.stretch(tensions, &Vector4::zeros());
         let too_far = if self.stops_known {
-            // `at_zero` counts from the configured zero. A finger at its zero has its pretension. A counter rounds down
+            // `at_zero` is measured from the configured zero and does not include any stretch. The zeros of the
+            // encoders are defined at the pretension, so the stretch by the pretension is added. A counter rounds down
             // to whole counts, so its count is half a count too low on average.
             let cm_per_count = instruments.radius.component_mul(&instruments.radians_per_count);
             arms.at_zero + stretched(pretension) + cm_per_count * 0.5

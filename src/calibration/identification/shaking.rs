@@ -2,8 +2,8 @@
 //! the motor torques of the steady motion.
 //!
 //! The friction of the pulleys makes the gauges differ from the tensions at the joints, in proportion to the tension.
-//! The two levels separate it from the Coulomb friction of the joints. The two directions are oblique: every tendon
-//! moves in both, and the signs of the motions differ, so that each tendon's share of the friction can be found.
+//! The two levels separate this friction from the Coulomb friction of the joints. The two directions are oblique: every
+//! tendon moves in both, and the signs of the motions differ, so that each tendon's share of the friction can be found.
 
 use super::joint_friction::{JointFriction, STROKES, Stroke};
 use super::motor_friction::MotorFriction;
@@ -34,7 +34,7 @@ const RISING: f64 = 10.0;
 const LOOSE: f64 = 0.02;
 const HASTE: f64 = 3.0;
 /// Distance after every change of direction in which samples are ignored, rad, for a joint at full speed. The finger
-/// oscillates there, and the tendons do not slide in every place yet.
+/// oscillates there, and the tendons do not yet slide along their whole length.
 const RUN_UP: f64 = 0.2;
 /// A joint is blocked if its torque stays at the limit for this time, s.
 const BLOCKED: f64 = 0.5;

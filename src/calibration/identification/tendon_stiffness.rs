@@ -45,16 +45,16 @@ pub(super) struct TendonStiffness {
 pub(super) struct StiffnessFound {
     /// Mean stiffness in the range of tensions in which the controller works, N/cm.
     pub stiffness: Vector4<f64>,
-    /// Relative difference of the stretch per newton from that of `stiffness`, at worst.
+    /// Largest relative difference from the stretch per newton that `stiffness` gives.
     pub tolerance: f64,
     /// Part of the travel that the model does not explain, cm rms.
     pub residual: f64,
-    /// The same as a fraction of the stretch in the range of tensions in which the controller works.
+    /// `residual` as a fraction of the stretch over the range of tensions in which the controller works.
     pub unexplained: f64,
     /// Largest difference that the friction of a conduit causes between the mean tension along its tendon and the
     /// tension at the gauge, as a fraction of the latter.
     pub rubbing: f64,
-    /// c, cm/N, d, cm/N^2, and h, cm/N.
+    /// `linear` is c, cm/N. `curved` is d, cm/N^2. `friction` is h, cm/N.
     linear: Vector4<f64>,
     curved: Vector4<f64>,
     friction: Vector4<f64>,

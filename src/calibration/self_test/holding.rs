@@ -31,10 +31,10 @@ pub(super) const LENGTH: f64 = 0.006;
 /// The gauges are read in this time after the beginning of a pulse, s: late enough for the motor to move, and too early
 /// for the links.
 const RESPONSE: (f64, f64) = (0.003, 0.009);
-/// Rest before a pulse, s. The vibrations of the links decay.
+/// Time before a pulse, s, in which the vibrations of the links decay.
 const QUIET: f64 = 0.12;
-/// Before that rest, the motor winds in until it has moved by this distance, cm, or for this time, s. Its friction then
-/// does not delay the pulse.
+/// At the beginning of [`QUIET`], the motor winds in until it has moved by the first value, cm, but no longer than the
+/// second value, s. Its friction then does not delay the pulse.
 const LOOSENED: (f64, f64) = (0.001, 0.05);
 /// The responses of the other gauges are read in this time after the beginning of a pulse, s.
 pub(super) const LATE: (f64, f64) = (0.005, 0.012);
@@ -71,7 +71,7 @@ enum Phase {
 pub(super) struct Responses {
     /// For each motor, the rise of every gauge at the beginning of its pulse, N.
     pub pulses: [Vector4<f64>; 4],
-    /// The same some milliseconds later, when the links begin to move.
+    /// The same rises some milliseconds later, when the links begin to move.
     pub late: [Vector4<f64>; 4],
     /// Rise of every gauge while all motors wind in, divided by the expected rise.
     pub raised: Vector4<f64>,

@@ -1,5 +1,5 @@
-//! One motor pulls alone, with a torque that rises until an encoder moves. If that is not its own encoder, forward, the
-//! motor pulls until a gauge shows what is wrong.
+//! One motor pulls alone, with a torque that rises until an encoder moves. If another encoder moves first, or if its
+//! own encoder moves backward, the motor pulls until a gauge shows what is wrong.
 
 use super::readings::Readings;
 use crate::calibration::average::Average;
@@ -47,7 +47,7 @@ enum Stage {
     Resting,
     /// The pull rises.
     Rising,
-    /// The motor pulls, and this encoder has moved in this direction, which is wrong.
+    /// The motor pulls after `encoder` has moved in `direction`. This is the wrong encoder or the wrong direction.
     Pulling {
         encoder: usize,
         direction: f64,
@@ -113,7 +113,7 @@ impl Pushing {
         (self.stage, self.seconds) = (stage, 0.0);
     }
 
-    /// Averages the readings until all motors have been at rest.
+    /// Averages the readings until all motors have been at rest for the time [`REST`].
     fn rest(&mut self, period: f64, readings: &Readings, moved: &Vector4<f64>) {
         self.waited += period;
         if self.seconds > 1.5 * period && moved.amax() > AT_REST && self.waited < LONGEST_WAIT {

@@ -1,4 +1,4 @@
-//! Names what is wrong from the responses of the gauges.
+//! Determines from the responses of the gauges what is wrong.
 
 use super::holding::{LATE, LENGTH, Responses};
 use crate::calibration::instruments::Instruments;
@@ -12,7 +12,7 @@ const DEAD: f64 = 0.12;
 /// response is divided by the largest response to the same motor, and the sum of the two differences, at most 2, must
 /// exceed this value.
 const LEADING: f64 = 0.15;
-/// Largest relative difference of a gauge's scale from the usual scale at which the gauge is not reported.
+/// A gauge is reported if its scale differs from the usual scale by more than this fraction.
 const SCALE: f64 = 0.13;
 /// Step of the prediction of a pulse, s. The links vibrate with at most 80 Hz.
 const STEP: f64 = 0.000_25;

@@ -43,8 +43,8 @@ impl Wiring {
         Self { motor: 0, pulses: 0, seconds: 0.0, base: zeros, bases: 0.0, risen: zeros, samples: 0.0 }
     }
 
-    /// Returns the pulls of this cycle, N at each tendon, or `None` when every motor has been checked.
-    /// `tensions`, N, are those of gauges with correct signs. The zeros of the gauges need not be correct.
+    /// Returns the pulls of this cycle, N at each tendon, or `None` when every motor has been checked. `tensions`, N,
+    /// come from gauges whose signs are correct. The zeros of the gauges need not be correct.
     pub fn step(
         &mut self,
         instruments: &Instruments,

@@ -53,7 +53,8 @@ impl Reading {
         self.tensions.mean()
     }
 
-    /// Returns theta with the configured zero, rad. `offset` is the error found later in the measured tensions, N.
+    /// Returns theta with the configured zero, rad. `offset` is the error of the measured tensions, N, which was
+    /// determined after the reading.
     pub fn joints(&self, instruments: &Instruments, offset: &Vector4<f64>) -> Vector3<f64> {
         instruments.joints(&self.travel.mean(), &(self.tensions() - offset))
     }

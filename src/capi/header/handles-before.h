@@ -8,7 +8,7 @@
 #pragma pack(push, 16)
 #endif
 
-/* Some calls have the name of their struct, which -Wshadow of g++ takes for a hidden constructor. */
+/* Some calls have the name of their struct. -Wshadow of g++ warns that such a call hides a constructor. */
 #if defined(__cplusplus) && defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"

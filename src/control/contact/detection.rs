@@ -10,10 +10,10 @@ const CALMING: f64 = 0.1;
 /// Duration of the first average of the error, s. No contact is reported before its end.
 const FIRST: f64 = 0.2;
 
-/// Joint rate at which the error of the torques is learned at half the speed, rad/s. A motion adds errors of its own:
-/// the friction of its direction, and the inertia of links with wrong masses. If these errors were learned, a contact
-/// right after the motion would preserve them, because nothing is learned during a contact. So a finger learns fully at
-/// rest. In motion it learns only slow drifts.
+/// Joint rate at which the error of the torques is learned half as fast as at rest, rad/s. A motion adds errors of its
+/// own: the friction of its direction, and the inertia of links with wrong masses. If these errors were learned, a
+/// contact right after the motion would preserve them, because nothing is learned during a contact. So a finger learns
+/// fully at rest. In motion it learns only slow drifts.
 const SLOW: f64 = 0.1;
 
 /// The constant part of the detection.
@@ -66,8 +66,8 @@ impl Detection {
         }
     }
 
-    /// Decides from the torques, the force at the tip, N, and the joint rates, rad/s. `elapsed` is the time since the
-    /// previous sample, s.
+    /// Decides whether the finger touches something, from the torques, the force at the tip, N, and the joint rates,
+    /// rad/s. `elapsed` is the time since the previous sample, s.
     pub fn decide(
         &self,
         state: &mut DetectionState,

@@ -78,7 +78,7 @@ impl ContactObserver {
         }
     }
 
-    /// Advances the estimate to the sample of `report`, of a finger that follows a set point, and writes the estimate
+    /// Advances the estimate for a finger that follows a set point to the sample in `report`, and writes the estimate
     /// to the report. `weight` returns the torques of gravity at joint angles, N cm. `elapsed` is the time since the
     /// previous sample, s.
     pub fn follow(

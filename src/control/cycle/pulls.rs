@@ -6,8 +6,9 @@ use crate::control::tendons::tension_distribution::BoundedDistribution;
 use crate::control::tendons::tension_integral::{TendonInput, TendonState};
 use nalgebra::{Vector3, Vector4};
 
-/// Fraction of its desired tension below which a tendon counts as slack while slack is taken up. Without the integral
-/// a motor reaches a much larger fraction, even with its friction and the error of its torque constant.
+/// Fraction of its desired tension below which a tendon counts as slack while slack is taken up. A motor brings a tight
+/// tendon to a much larger fraction even without the integral, and despite its friction and the error of its torque
+/// constant.
 const SLACK: f64 = 0.2;
 
 impl Controller {

@@ -12,9 +12,9 @@
 //!
 //! On a real finger the difference also changes without a fault. Wrong stiffnesses, gauge gains and moment arms change
 //! it in proportion to tensions and joint angles; `mismatch` learns by how much, and what it does not know yet is
-//! tolerated. Friction along a tendon makes the tension differ between the motor, the gauge and the joint, and thus the
-//! stretch. Its sign depends on the direction of the last motion, so it is tolerated in proportion to the tensions. A
-//! drift is not limited in proportion to tensions or joint angles.
+//! tolerated. Friction along a tendon makes the tension differ between the motor, the gauge and the joint, and this
+//! changes the stretch. The sign of this change depends on the direction of the last motion, so the change is tolerated
+//! in proportion to the tensions. A drift is not limited in proportion to tensions or joint angles.
 
 use super::alarm::{Alarm, Symptom};
 use super::mismatch::{DEVIATIONS, Mismatch, Terms};
@@ -23,9 +23,9 @@ use crate::model::configuration::ConfiguredFinger;
 use crate::model::{Part, Tendons};
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 
-/// Part of the friction along a tendon by which its mean tension can differ from the tension at the gauge. It is a
-/// third if the friction acts at one point between the motor and a gauge in the middle. It is a half if the friction is
-/// distributed evenly and the gauge is at one end.
+/// Possible difference between the mean tension of a tendon and the tension at its gauge, as a part of the friction
+/// along the tendon. It is a third if the friction acts at one point between the motor and a gauge in the middle. It is
+/// a half if the friction is distributed evenly and the gauge is at one end.
 pub(crate) const SHARE_OF_FRICTION: f64 = 0.4;
 
 /// Expected factor of a joint's term, as a part of the largest possible factor. The largest factor occurs only if the
@@ -166,7 +166,8 @@ impl Agreement {
         let tolerated = self.tolerance + friction + DEVIATIONS * deviation;
         let hanging = memory.difference < 0.0 && hangs;
         memory.ratio = if hanging { 0.0 } else { memory.difference.abs() / tolerated };
-        // The mismatch was not learned at the tension of a tendon that is suddenly low.
+        // If the tension of a tendon is suddenly low, the mismatch was not learned at this tension. So the term of this
+        // tendon is left out.
         memory.missing = Vector4::from_fn(|tendon, _| {
             let by_others = explained - mismatch.explained_by(tendon, &terms);
             left(disagreement, by_others) / self.of_tension[tendon]

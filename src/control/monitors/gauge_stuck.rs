@@ -42,9 +42,10 @@ const MOST_REPEATS: f64 = 0.7;
 /// taken for a dead one.
 const LEAST_REVERSALS: f64 = 0.15;
 
-/// Lowest fraction of samples in which a gauge that is known to flicker bends to the other side. While the dither of
-/// the tensions changes a tension by several counts in a sample, noise hardly ever reverses the direction. It still
-/// changes the sign of the second difference of the counts, which a smooth tension does not.
+/// Lowest fraction of samples with a bend in the counts of a gauge that is known to flicker. At a bend, the second
+/// difference of the counts changes its sign. While the dither of the tensions changes a tension by several counts in a
+/// sample, noise hardly ever reverses the direction. The noise still changes the sign of the second difference, which a
+/// smooth tension does not.
 const LEAST_BENDS: f64 = 0.05;
 
 /// Smallest second difference that counts as a bend, counts. The second difference of a quantised smooth tension is
@@ -89,9 +90,9 @@ pub(super) struct Memory {
     /// Whether the last change of each gauge was upward.
     rose: [bool; 4],
     samples: u32,
-    /// Fraction of samples that bend to the other side, 0 to 1.
+    /// Fraction of samples with a bend in the counts, 0 to 1.
     bends: [f64; 4],
-    /// The last first and second difference of each gauge, counts.
+    /// The first and the second difference of each gauge at the last sample, counts.
     differences: [[i32; 2]; 4],
     /// Tensions of the last sample, N.
     tensions: Vector4<f64>,

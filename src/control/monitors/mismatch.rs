@@ -113,7 +113,7 @@ pub(super) struct Filter {
     estimate: Estimate,
     /// Covariance of the estimate, divided by the variance of the noise.
     covariance: SMatrix<f64, 8, 8>,
-    /// Variance of the disagreement that the terms do not explain, such as that of friction, N^2.
+    /// Variance of the disagreement that the terms do not explain, such as the disagreement that friction causes, N^2.
     noise: f64,
     /// Terms of the last estimation, N.
     terms: Terms,

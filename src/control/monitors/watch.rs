@@ -60,7 +60,8 @@ struct Before {
 }
 
 impl Monitors {
-    /// Constructs the monitors at `rate`, Hz. `dither_period` is that of the controller, s, or 0 without dither.
+    /// Constructs the monitors at `rate`, Hz. `dither_period` is the period of the controller's dither, s, or 0 without
+    /// dither.
     pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, rate: f64, dither_period: f64) -> Self {
         Self {
             period: 1.0 / rate,

@@ -13,7 +13,8 @@ use crate::control::motion::Motion;
 use crate::control::spring::slew::Slew;
 use nalgebra::Vector3;
 
-/// Smallest distance of two steps, as a fraction of the planner's period. Set points that come faster are combined.
+/// Smallest time between the starts of two steps, as a fraction of the planner's period. Set points that come faster
+/// are combined.
 const SPACING: f64 = 0.25;
 
 /// Largest number of steps that overlap. A step lasts for three periods of the planner, and [`SPACING`] keeps the steps
@@ -27,7 +28,7 @@ pub struct Interpolation {
     period: f64,
     /// Period of the planner, s.
     time: f64,
-    /// Smallest distance of two steps, cycles.
+    /// Smallest time between the starts of two steps, cycles.
     spacing: u32,
     /// Limits a step to the distance that the speed limit of set points permits.
     slew: Slew,

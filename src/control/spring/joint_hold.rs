@@ -3,8 +3,8 @@
 use crate::model::Links;
 use nalgebra::Vector3;
 
-/// Stiffness of each joint, N cm/rad. The tendon controllers are tuned for springs down to a smallest stiffness. In a
-/// bent finger, even the spring with this smallest stiffness makes the joints stiffer than `HOLDING_STIFFNESS`.
+/// Stiffness of each joint, N cm/rad. It is below the range for which the tendon controllers are tuned: in a bent
+/// finger, even the softest spring of that range makes the joints stiffer than `HOLDING_STIFFNESS`.
 pub(crate) const HOLDING_STIFFNESS: f64 = 30.0;
 
 /// Damping of a joint, N cm s/rad for each cm of finger between the joint and the tip. It keeps the inertia of the

@@ -19,18 +19,19 @@ impl JointSpring {
         (self != Self::default()).then_some(self)
     }
 
-    /// Returns the stiffness of the tip, N/cm, to which K_theta is equivalent where bounds of Kx apply to it. This is
-    /// the largest eigenvalue of K_theta divided by the square of `lever`, the length of the last link, cm.
+    /// Returns the stiffness of the tip, N/cm, that bounds of Kx use as the equivalent of K_theta. This is the largest
+    /// eigenvalue of K_theta divided by the square of `lever`, the length of the last link, cm.
     ///
     /// Joint 2 moves the tip by this lever in every pose, so a Kx of this size gives joint 2 the same stiffness. The
-    /// levers of joints 0 and 1 are longer in most poses, and Kx gives these joints more. But K_theta stays the same
-    /// when the finger is folded, where their levers and their inertia are small. So this lever, the shortest one in
-    /// most poses, is used for all joints.
+    /// levers of joints 0 and 1 are longer in most poses, and Kx gives these joints more stiffness. But K_theta stays
+    /// the same when the finger is folded. The levers and the inertia of joints 0 and 1 are then small. So this lever,
+    /// the shortest one in most poses, is used for all joints.
     pub fn equivalent(&self, lever: f64) -> f64 {
         self.k_theta.symmetric_eigenvalues().max() / (lever * lever)
     }
 
-    /// Returns the spring with its stiffness scaled by `part`. The constant torque is no stiffness and stays.
+    /// Returns the spring with its stiffness scaled by `part`. The constant torque is not a stiffness, so it is not
+    /// scaled.
     pub(crate) fn softened(&self, part: f64) -> Self {
         Self { k_theta: self.k_theta * part, torque: self.torque }
     }

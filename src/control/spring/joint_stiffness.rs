@@ -22,8 +22,8 @@ const LEAST_LEVER: f64 = 0.5;
 const STRAIGHT: f64 = 0.08;
 
 /// Stiffness of the joint spring that leads the finger through the straight pose, divided by the diagonal of K_theta.
-/// The joint spring has no coupling between the joints, so less than the whole diagonal keeps it within the stiffness
-/// that the pose supports.
+/// The joint spring has no coupling between the joints. With the whole diagonal, it could exceed the stiffness that the
+/// pose supports.
 const LEADING: f64 = 0.5;
 
 /// tau = spring - z (B K_theta B + d) theta_dot, with K_theta = J^T K J, a diagonal B, a small d, and the relative
@@ -119,16 +119,16 @@ impl JointStiffness {
     }
 }
 
-/// Returns the position of the tip, cm, from the Jacobian of its motion, which has the sines of the pose already. Joint
-/// 0 moves the tip by its reach, and joint 1 by its height, which is y.
+/// Returns the position of the tip, cm, from the Jacobian of its motion, which already contains the sines of the pose.
+/// Joint 0 moves the tip by the reach of the tip, and joint 1 by the height of the tip, which is y.
 fn tip(jacobian: &Matrix6x3<f64>) -> Vector3<f64> {
     let (cosine, sine) = (jacobian[(3, 1)], -jacobian[(5, 1)]);
     let height = sine * jacobian[(0, 1)] + cosine * jacobian[(2, 1)];
     Vector3::new(-jacobian[(2, 0)], height, jacobian[(0, 0)])
 }
 
-/// Returns the stiffness that holds joint 0 in addition to the spring of the tip, N cm/rad. K and J are those of
-/// [`JointStiffness`].
+/// Returns the stiffness that holds joint 0 in addition to the spring of the tip, N cm/rad. [`JointStiffness`] defines
+/// K and J.
 fn hold(stiffness: &Matrix6<f64>, jacobian: &Matrix6x3<f64>) -> f64 {
     let turned = jacobian.fixed_view::<3, 1>(0, 0);
     let lacking = LEAST_LEVER * LEAST_LEVER - turned.norm_squared();

@@ -20,8 +20,8 @@ pub(crate) struct DampingDesign {
 }
 
 impl DampingDesign {
-    /// Returns D, N m s/rad. W is the inertia on which the spring acts and H that of the links alone, both in kg m^2. K
-    /// is in N m/rad. `relative` scales zeta.
+    /// Returns D, N m s/rad. W is the inertia on which the spring acts, and H is the inertia of the links alone, both
+    /// in kg m^2. K is in N m/rad. `relative` scales zeta.
     pub fn damping(
         &self,
         inertia: &Matrix3<f64>,

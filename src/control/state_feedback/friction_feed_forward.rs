@@ -15,8 +15,8 @@ const CREEP: f64 = 0.001;
 #[derive(Clone, Debug)]
 pub(crate) struct FrictionFeedForward {
     pub friction: MotorFriction,
-    /// The part of the friction that is fed forward. A finger hunts if the whole friction is fed forward and is
-    /// smaller than configured.
+    /// The part of the friction that is fed forward. A finger hunts if the whole configured friction is fed forward and
+    /// the true friction is smaller.
     pub share: f64,
 }
 

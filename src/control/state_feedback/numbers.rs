@@ -28,8 +28,8 @@ pub struct Numbers {
     pub disturbance_bandwidth: f64,
     /// Bandwidth with which the observers follow the motion of the links, rad/s.
     pub link_bandwidth: f64,
-    /// Time for which the motion is computed, relative to the next sample, cycles. A negative time is before the
-    /// sample.
+    /// Moment for which the motion is computed, relative to the next sample, cycles. It is negative for a moment before
+    /// the sample.
     pub sample_offset: f64,
     /// Lowest frequency for which the damping is designed, rad/s.
     pub least_frequency: f64,
@@ -125,7 +125,8 @@ const FRICTION_SHARE: f64 = 0.5;
 /// See [`Numbers::friction_slope`].
 const FRICTION_SLOPE: f64 = 0.4;
 
-/// The numbers that the table contains for several rates. Fields without a comment are those of [`Numbers`].
+/// The numbers that the table contains for several rates. A field without a comment has the meaning of the same field
+/// in [`Numbers`].
 #[derive(Clone, Copy)]
 struct TunedNumbers {
     inertia_gain: f64,
@@ -135,7 +136,7 @@ struct TunedNumbers {
     disturbance: f64,
     /// Bandwidth with which the observers follow the motion of the links, radians per cycle.
     link: f64,
-    /// Time before the next sample for which the motion is computed, cycles.
+    /// Cycles from the moment for which the motion is computed to the next sample.
     look_back: f64,
     lag: f64,
     common_gain: f64,

@@ -46,7 +46,7 @@ pub(crate) struct ObserverDesign {
 /// mu' = v, v' = (u - t_home + d - k (mu - lambda) - b v) / m, lambda' = w, w' = a, a' = jerk + noise, d' = noise.
 ///
 /// The measurements are mu and t - t_home = k (mu - lambda). mu = r m_theta is the travel of the motor, and lambda =
-/// R^T theta is that of the joints. u is the pull, and d the force that acts on the motor in addition to it.
+/// R^T theta is the travel of the joint side. u is the pull, and d is the additional force on the motor.
 ///
 /// The links are described only by a triple integrator, and not by a model of their dynamics. A model of any part of
 /// the dynamics would interpret an external force as motion, and the damper would permanently oppose that motion.
@@ -154,8 +154,8 @@ impl TendonObserver {
     }
 
     /// Continues from the estimate of another observer of the same tendon. The motor travel of this observer is `ratio`
-    /// times that of the other. Position and tension are kept, even if the two observers have different stiffness or
-    /// homing pretension.
+    /// times the motor travel of the other. Position and tension are kept, even if the two observers have different
+    /// stiffness or homing pretension.
     pub fn take_over(&self, previous: &Self, estimate: &mut TendonEstimate, ratio: f64) {
         let tension = previous.tension(&estimate.x);
         estimate.x[0] *= ratio;

@@ -32,7 +32,8 @@ impl ReferenceState {
     /// Returns the outputs of the stages of a filter whose last output has the given motion.
     fn of(joints: &Vector3<f64>, motion: &Motion, time: f64) -> Self {
         // The input of a stage is its output plus `time` times the rate of its output. The last stage has the joint
-        // angles as its output. So the stage n places before it has (1 + time d/dt)^n applied to the joint angles.
+        // angles as its output. So the output of the stage n places before it is (1 + time d/dt)^n applied to the joint
+        // angles.
         let Motion { rates, accelerations, jerk, snap } = motion;
         let (one, two, three, four) =
             (rates * time, accelerations * time.powi(2), jerk * time.powi(3), snap * time.powi(4));

@@ -3,8 +3,8 @@
 //!
 //! A pulley with the friction p transmits any tension between t / (1 + p) and t (1 + p), depending on the direction in
 //! which the tendon slid last. The gauges do not measure this difference. If the tension at the gauge oscillates by
-//! more than p t, the tendon slides in both directions in every period, and the mean tension at the joint is that at
-//! the gauge. The oscillation is along the null vector n of R, so that it does not move the joints.
+//! more than p t, the tendon slides in both directions in every period, and the mean tension at the joint equals the
+//! mean tension at the gauge. The oscillation is along the null vector n of R, so that it does not move the joints.
 
 use super::numbers::Numbers;
 use nalgebra::{Vector2, Vector4};
@@ -154,8 +154,8 @@ mod tests {
         TensionDither::new(home().normalize(), &numbers, &Vector4::repeat(pulley), Vector4::repeat(60.0), 5.0, RATE)
     }
 
-    /// Runs the dither for two seconds on tensions that follow it by `response`. Returns the largest amplitude of the
-    /// followed oscillation in the last half second, N.
+    /// Runs the dither for two seconds on tensions that follow it with the gain `response`. Returns the largest
+    /// deviations of the tensions from `desired` in the last half second, N.
     fn followed(dither: &TensionDither, desired: &Vector4<f64>, response: f64) -> Vector4<f64> {
         let phasor = Dither::new(Vector3::zeros(), 40.0, RATE);
         let (mut phase, mut state) = (phasor.start(), dither.start());

@@ -46,9 +46,11 @@ const GAP: f64 = 0.0004;
 
 /// Gain from the missing fraction of the pretension to the speed of the common stretch at 1000 Hz and above, 1/s.
 const GAIN: f64 = 20.0;
-/// Largest pull while the tendons are slack, in multiples of t_min. It must exceed the friction of a motor.
+/// Largest pull in [`Phase::Touching`], while tendons are slack, in multiples of t_min. It must exceed the friction of
+/// a motor.
 const STRONGEST_SLACK: f64 = 2.0;
-/// Later the largest pull is this multiple of the pretension plus `STRONGEST_SLACK` times t_min.
+/// In all phases except [`Phase::Touching`], the largest pull is this multiple of the pretension plus `STRONGEST_SLACK`
+/// times t_min.
 const STRONGEST: f64 = 1.5;
 
 /// A motor does not follow its target if its distance from the target exceeds this value, m.
@@ -213,7 +215,7 @@ impl SlackTakeUp {
                 slack.targets.integral[motor] = 0.0;
             } else {
                 // Only the inertia of the finger lets the tension of a taut tendon rise above strong noise. A faster
-                // winding makes use of it.
+                // winding uses this inertia.
                 let noise = (gauge.noise / (QUIET * self.minimum)).max(1.0);
                 let speed = (SPEED + ACCELERATION * slack.seconds) * noise;
                 slack.targets.speed[motor] = speed;

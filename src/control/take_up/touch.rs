@@ -18,7 +18,8 @@ const LEAST_NOISE: f64 = 0.005;
 /// Largest assumed noise, as a fraction of t_min.
 const MOST_NOISE: f64 = 0.05;
 
-/// If the lowest sample is at least this fraction of all samples, the converter clips the noise below zero tension.
+/// If more than this fraction of all samples equals the lowest sample, the converter clips the noise below zero
+/// tension.
 const CLIPPED: f64 = 0.3;
 /// Standard deviation of Gaussian noise, divided by the standard deviation of its positive part.
 const UNCLIPPED: f64 = 1.75;
@@ -103,7 +104,8 @@ mod tests {
     const MINIMUM: f64 = 5.0;
     const STEP: f64 = 0.0244;
 
-    /// A gauge with noise, N rms, in steps of a count. Without `negative` the converter ends at zero tension.
+    /// Returns the tension, N, that a gauge with this noise, N rms, shows in steps of a count. Without `negative` the
+    /// converter ends at zero tension.
     fn shown(tension: f64, noise: f64, negative: bool, random: &mut Pcg64) -> f64 {
         let sample: f64 = StandardNormal.sample(random);
         let shown = ((tension + noise * sample) / STEP).round() * STEP;

@@ -43,7 +43,8 @@ impl TravelServo {
         targets.travel = *travel;
     }
 
-    /// Returns the pulls, N, each limited to `strongest`, N. `travel`, m, and `speeds`, m/s, are those of the motors.
+    /// Returns the pulls, N, each limited to `strongest`, N. `travel` is the travel of the motors, m, and `speeds` are
+    /// their speeds, m/s.
     pub fn pulls(
         &self,
         targets: &mut Targets,
@@ -57,7 +58,7 @@ impl TravelServo {
             let rest = self.stiffness * error + self.damping * (targets.speed[motor] - speeds[motor]);
             let outside = error - error.clamp(-DEAD_BAND, DEAD_BAND);
             let change = INTEGRAL * self.stiffness * outside * self.period;
-            // At its limit the integral does not grow further toward the limit.
+            // While the pull is at its limit, the integral does not grow further toward the limit.
             let pull = rest + *integral;
             if pull.abs() < strongest || change * pull < 0.0 {
                 *integral = (*integral + change).clamp(-strongest, strongest);

@@ -47,8 +47,8 @@ impl Figure11 {
             if informative {
                 *ratio = (*ratio + self.gain * (measured / acted - *ratio)).clamp(RATIOS.0, RATIOS.1);
             }
-            // The integral of the other schemes would have this value, so that another scheme can continue from this
-            // state.
+            // The integral of the other schemes would have this value. It is stored so that another scheme can continue
+            // from this state.
             state.integral[tendon] = desired / *ratio - desired;
             ((desired - self.motor_damping * input.speed[tendon]) / *ratio).clamp(-limit, limit)
         })

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector4;
 
-/// The filter y += gain (x - y). Its pole is that of a continuous filter with the same corner frequency.
+/// The filter y += gain (x - y). It has the pole of a continuous filter with the same corner frequency.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LowPass {
     gain: f64,

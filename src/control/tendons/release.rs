@@ -17,8 +17,8 @@ impl Release {
         Self { from, elapsed: 0.0 }
     }
 
-    /// Advances the ramp by one cycle and returns its pulls, N. `period` is the length of a cycle and `ramp` that of
-    /// the whole ramp, both in s.
+    /// Advances the ramp by one cycle and returns its pulls, N. `period` is the length of a cycle, and `ramp` is the
+    /// length of the whole ramp, both in s.
     pub fn advance(&mut self, period: f64, ramp: f64) -> Vector4<f64> {
         self.elapsed += period;
         // A ramp of zero length ends in its first cycle.

@@ -2,7 +2,7 @@
 //!
 //! The servo neither waits for a reader nor knows of one. A reader that falls behind loses the oldest events, and
 //! counts them. Each place has a sequence number, which the servo clears before it overwrites the place. A reader
-//! therefore detects that a place has changed while it copied it.
+//! therefore detects that a place has changed during its copy.
 
 use super::words::WORDS;
 use super::{Event, Occurrence};

@@ -37,7 +37,7 @@ pub enum PartKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Quantity {
-    /// The fault has no value, and the number is 0.
+    /// The fault has no value. Its field `value` is 0.
     Nothing,
     /// Tension, N.
     Tension,

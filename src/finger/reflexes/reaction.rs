@@ -24,8 +24,8 @@ impl ReactionLimits {
         Self { links: finger.links(), joints: finger.joint_limits(), damping: AdmissibleDamping::new(finger, rate) }
     }
 
-    /// Returns the set point after a reaction. Returns none if the reaction changes no set point. `report` is that of
-    /// the last cycle, and `followed` the set point that the finger follows.
+    /// Returns the set point after a reaction. Returns none if the reaction changes no set point. `report` is the
+    /// report of the last cycle. `followed` is the set point that the finger follows.
     pub(in crate::finger) fn react(
         &self,
         reaction: &Reaction,
@@ -58,8 +58,9 @@ impl ReactionLimits {
         Vector3::from_fn(|joint, _| joints[joint].clamp(low[joint], high[joint]))
     }
 
-    /// Returns the anchor, rad, with which the tip presses harder by `by`, at most with `most`, N. The force of the
-    /// spring is F = Kx (x_d - x). The anchor moves by Kx^-1 dF, with dF along `along`, or along F if `along` is zero.
+    /// Returns the anchor, rad, with which the tip presses with a force that is larger by `by`, but at most `most`, N.
+    /// The force of the spring is F = Kx (x_d - x). The anchor moves by Kx^-1 dF, with dF along `along`, or along F if
+    /// `along` is zero.
     /// Returns none if the spring does not press in this direction, or if Kx has no inverse.
     fn grip(
         &self,

@@ -75,7 +75,7 @@ pub enum Reaction {
     /// The tip presses harder. Nothing happens while its spring presses with less than 0.05 N in the direction.
     Grip {
         /// The direction in the finger's frame, for example the inward normal of the object at the tip. Its length does
-        /// not matter. If it is zero, the direction is that in which the spring presses now.
+        /// not matter. If it is zero, the direction in which the spring presses now is used.
         direction: Vector3<f64>,
         /// Increase of the force, N.
         by: f64,

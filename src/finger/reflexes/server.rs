@@ -43,7 +43,7 @@ pub struct ReflexServer {
     memory: LockedMemory,
 }
 
-/// The state of the rule with this number.
+/// The state of the rule that `number` names.
 #[derive(Clone, Copy, Debug, Default)]
 struct RuleState {
     number: u32,
@@ -53,7 +53,7 @@ struct RuleState {
     waiting: bool,
     /// The first cycle in which the rule may fire again.
     ready: u64,
-    /// The count of another finger's event that the rule has seen.
+    /// The count of another finger's events that the rule has read last.
     seen: u32,
 }
 
@@ -74,7 +74,7 @@ impl ReflexServer {
         self.bulletin.count(self.finger, kinds);
     }
 
-    /// Forgets what has fired, because the finger is no spring.
+    /// Forgets what has fired, because the finger is not a spring.
     pub(in crate::finger) fn idle(&mut self) {
         self.occurred = 0;
         self.states = [RuleState::default(); MOST_RULES];
@@ -118,7 +118,8 @@ fn state_of_others(condition: &Condition, bulletin: &Bulletin) -> u32 {
     }
 }
 
-/// Returns whether a condition is true. An event is true for the cycle in which the rule sees it.
+/// Returns whether a condition is true. A condition on an event is true only in the cycle in which the rule sees the
+/// event.
 fn holds(condition: &Condition, state: &mut RuleState, facts: &Facts, occurred: u32, bulletin: &Bulletin) -> bool {
     let report = facts.report;
     match *condition {
@@ -183,7 +184,7 @@ mod tests {
         assert_eq!(fired, [1, 4, 7]);
     }
 
-    /// One reaction in each cycle. The others wait, even if their conditions have become false.
+    /// Only one rule reacts in each cycle. The others wait, even if their conditions have become false.
     #[test]
     fn rules_react_one_by_one_in_the_order_of_their_priorities() {
         let (planners, mut server, _) = ends();

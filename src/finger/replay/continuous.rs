@@ -16,8 +16,8 @@ const MOST_SOURCES: usize = 4096;
 /// Largest number of controllers that are kept ready.
 const MOST_READY: usize = 8;
 
-/// Recomputes the cycles of one finger. Keyframes and controllers must arrive before the cycles that need them, and the
-/// cycles in their order. Cycles may be missing: the replay continues with the next keyframe.
+/// Recomputes the cycles of one finger. Keyframes and controllers must arrive before the cycles that need them. The
+/// cycles must arrive in their order. Cycles may be missing: the replay continues with the next keyframe.
 #[derive(Default)]
 pub struct ContinuousReplay {
     hand: Option<ConfiguredHand>,

@@ -98,7 +98,7 @@ impl<'a> InputLimits<'a> {
         Self { hand, most_skipped: u64::from(LinkWatch::new(hand, false).most()) }
     }
 
-    /// Checks an input. Returns the key that no servo can have recorded, and the reason.
+    /// Checks an input. If no servo can have recorded one of its values, returns the key of that value, and the reason.
     pub fn check(&self, input: &ControlInput) -> Result<(), (String, String)> {
         let most_skipped = self.most_skipped;
         let ControlInput { skipped, fading, .. } = *input;

@@ -6,7 +6,7 @@ use crate::finger::{Fault, FaultKind, Order, RestoredBoard, Stage};
 use crate::model::Part;
 use nalgebra::Vector4;
 
-/// Additional margin of the pose check in the stage Running, rad. While its tendons are slack after a blow, a joint can
+/// Additional margin of the pose check in the stage Running, rad. After a blow, a joint whose tendons are slack can
 /// seem to be further beyond its limits than any joint at rest. Of 100 fingers hit by a force of 6 N, one seemed to be
 /// 0.55 rad beyond its limits, and returned.
 const BLOW_MARGIN: f64 = 0.3;
@@ -125,8 +125,8 @@ impl FingerServo {
         self.enter(Stage::Opening);
     }
 
-    /// Faults a finger whose measured pose is impossible, because a spring would pull it with full force. `margin`,
-    /// rad, is added to the limits of a joint at rest.
+    /// Faults a finger whose measured pose is impossible. Without the fault, its spring would pull it with full force.
+    /// `margin`, rad, is added to the limits of a joint at rest.
     fn check_pose(&mut self, margin: f64) {
         let (low, high) = self.adjustable.pose;
         let (low, high) = (low.add_scalar(-margin), high.add_scalar(margin));

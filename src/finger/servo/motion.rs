@@ -43,7 +43,8 @@ impl FingerServo {
     fn set_validity(&mut self, begin: u64, validity: &Validity) {
         let (hold, end) = self.adjustable.motion.times(validity);
         let past = validity.since.map_or(0.0, |since| self.report.last.saturating_sub(since) as f64 * 1e-9);
-        // The conversion saturates, so an infinite time becomes a period that does not come, and a negative time 0.
+        // The conversion saturates, so an infinite time becomes a period that does not come, and a negative time
+        // becomes 0.
         let after = |seconds: f64| begin.saturating_add(((seconds - past) / self.limits.period()).ceil() as u64);
         let expires = if self.report.expired { NEVER } else { after(hold) };
         let expiry = Expiry { sent: self.motion.next_period, expires, ends: after(end) };

@@ -45,8 +45,8 @@ impl TouchFetching {
         &self.elements
     }
 
-    /// Begins a period. `answered`: whether the last Command was answered. Otherwise the line has no time for touch. A
-    /// request without an answer is not repeated in its own period. The next request fetches the same event.
+    /// Begins a period. `answered` says whether the last Command was answered. If it was not, the line has no time for
+    /// touch. A request without an answer is not repeated in its own period. The next request fetches the same event.
     pub fn begin(&mut self, answered: bool) {
         self.permitted = answered;
         if self.asked.take().is_some() {

@@ -7,14 +7,14 @@ use crate::model::configuration::OutOfRange;
 use crate::model::{ContactError, spring};
 use nalgebra::{Matrix3, Vector3};
 
-/// Torque that no tendon of any finger can make, N cm. Scaled to the tension bounds, it shows what the tendons can
-/// make.
+/// Torque that no tendon of any finger can make, N cm. The part of it that the tension bounds permit is the largest
+/// torque that the tendons can make.
 const UNREACHABLE: f64 = 1e9;
 
 impl Admission {
     /// Checks that K_theta, N cm/rad, is symmetric, positive semi-definite and within the bound, and returns it. The
-    /// argument is `rows[row][column]`. The bound of an eigenvalue is that of Kx times the square of the last link's
-    /// length; [`JointSpring::equivalent`](crate::control::JointSpring::equivalent) gives the reason.
+    /// argument is `rows[row][column]`. The bound of an eigenvalue is the bound of Kx times the square of the last
+    /// link's length; [`JointSpring::equivalent`](crate::control::JointSpring::equivalent) gives the reason.
     pub fn k_theta(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
         let finger = self.finger;
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);

@@ -22,7 +22,7 @@ impl Ranges {
     /// Checks desired joint angles, rad, and returns the angles for the servo.
     ///
     /// # Errors
-    /// An angle is not finite, or outside its limits.
+    /// Returns an error if an angle is not finite or is outside its limits.
     #[inline]
     pub fn joints(&self, joints: [f64; 3]) -> Result<Vector3<f64>, SetPointError> {
         self.finite("Pos", &joints)?;
@@ -44,7 +44,7 @@ impl Ranges {
     /// is `rows[row][column]`.
     ///
     /// # Errors
-    /// Kx is not finite, no spring or too stiff.
+    /// Returns an error if Kx is not finite, is not a spring or is too stiff.
     pub fn kx(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
         // nalgebra is column-major. Only this line converts from the row-major order of C.
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);
@@ -81,7 +81,7 @@ impl Ranges {
     /// Refuses NaN and infinity, which must never reach the servo. `what` names the argument.
     ///
     /// # Errors
-    /// A value is not finite.
+    /// Returns an error if a value is not finite.
     pub fn finite(&self, what: &'static str, values: &[f64]) -> Result<(), SetPointError> {
         match values.iter().find(|value| !value.is_finite()) {
             None => Ok(()),

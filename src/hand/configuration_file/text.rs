@@ -76,8 +76,8 @@ fn finger_of(common: &Table, own: &Table) -> Result<(ConfiguredFinger, bool), Wr
     Ok((deserialize(&merged)?, port || board))
 }
 
-/// Refuses a hand in which the file names a real port or board for some fingers, and neither for other fingers. Those
-/// other fingers would be simulated beside real ones, although the file does not say so.
+/// Refuses a hand if the file names a real port or board for some fingers, but no port and no board for others. The
+/// others would be simulated beside real ones, although the file does not say so.
 fn refuse_simulated_beside_real(
     root: &Table,
     configuration: &Configuration,

@@ -1,5 +1,5 @@
 //! Conversion from TOML to the types of a configuration. General deserializers accept an array that is too long, and an
-//! array in place of a table. This one accepts only valid values, and reports the position of every other value and
+//! array in place of a table. This one accepts only valid values. For an invalid value, it reports the position and
 //! what is expected there.
 //!
 //! Serde makes the compiler compile the generic functions again for each of some 50 types. So these functions contain

@@ -124,7 +124,8 @@ mod tests {
     }
 
     /// Returns the cycles of three fingers with staggered periods, in the order of their ends. `draw` gives random
-    /// numbers. A cycle begins up to half a period late, and takes up to 0.9 periods, or up to 2 if it overruns.
+    /// numbers. A cycle begins up to half a period late. It ends up to 0.9 periods after its scheduled beginning, or up
+    /// to 2 periods if it overruns.
     fn cycles(count: u64, mut draw: impl FnMut(u64) -> u64) -> Vec<Cycle> {
         let mut cycles = Vec::new();
         for finger in 0..3 {

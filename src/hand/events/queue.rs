@@ -50,8 +50,8 @@ impl EventQueue {
         event
     }
 
-    /// Waits for an event for at most `limit`, or without a limit if it is none, and takes the event. Returns none
-    /// after the limit, and if the hand is closed.
+    /// Waits for an event, and takes it. The wait lasts at most `limit`; it has no limit if `limit` is none. Returns
+    /// none if the limit has passed or the hand is closed.
     #[must_use]
     pub fn wait(&self, limit: Option<Duration>) -> Option<Event> {
         let deadline = deadline(limit);

@@ -13,7 +13,7 @@ use crate::model::configuration::{Configuration, OutOfRange};
 use crate::model::path::{Knot, Piece, Start, spline};
 use nalgebra::{Matrix6, Vector3};
 
-/// Smallest distance of the times of two poses, s.
+/// Shortest time from one pose to the next, s.
 const LEAST_STEP: f64 = 1e-3;
 
 /// Longest path, s.

@@ -12,13 +12,13 @@ pub struct ConfiguredContact {
     pub force: f64,
     /// Increase of this force with the fastest joint rate, N s/rad.
     pub force_per_rate: f64,
-    /// Torque that a contact must exceed at one joint at least, N cm. It must exceed the errors that noise, dither and
-    /// joint friction cause.
+    /// A contact must exceed this torque at one or more joints, N cm. The value must exceed the errors that noise,
+    /// dither and joint friction cause.
     pub torque: [f64; 3],
     /// Relative uncertainty of the masses of the links. It raises `torque` while joints accelerate, and when the
     /// torques of gravity change.
     pub mass_tolerance: f64,
-    /// The part of the thresholds below which a contact is lost.
+    /// A contact is lost when its force, or the torque at every joint, falls below this part of its threshold.
     pub lost: f64,
     /// Time constant with which a constant error of the torques is learned while nothing is touched, s.
     pub learning_time_s: f64,

@@ -1,5 +1,5 @@
-//! The parameters for which the names of simulated hands stand: tendons and sensors as real hands have them.
-//! `docs/real-tendons.md` has the published figures behind the values.
+//! The parameters of the named simulated hands. They model the tendons and sensors of real hands.
+//! `docs/real-tendons.md` lists the published figures on which the values are based.
 
 use super::named_hand::NamedHand;
 use super::simulation::ConfiguredSimulation;

@@ -13,8 +13,8 @@ pub struct ConfiguredTendon {
     /// Stiffness between motor pulley and joint, N/cm. With it the controller computes the stretch, which the encoders
     /// do not measure.
     pub stiffness: [f64; 4],
-    /// Relative uncertainty of `stiffness`. It limits the disagreement of gauges and encoders that is attributed to
-    /// `stiffness`. Identification sets it.
+    /// Relative uncertainty of `stiffness`. A part of the disagreement between gauges and encoders is attributed to
+    /// errors of `stiffness`. The uncertainty limits this part. Identification sets it.
     pub stiffness_tolerance: f64,
 }
 

@@ -6,9 +6,9 @@ use nalgebra::{Matrix2x3, Vector3};
 /// The rate and the acceleration at a knot, one in each row.
 pub(super) type AtKnot = Matrix2x3<f64>;
 
-/// Factors for the coefficients of the highest powers of a piece, one row for each power. The lower powers alone miss
-/// the place, rate, acceleration and jerk at the end of the piece. A coefficient is the sum of the four missing
-/// quantities times the factors of its row.
+/// Factors for the coefficients of the highest powers of a piece, one row for each power. With the lower powers alone,
+/// the place, rate, acceleration and jerk at the end of the piece differ from the required ones. A coefficient is the
+/// sum of these four differences, each multiplied by its factor in the row of the coefficient.
 type EndFactors = &'static [[f64; 4]];
 
 /// A piece between others: powers 3 to 5.

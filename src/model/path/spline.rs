@@ -64,8 +64,8 @@ fn rows(rates: &Vector3<f64>, accelerations: &Vector3<f64>) -> AtKnot {
     AtKnot::from_rows(&[rates.transpose(), accelerations.transpose()])
 }
 
-/// Solves for rate and acceleration at every knot except the last one. Jerk and snap are continuous there. The system
-/// is block tridiagonal.
+/// Solves for rate and acceleration at every knot except the last one. The equations require continuous jerk and snap
+/// at these knots. The system is block tridiagonal.
 fn motions_at_inner_knots(start: &Start, knots: &[Knot]) -> Vec<AtKnot> {
     let count = knots.len() - 1;
     let place = |index: usize| if index == 0 { start.place } else { knots[index - 1].place };

@@ -5,7 +5,7 @@ use crate::model::configuration::{ConfiguredHand, ObjectShape, Unusable};
 
 impl ConfiguredHand {
     /// Checks every value of `[hand.simulated_object]`. The physics is stable within these ranges: no contact
-    /// oscillates faster than its steps can follow.
+    /// oscillates faster than the steps of the physics can follow.
     pub(super) fn check_simulated_object(&self) -> Result<(), Unusable> {
         let Some(object) = &self.simulated_object else { return Ok(()) };
         match object.shape {

@@ -7,7 +7,7 @@ use super::person::{Act, Answer};
 use super::wrong::Wrong;
 use crate::failure::Failure;
 
-/// The step board.
+/// Carries out the step `board`.
 pub fn board(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     let seen = desk.machine.board()?;
@@ -40,7 +40,7 @@ pub fn board(desk: &mut Desk) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// The step bound.
+/// Carries out the step `bound`.
 pub fn bound(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     desk.machine.configure(&desk.finger)?;
@@ -59,7 +59,7 @@ pub fn bound(desk: &mut Desk) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// The step computer.
+/// Carries out the step `computer`.
 pub fn computer(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     let complaints = desk.machine.computer()?;

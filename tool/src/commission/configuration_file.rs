@@ -60,7 +60,8 @@ fn differences(before: &DocumentMut, after: &DocumentMut) -> Vec<Changed> {
     changed
 }
 
-/// Rounds every number to [`DIGITS`] significant digits, without its layout.
+/// Returns a copy of a value without the spaces and comments of its text. Floating-point numbers are rounded to
+/// [`DIGITS`] significant digits.
 fn rounded(value: &Value) -> Value {
     let digits = DIGITS - 1;
     match value {
@@ -104,7 +105,7 @@ fn without_mark(prefix: &str) -> String {
     prefix.lines().filter(|line| !line.starts_with(MARK)).map(|line| format!("{line}\n")).collect()
 }
 
-/// Returns the table with this key, as a table of its own even if it was an inline one.
+/// Returns the table with this key. A missing table is created. An inline table becomes a table with its own header.
 pub fn table<'a>(parent: &'a mut Table, key: &str) -> Result<&'a mut Table, Failure> {
     let entry = parent.entry(key).or_insert_with(|| {
         let mut new = Table::new();

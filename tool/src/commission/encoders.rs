@@ -23,11 +23,11 @@ const RATIOS: [(u32, u32); 4] = [(1, 2), (2, 1), (1, 4), (4, 1)];
 struct Turn {
     /// Index of the encoder that counted.
     encoder: usize,
-    /// Turns by its configured counts, with the sign of the raw count.
+    /// Number of turns, computed with the configured counts of this encoder. It has the sign of the raw count.
     turns: f64,
 }
 
-/// The step.
+/// Carries out the step `encoders`.
 pub fn encoders(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     let mut order = [0; 4];
@@ -134,8 +134,8 @@ fn judge(desk: &mut Desk, outcome: &mut Outcome, motor: usize, encoder: usize, t
     }
 }
 
-/// Names what is exchanged: only the encoders, or motors with their encoders. A push shows which encoder a command
-/// turns.
+/// Names what is exchanged: only the encoders, or motors with their encoders. The routine that finds the signs shows
+/// which encoder a motor command turns.
 fn exchanged(desk: &mut Desk, order: [usize; 4]) -> Result<Wrong, Failure> {
     desk.machine.configure(&desk.finger)?;
     let pushed = desk.machine.carry_out(Task::Signs);

@@ -81,7 +81,7 @@ pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
     name_the_order(&mut outcome, seen, order);
     let weights = desk.weights.iter().map(|newton| format!("{newton:.2}")).collect::<Vec<_>>().join(", ");
     outcome.about("gauge.newton_per_count", format!("slope of the line through weights of {weights} N"));
-    outcome.about("gauge.zero", format!("count of the line through weights of {weights} N without load"));
+    outcome.about("gauge.zero", format!("count without load, from the line through weights of {weights} N"));
     Ok(outcome)
 }
 

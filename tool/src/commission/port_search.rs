@@ -17,7 +17,7 @@ impl Answer {
         BoardNumber(self.found.identity.unique_number)
     }
 
-    /// The keys of the table of the finger.
+    /// Returns the encoder counts per revolution that the board reports; `None` if the board does not know them.
     pub fn counts_per_revolution(&self) -> Option<u32> {
         Some(self.found.identity.counts_per_revolution).filter(|&counts| counts != 0)
     }

@@ -15,7 +15,7 @@ const STIFFNESS: f64 = 0.2;
 /// Largest distance from the pose after the push, cm.
 const RETURN: f64 = 0.15;
 
-/// The step.
+/// Carries out the step `spring`.
 pub fn spring(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     desk.machine.configure(&desk.finger)?;
@@ -37,13 +37,13 @@ pub fn spring(desk: &mut Desk) -> Result<Outcome, Failure> {
         outcome.wrong(Wrong::NotPushed);
         return Ok(outcome);
     }
-    // The tip presses against the person's finger. Its force is opposite to the displacement `way`.
+    // The tip presses against the person's finger. The force of the tip is opposite to the displacement `way`.
     let force = Vector3::from(rest.force) - Vector3::from(pushed.force);
     let stiffness = force.dot(&way) / way.norm_squared();
     let sent = (desk.finger.initial_stiffness() * way).dot(&way) / way.norm_squared();
     let residual = (Vector3::from(back.tip) - Vector3::from(rest.tip)).norm();
     outcome.found(format!(
-        "the tip gave way by {:.1} mm with {:.2} N: {stiffness:.2} N/cm of {sent:.2} N/cm sent",
+        "the tip gave way by {:.1} mm under {:.2} N: {stiffness:.2} N/cm, and {sent:.2} N/cm were sent",
         way.norm() * 10.0,
         force.norm()
     ));

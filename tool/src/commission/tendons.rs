@@ -15,7 +15,7 @@ const TORQUE: f64 = 0.15;
 /// that was found with weights.
 const GAIN: f64 = 0.05;
 
-/// The step.
+/// Carries out the step `tendons`.
 pub fn tendons(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     desk.person.ask(Act::LetGo)?;

@@ -62,7 +62,7 @@ impl Terminal {
         let _ = writeln!(io::stdout(), "{}", painted(&self.screen, look, text));
     }
 
-    /// Prints a text whose further lines are below its first one.
+    /// Prints `mark` and a text. The further lines of the text are indented by the width of `mark`.
     fn paragraph(&self, look: Look, mark: &str, text: &str) {
         let width = self.screen.width.unwrap_or(WIDTH).saturating_sub(mark.len());
         for (number, line) in wrap(text, width).iter().enumerate() {
@@ -78,7 +78,7 @@ impl Terminal {
         }
         let width = self.screen.width.unwrap_or(WIDTH).saturating_sub(4);
         let lines: Vec<String> = match question.split_once('\n') {
-            // A table below a text keeps its lines.
+            // The lines below the first one are a table, which is not wrapped.
             Some((text, table)) => wrap(text, width).into_iter().chain(table.lines().map(String::from)).collect(),
             None => wrap(question, width),
         };

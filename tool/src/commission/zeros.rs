@@ -68,7 +68,7 @@ fn note(desk: &mut Desk, outcome: &mut Outcome, zeros: &Zeros) {
     let list = |values: &[f64], digits: usize| {
         values.iter().map(|value| format!("{value:+.digits$}")).collect::<Vec<_>>().join(" ")
     };
-    outcome.about("gauge.zero", format!("without tension, {} N from the last ones", list(&drift, 2)));
+    outcome.about("gauge.zero", format!("without tension; change since the last zeros: {} N", list(&drift, 2)));
     outcome.found(format!("encoder zeros {:?}", zeros.encoder));
     outcome.found(format!("gauge zeros, change since the last ones: {} N", list(&drift, 2)));
     if let Some(range) = zeros.range_error {

@@ -14,8 +14,8 @@ const HEAD_START: u64 = 10_000_000;
 /// If the 99 % wake-up latency exceeds this fraction of the period, the time left for the replies becomes short.
 const LATE: f64 = 0.1;
 
-/// If the 99 % wake-up latency exceeds this fraction of the period, many periods are lost. If only the worst one does,
-/// single periods are lost.
+/// If the 99 % wake-up latency exceeds this fraction of the period, many periods are lost. If only the worst latency
+/// exceeds it, single periods are lost.
 const TOO_LATE: f64 = 0.5;
 
 /// Largest acceptable timer slack of a thread that is not real-time, ns. Servo threads request 1 ns. The default of the

@@ -119,8 +119,8 @@ fn noise_and_heat(
 }
 
 /// Estimates the heat of each winding after a long time at rest, relative to the heat that the motor bears
-/// continuously. The heat grows with the square of the torque, and the rise of the temperature in proportion to the
-/// heat.
+/// continuously. The heat is proportional to the square of the torque. The rise of the temperature is proportional to
+/// the heat.
 fn heat(vitals: &Vitals, finger: &ConfiguredFinger) -> Option<[f64; 4]> {
     let torques = vitals.torques?;
     Some(std::array::from_fn(|motor| (torques[motor] / finger.motor.continuous_torque[motor]).powi(2)))

@@ -147,7 +147,7 @@ fn object(xml: &mut Xml, object: &Object) {
     xml.empty("freejoint", &[("name", &"object")]);
     xml.empty("inertial", &[("pos", &"0 0 0"), ("mass", &object.mass), ("diaginertia", &numbers(object.inertia))]);
     let (kind, place) = form(&object.shape.form);
-    // With its priority, the friction of the object counts in each of its contacts.
+    // Because the object has a priority, MuJoCo uses the friction of the object in each contact of the object.
     let friction = numbers([object.friction, 0.005, 0.0001]);
     let colour = numbers(object.shape.colour.unit().into_iter().chain([1.0]));
     let mut attributes: Vec<Attribute> = vec![("name", &"object"), ("type", &kind)];

@@ -126,8 +126,8 @@ fn bins(sorted: &[f32]) -> Vec<(i32, usize)> {
     bins
 }
 
-/// The outline of the bars of a histogram. The lower edge of the panel is at half a cycle. At an empty bin, the outline
-/// is below this edge.
+/// The outline of the bars of a histogram. The lower edge of the panel is at a count of 0.5 cycles. At an empty bin,
+/// the outline is below this edge.
 fn outline(bins: &[(i32, usize)]) -> Vec<[f64; 2]> {
     const EMPTY: f64 = 0.25;
     let edge = |bin: i32| 10f64.powf(f64::from(bin) / BINS);

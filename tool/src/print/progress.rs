@@ -87,7 +87,7 @@ impl Progress {
         })
     }
 
-    /// Runs `print`, which writes to standard output or standard error. On a terminal the bar is away meanwhile.
+    /// Runs `print`, which writes to standard output or standard error. On a terminal, the bar is hidden meanwhile.
     pub fn aside<T>(&self, print: impl FnOnce() -> T) -> T {
         match &self.bar {
             Some(bar) => bar.suspend(print),

@@ -10,7 +10,7 @@ use sun2xp::telemetry::Message;
     reason = "most values are of the large variant, and a box is an allocation for each"
 )]
 pub enum Item {
-    /// A message of telemetry. The status has no last cycle.
+    /// A message of telemetry. In a status, `last` (the last cycle) is `None`.
     Message(Message),
     /// Cycles of this finger are missing here, because the recorder or the hand was too slow.
     Lost {

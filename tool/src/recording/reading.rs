@@ -159,8 +159,8 @@ impl Mcap {
     fn next(&mut self) -> Result<Option<Found>, Failure> {
         loop {
             let found = match self.reader.next_event() {
-                // The file ends between two records, or within one. A complete file has a footer, which ends the
-                // reading before.
+                // The file ends between two records, or within one. A complete file does not get here, because the
+                // reading ends at its footer.
                 None | Some(Err(mcap::McapError::UnexpectedEof)) => return Ok(None),
                 Some(Err(error)) => return Err(error.into()),
                 Some(Ok(LinearReadEvent::ReadRequest(count))) => {

@@ -34,7 +34,7 @@ pub struct FingerReport {
     pub contents: Tally,
     /// Number of cycles that were computed again.
     pub replayed: u64,
-    /// Number of cycles that were not computed again, because no recorded state was before them.
+    /// Number of cycles that were not computed again, because no recorded state precedes them.
     pub without_state: u64,
     /// Number of cycles that differ from the recorded ones.
     pub different: u64,

@@ -8,10 +8,11 @@ use std::f64::consts::TAU;
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::nalgebra::Vector4;
 
-/// Part of the stiffness with locked motors up to which a finger is stable at 1000 Hz, with some margin.
+/// A finger is stable at 1000 Hz up to this fraction of its smallest stiffness with locked motors, with some margin.
 const STABLE_PART: f64 = 0.7;
 
-/// Least number of cycles in a period of the slowest oscillation of a motor on its tendon.
+/// Each motor oscillates on its tendon. This is the least number of servo cycles in one period of the fastest of these
+/// oscillations.
 const CYCLES: f64 = 20.0;
 
 /// Least bandwidth of a current loop, as a multiple of the rate of the servo.
@@ -189,7 +190,7 @@ impl Finger<'_> {
     fn tendons(&self, wanted: &Wanted, rate: f64) -> Vec<Figure> {
         let stiffness = Vector4::from(self.configured.tendon.stiffness);
         let oscillation = Vector4::from_fn(|motor, _| {
-            // The mass of the rotor at its tendon, kg; then N/cm to N/m.
+            // `mass` is the equivalent mass of the rotor at its tendon, kg. The factor 1e2 converts N/cm to N/m.
             let mass = self.configured.motor.inertia[motor] / (self.radius[motor] * 1e-2).powi(2);
             (stiffness[motor] * 1e2 / mass).sqrt() / TAU
         });

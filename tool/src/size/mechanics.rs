@@ -80,8 +80,8 @@ impl Mechanics {
         tip.fold(0.0, f64::max)
     }
 
-    /// Returns the largest change of the force at the tip by the tension of any one tendon, N, in the poses in which a
-    /// force and a torque determine each other well.
+    /// Returns the largest change of the force at the tip by the tension of any one tendon, N, in the poses that
+    /// are not nearly singular.
     pub fn tip_force_by_tension(&self, tension: &Vector4<f64>) -> f64 {
         let force = self.regular().flat_map(|inverse| {
             let force = inverse.transpose() * self.tendons.r;
@@ -101,7 +101,7 @@ impl Mechanics {
         stiffness.fold(f64::INFINITY, f64::min)
     }
 
-    /// The inverses of the Jacobians of the poses that are not singular.
+    /// The inverses of the Jacobians of the poses that are not nearly singular.
     fn regular(&self) -> impl Iterator<Item = Matrix3<f64>> + '_ {
         let regular = |jacobian: &&Matrix3<f64>| {
             let singular = jacobian.singular_values();

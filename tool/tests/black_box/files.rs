@@ -31,7 +31,7 @@ fn one_bit_of_feedback_is_found_where_it_was_changed() {
         }
     }
 
-    // The same alteration through a file and the tool.
+    // The tool finds such an alteration in a file too.
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("finger-2.jsonl");
     let mut altered = recording.clone();

@@ -82,7 +82,7 @@ pub fn varied(recording: &Recording) -> Recording {
             _ => {}
         }
     }
-    // The commands of the changed cycles.
+    // The changed cycles get the commands that a replay computes.
     while let Some(first) = varied.replay().expect("replayable").first {
         varied.cycles[first.index].control = Some(first.replayed);
     }

@@ -29,8 +29,8 @@ fn a_full_disk_leaves_the_old_file() {
     recorded().opening.save(&file).expect("written");
     let before = fs::read(&file).expect("read");
     assert!(before.len() > 16 * 1024, "{}", before.len());
-    // The shell ignores the signal, which would kill the process. A write beyond the limit then fails as on a full
-    // disk. A block of a shell has 512 or 1024 bytes.
+    // The shell ignores SIGXFSZ, because this signal would kill the process. A write beyond the limit then fails as on
+    // a full disk. A block of a shell has 512 or 1024 bytes.
     let limited = "trap '' XFSZ; ulimit -f 16; exec \"$@\"";
     let test = "writing::a_full_disk_leaves_the_old_file";
     let run = Command::new("sh")

@@ -8,7 +8,7 @@ use sun2xp::control::Activity;
 
 const KINDS: [&str; 5] = ["step", "tensions", "stiffness", "timing", "faults"];
 
-/// A folder to look at the pictures. Without it they are temporary.
+/// Environment variable with a folder in which the pictures are kept. Without it they are deleted.
 const KEPT: &str = "SUN2XP_PICTURES";
 
 fn folder() -> (Option<tempfile::TempDir>, PathBuf) {

@@ -97,8 +97,8 @@ impl Recorded {
     }
 }
 
-/// Flips a bit in the middle of a chunk of a recording. It selects the chunk in the middle of the file. Some bits
-/// between the chunks, and some bits of the headers of chunks, have no checksum, because no reader needs them.
+/// Flips a bit in the middle of the chunk that is in the middle of a recording. Some bits between the chunks, and some
+/// bits of the headers of chunks, would not do: they have no checksum, because no reader needs them.
 pub fn damaged(file: &[u8]) -> Vec<u8> {
     let mut damaged = file.to_vec();
     // A record begins with its kind and its length.

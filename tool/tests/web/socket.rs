@@ -1,4 +1,4 @@
-//! A WebSocket, as a page has it.
+//! The client's side of a WebSocket, as a web page uses it.
 
 use super::http::{connect, response, write_request};
 use std::io::{BufReader, ErrorKind, Read, Write};

@@ -24,7 +24,7 @@ const LARGEST_RATIO: f64 = 1.1;
 
 const TOOL: &str = env!("CARGO_BIN_EXE_sun2xp");
 
-/// The latencies with or without the programs, us: the median and the largest of 99.9 % of the wake-ups. There is one
+/// The latencies with or without the programs, us: the median and the 99.9 % value of the wake-ups. There is one
 /// value for each measurement.
 #[derive(Default)]
 struct Side {

@@ -17,7 +17,7 @@ from ._network import ANSWER_TIME, ATTEMPTS, PAUSE, Network
 from ._owner import Owner
 from ._reading import Reading
 
-#: A wait continues if no State arrives for this time, s.
+#: A wait continues if no State arrives for at most this time, s.
 _PAUSE = 1.0
 
 #: Longest time of a recovery, s.
@@ -33,9 +33,9 @@ _CONDITIONS = {"arrived": _messages.ARRIVED, "settled": _messages.SETTLED}
 class RemoteHand(Reading):
     """A hand that `sun2xp serve` offers, from `sun2xp.remote.open` or `Network.open`.
 
-    The calls have the names of `sun2xp.Hand`. Those that send return at once: a thread sends a target every 20 ms, and
-    each new set point without delay. If the server refuses a set point, the next call that sends to this finger or
-    waits for it raises Refused with the reason. The fingers keep the set points that they had.
+    The calls have the names of `sun2xp.Hand`. Calls that send something return at once: a thread sends a target every
+    20 ms, and each new set point without delay. If the server refuses a set point, the next call that sends to this
+    finger or waits for it raises Refused with the reason. The fingers keep the set points that they had.
 
     If this process ends, is stopped or loses the line, the server holds the fingers after 0.1 s and brings them to
     their end states after 1 s, unless it is configured otherwise.
@@ -187,7 +187,8 @@ class RemoteHand(Reading):
                 lambda: all(self._holds(finger, condition) for finger in wanted), max(left, 0)
             )
             self._check()
-            # After a refusal, the set point before it is the last one, and the condition may hold for that one.
+            # After a refusal, the set point before the refused one counts as the last one, and the condition may hold
+            # for it. The refusal must be raised nevertheless.
             with self._network.sender.lock:
                 self._owner.take_refusal(wanted)
             for finger in wanted:

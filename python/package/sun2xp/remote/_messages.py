@@ -23,7 +23,7 @@ TARGET, STATE, EVENT, STATUS, REQUEST, ANSWER = 1, 2, 3, 4, 5, 6
 #: Actions of a Request, by the key that they are sent to.
 ACTIONS = {"acquire": 1, "release": 2, "recover": 3, "calibrate": 4, "identify": 5, "stop": 6}
 
-#: Places of a part of a Target.
+#: The values of `place` in a part of a Target.
 NO_PLACE, JOINTS, TIP, PATH = 0, 1, 2, 3
 
 #: Largest number of poses of a path.
@@ -163,8 +163,8 @@ class StatusMessage:
 
 @dataclasses.dataclass
 class Answer:
-    """The answer to a Request, or the reason why a Target was refused. `number` is the sequence number of the refused
-    Target, or, for acquire, the number of the epoch since the server's start."""
+    """The answer to a Request, or the reason why a Target was refused. For a refused Target, `number` is its sequence
+    number. For acquire, it is the number of the new epoch."""
 
     code: int
     catch_ms: int
@@ -201,7 +201,7 @@ def read_state(data: bytes) -> Optional[State]:
 
 
 def _sound(records: numpy.typing.NDArray[numpy.void]) -> bool:
-    """Returns whether every value is one that the page allows."""
+    """Returns whether docs/remote-protocol.md allows every value."""
     set_points = numpy.isnan(records["joint_set_point"])
     finite = [records[name] for name in ("joints", "tip", "tip_force", "tensions")]
     return bool(

@@ -16,7 +16,7 @@ from ._errors import NoAnswer
 from ._owner import Sender
 from ._types import Status, Tls, status
 
-#: Where `sun2xp serve` listens, if it is not configured.
+#: Where `sun2xp serve` listens by default.
 LOOPBACK = "tcp/127.0.0.1:7447"
 
 #: Longest time in which a server answers, s.
@@ -26,7 +26,7 @@ ANSWER_TIME = 2.0
 ATTEMPTS = 3
 PAUSE = 0.2
 
-#: Attempts to connect, at first and after a loss of the connection, ms.
+#: Pauses between the attempts to connect, at first and after a loss of the connection, ms.
 _RETRY = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
 
 _HAND = re.compile(r"[a-z0-9-]{1,32}\Z")

@@ -80,8 +80,8 @@ class Reading:
         return Tip(state.tip, state.force, state.tensions, state.touching)
 
     def cycles(self) -> Records:
-        """Returns the cycles that have arrived since the last call, in the order of their arrival, at most those of the
-        last 1000 States: an array with the fields of the record of State."""
+        """Returns the cycles that have arrived since the last call, in the order of their arrival: an array with the
+        fields of the record of State. It has at most the cycles of the last 1000 States."""
         taken = self._receiver.take()
         return numpy.concatenate(taken) if taken else numpy.zeros(0, _messages.RECORD)
 

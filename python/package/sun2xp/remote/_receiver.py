@@ -15,7 +15,7 @@ from . import _messages
 from ._errors import Stale
 from ._messages import State
 
-#: Number of States that are kept for `cycles`: 10 s.
+#: Number of States that are kept for `cycles`: 5 s, because the server publishes a State every 5 ms.
 _KEPT_STATES = 1000
 
 #: Number of events that a queue keeps.
@@ -35,7 +35,7 @@ def _part(kind: EventKind, number: int) -> str:
         return f"tendon {number}"
     if kind == EventKind.JOINT_AT_LIMIT:
         return f"joint {number}"
-    # What the part of a fault is depends on the fault (docs/faults.md).
+    # The meaning of the number of the part depends on the fault (docs/faults.md).
     return f"part {number}" if number else "finger"
 
 
@@ -56,7 +56,7 @@ class Receiver:
         self._queues: List[Deque[Event]] = []
         self._number = 0
         self._published = 0
-        #: Smallest difference between the local time of an arrival and the time of its publication, ns.
+        #: Smallest difference between the local time at which a State arrived and its time of publication, ns.
         self._offset: Optional[float] = None
         self._arrived = 0
 
@@ -143,7 +143,7 @@ class Receiver:
 
     def age(self) -> float:
         """Returns the smallest age that the newest State can have, s: the time since its publication, less the shortest
-        time that any State has needed."""
+        time that any State has needed to arrive."""
         with self.changed:
             if self._offset is None:
                 return float("inf")

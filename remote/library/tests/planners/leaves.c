@@ -1,4 +1,4 @@
-/* Never closes the hand: exit does. A handler that was registered before sees it closed. */
+/* Never closes the hand: exit does. An exit handler that was registered before the hand was opened finds it closed. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Moves stiff, softens, stiffens: the pose at the end is that of the last command. K&R, a flat float Kx. */
+/* Moves a finger, softens it, and stiffens it again: at the end it has the commanded pose. K&R C, Kx as nine floats. */
 #include <stdio.h>
 extern OpenHand(), SendPos(), SendKx(), GetPos(), CloseHand();
 

@@ -19,7 +19,8 @@ impl Noise {
         (self.next() % bound as u64) as usize
     }
 
-    /// Writes random bytes, or one of the messages with damage: changed bytes, a wrong length, or a part of another.
+    /// Writes random bytes, or one of the messages with damage: changed bytes, a wrong length, or a part of another
+    /// message.
     pub fn payload(&mut self, messages: &[Vec<u8>], payload: &mut Vec<u8>) {
         payload.clear();
         let message = &messages[self.below(messages.len())];

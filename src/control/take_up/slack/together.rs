@@ -21,7 +21,7 @@ const TOO_HIGH: f64 = 0.5;
 /// Smallest permitted tension of a tendon, as a fraction of t_min. It applies even if the common tension is right.
 const LEAST: f64 = 0.9;
 
-/// Fraction of the pretension by which a tendon must exceed its tare, so that it is not slack.
+/// A tendon is not slack if its tension exceeds its tare by more than this fraction of the pretension.
 const SLACK: f64 = 0.08;
 /// Largest stretch of tendons that pull while another tendon is slack, in multiples of the stretch at the pretension.
 const LARGEST_UNOPPOSED: f64 = 2.0;

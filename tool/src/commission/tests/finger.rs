@@ -118,7 +118,7 @@ pub struct Helper {
     pub step: Step,
     /// Whether the person repairs what a step has found.
     pub repairs: bool,
-    /// A part that the person takes for another one, and the part that the person turns or loads instead.
+    /// The part that the tool asks for, and the wrong part that the person turns or loads instead.
     pub instead: Option<(usize, usize)>,
     /// Whether the person holds the finger in its pose when asked.
     pub holds: bool,

@@ -53,7 +53,7 @@ fn exchanged((one, other): (usize, usize)) -> [usize; 4] {
     order
 }
 
-/// Three parts that have moved on by one.
+/// Returns an order in which three parts are exchanged cyclically.
 fn rotated(seed: u64) -> [usize; 4] {
     let parts: Vec<usize> = (0..4).filter(|&part| part != seed as usize / 4 % 4).collect();
     let mut order = [0, 1, 2, 3];
@@ -68,7 +68,7 @@ fn found_at(order: [usize; 4]) -> [usize; 4] {
     std::array::from_fn(|part| order.iter().position(|&at| at == part).map_or(0, |place| place + 1))
 }
 
-/// A change of a case, for a seed.
+/// The name of a kind of wrong wiring, and a function that changes a case to this kind, for a seed.
 pub type Kind = (&'static str, fn(&mut Case, u64));
 
 /// The kinds.

@@ -48,7 +48,7 @@ fn a_gauge_below_the_range_of_its_converter_is_named_and_left_out_of_the_line() 
 fn lost_replies_are_read_again_and_the_weighed_tendons_are_kept() {
     let (world, belief) = world(|_| ());
     let mut person = Helper::new(&world);
-    // Three readings in a row are repeated without a question.
+    // Up to three failed readings in a row are repeated without a question.
     world.borrow_mut().lost.0 = 3;
     assert!(step(Step::Gauges, &world, &mut person, &belief).0.passed());
     assert!(person.questions.is_empty(), "{:?}", person.questions);

@@ -102,10 +102,10 @@ impl Wrong {
                 write!(f, "tendon {tendon} has {:.0} % of the tension that it should have at rest", part * 100.0)
             }
             Self::SpringStiffness(found, sent) => {
-                write!(f, "the tip gave way with {found:.1} N/cm, and {sent:.1} N/cm were sent")
+                write!(f, "the measured stiffness is {found:.1} N/cm, and {sent:.1} N/cm were sent")
             }
             Self::SpringReturn(millimetres) => write!(f, "the tip came to rest {millimetres:.1} mm from its pose"),
-            // The other cases are those of the caller.
+            // Only `NotPushed` is left, because the caller handles all other cases.
             _ => write!(f, "the tip did not move"),
         }
     }
