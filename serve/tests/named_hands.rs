@@ -15,8 +15,8 @@ fn report(rig: &Rig, finger: i32) -> FingerReport {
     rig.hand().report(finger).expect("a report")
 }
 
-/// Moves every finger to three places, and waits until it has settled. Each joint must then be `near` its set point, rad.
-/// The tips touch nothing.
+/// Moves every finger to three places, and waits until it has settled. Each joint must then be `near` its set point,
+/// rad. The tips touch nothing.
 fn follows(name: NamedHand, near: f64) {
     let rig = Rig::named(name, "end_ms = 20000");
     let (hand, client) = ("hand".parse().expect("a name"), "alice".parse().expect("a name"));
