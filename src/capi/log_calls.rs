@@ -8,7 +8,7 @@ use crate::capi::handle::Handle;
 use crate::capi::planners_pointer::PlannersPointer;
 use crate::capi::refusal::Refusal;
 use crate::capi::text::Text;
-use crate::realtime::{RwLock, Severity, offer_messages_to};
+use crate::realtime::{NoCancellation, RwLock, Severity, offer_messages_to};
 use std::cell::Cell;
 use std::ffi::{c_char, c_int, c_void};
 
@@ -63,6 +63,8 @@ pub extern "C" fn sun2xp_set_log(callback: sun2xp_log, user: *mut c_void) -> c_i
 
 /// Passes a message to the callback. Returns false if there is none.
 fn pass_on(severity: Severity, message: &str) -> bool {
+    // A callback that writes is a cancellation point. It must not end the thread inside a call of the library.
+    let _whole = NoCancellation::begin();
     // This must not wait: in a forked child, nothing releases a lock that another thread of the parent held.
     let Some(callback) = CALLBACK.try_read() else { return true };
     let Some((callback, user)) = &*callback else { return false };

@@ -26,6 +26,9 @@ pub struct FingerReport {
     pub springs: u32,
     /// Whether the finger holds its pose because its set point has expired, and has not followed another one since.
     pub expired: bool,
+    /// Number of the spring phase that ended when the last set point expired. A set point for this phase is still
+    /// accepted, because the planner may have sent it before it learned of the expiry.
+    pub expired_phase: Option<u32>,
     /// The controller's report of the last cycle.
     pub cycle: Report,
     /// The reference of the last cycle.
@@ -64,6 +67,7 @@ impl FingerReport {
             period: 0,
             springs: 0,
             expired: false,
+            expired_phase: None,
             cycle: Report::default(),
             reference: Reference::default(),
             controller: 0,

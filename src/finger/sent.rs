@@ -58,9 +58,15 @@ impl SentSetPoint {
     }
 
     /// Prepares the next change. If the finger has become a spring since the last change, the next change starts from
-    /// the set point that the servo holds.
+    /// the set point that the servo holds. If the last change was sent while an earlier set point expired, the servo
+    /// will follow it, so the next change starts from it.
     pub fn begin_with(&mut self, report: &FingerReport) {
-        if report.springs != self.spring {
+        if report.springs == self.spring {
+            return;
+        }
+        if report.expired_phase == Some(self.spring) && self.number != report.set_point_number {
+            self.spring = report.springs;
+        } else {
             *self = Self { group: self.group, ..Self::held(report) };
         }
     }
@@ -74,5 +80,38 @@ impl SentSetPoint {
         }
         self.valid = valid;
         self.number = self.number.wrapping_add(1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix3, Vector3};
+
+    fn at(angle: f64) -> SetPoint {
+        SetPoint::hard_finger(Vector3::from_element(angle), Matrix3::identity())
+    }
+
+    /// The servo accepts the set point in its next cycle, because it was sent for the phase that has just ended.
+    #[test]
+    fn a_set_point_that_was_sent_while_its_predecessor_expired_is_kept() {
+        let mut report = FingerReport::opening(at(0.1));
+        let mut sent = SentSetPoint::held(&report);
+        sent.set_point = at(0.7);
+        sent.replace(Replaced::Place, Validity::default());
+        (report.springs, report.expired_phase) = (1, Some(0));
+        sent.begin_with(&report);
+        assert_eq!((sent.spring, sent.number, sent.set_point), (1, 1, at(0.7)));
+    }
+
+    #[test]
+    fn a_set_point_that_has_expired_itself_is_replaced_by_the_held_one() {
+        let mut report = FingerReport::opening(at(0.1));
+        let mut sent = SentSetPoint::held(&report);
+        sent.set_point = at(0.7);
+        sent.replace(Replaced::Place, Validity::default());
+        (report.set_point_number, report.springs, report.expired_phase) = (1, 1, Some(0));
+        sent.begin_with(&report);
+        assert_eq!((sent.spring, sent.number, sent.set_point), (1, 1, at(0.1)));
     }
 }

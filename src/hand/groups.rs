@@ -119,6 +119,9 @@ impl Hand {
     /// Returns an error if there is no such finger, if a finger has two commands, if a finger refuses its command, if a
     /// finger is faulted, or if 16 groups of a finger have not taken effect yet.
     pub fn send_group(&self, commands: &[FingerCommand]) -> Result<(), HandError> {
+        if commands.is_empty() {
+            return Ok(());
+        }
         if let [alone] = commands {
             // A command for a single finger does not wait for other fingers.
             let finger = FingerNumber::try_from(alone.finger)?;

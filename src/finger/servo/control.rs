@@ -85,7 +85,7 @@ impl FingerServo {
 
     /// Follows the set point that a planner has sent. A set point of another spring phase is discarded.
     pub(super) fn take_set_point(&mut self, sent: &SentSetPoint) {
-        if sent.spring != self.report.springs && self.motion.expired_phase != Some(sent.spring) {
+        if sent.spring != self.report.springs && self.report.expired_phase != Some(sent.spring) {
             return;
         }
         self.reflexes.note_set_point(self.motion.next_period);
@@ -95,7 +95,7 @@ impl FingerServo {
         let held = self.report.set_point;
         let mut set_point = sent.set_point;
         let motion = &mut self.motion;
-        motion.expired_phase = None;
+        self.report.expired_phase = None;
         self.report.expired = false;
         motion.target = set_point.joints;
         match &sent.path {
@@ -105,7 +105,8 @@ impl FingerServo {
                 motion.path = Following {
                     number: taken.number,
                     follower: Some(Follower::new(held.stiffness)),
-                    stiffness: path.stiffness,
+                    // The stiffness of a later path is known only from its own set point, which can only end it.
+                    stiffness: path.stiffness || taken.number != path.number,
                 };
             }
             Some(path) => motion.path.stiffness &= path.stiffness,

@@ -54,6 +54,7 @@ impl FingerServo {
                     self.report.springs += 1;
                     self.follow(SetPoint { joints, ..self.initial }, self.report.set_point_number);
                     self.motion.begin(joints);
+                    self.report.expired_phase = None;
                     self.report.expired = false;
                     self.supervision.begin();
                     self.events.restart_detectors(self.report.set_point);

@@ -113,7 +113,7 @@ impl FingerServo {
                 self.follow(held, self.report.set_point_number);
                 self.motion.rest(joints);
                 // Later changes of planners start from the pose that is held.
-                self.motion.expired_phase = Some(self.report.springs);
+                self.report.expired_phase = Some(self.report.springs);
                 self.report.springs += 1;
             }
         }

@@ -15,9 +15,6 @@ pub(super) struct SetPointMotion {
     pub expiry: Option<Expiry>,
     /// The newest renewal of a validity. Its set point may not have taken effect yet.
     pub renewal: Option<Renewal>,
-    /// Number of the spring phase that ended when the last set point expired (see `SentSetPoint`). A set point for this
-    /// phase is still accepted, because the planner may have sent it before it learned of the expiry.
-    pub expired_phase: Option<u32>,
 }
 
 /// The path that is followed, or that was followed last.
@@ -51,7 +48,6 @@ impl SetPointMotion {
             interpolation: InterpolationState::default(),
             expiry: None,
             renewal: None,
-            expired_phase: None,
         }
     }
 
@@ -60,7 +56,6 @@ impl SetPointMotion {
         self.rest(joints);
         self.expiry = None;
         self.renewal = None;
-        self.expired_phase = None;
     }
 
     /// Ends a path and an interpolation. The set point rests at `joints`, rad.

@@ -41,6 +41,8 @@ pub(super) fn collect(
             collected.collect();
             let Some(folder) = folder.filter(|_| collected.black_box.faulted()) else { continue };
             if !is_memory_free(MEMORY_OF_BLACK_BOX) {
+                // The report may call a function of the program, which may wait for a call that needs the lock.
+                drop(collected);
                 report(
                     Severity::Warning,
                     "a finger faulted, but there is not enough free memory to write its black box",
@@ -49,6 +51,8 @@ pub(super) fn collect(
             }
             let recording = collected.black_box.recording();
             drop(collected);
+            // The memory of a thread that has ended is free only when nobody can join the thread any more.
+            writing.retain(|thread: &JoinHandle<()>| !thread.is_finished());
             writing.extend(recording.and_then(|recording| write(recording, folder.to_path_buf())));
         }
         publishing.iter_mut().for_each(|publishing| publishing.publish(fingers));
