@@ -11,7 +11,7 @@ use crate::silence::{MILLISECOND, Silence};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use sun2xp::control::events::Arrival;
-use sun2xp::{Hand, HandError, Stage};
+use sun2xp::{Hand, HandError};
 use sun2xp_remote_protocol::{Answer, ClientName, Code, Counts, DecodeError, FINGERS, Target};
 
 /// If an ownership ends because its owner is silent, the desk stops the fingers that still move after this time, ns.
@@ -146,6 +146,7 @@ impl Desk {
     pub fn acquire(&mut self, client: &ClientName, take_over: bool, epoch: u64) -> Result<u64, ClientName> {
         let number = self.ownership.acquire(client, take_over, epoch)?.number;
         (self.acceptance, self.silence, self.stop_at) = (Acceptance::default(), None, None);
+        self.fingers.forget_commands();
         Ok(number)
     }
 
@@ -155,7 +156,7 @@ impl Desk {
         if !self.ownership.admits(client, epoch) {
             return false;
         }
-        let silence = Silence::after_acquire(now, self.limits.catch_ms, self.limits.end_ms);
+        let silence = self.silence_from(now);
         self.silence = Some(silence);
         self.fingers.begin_epoch(&silence);
         true
@@ -175,10 +176,12 @@ impl Desk {
         let _ = self.stop(None);
     }
 
-    /// Ends the ownership. The fingers go to their end state as if the owner had fallen silent.
-    pub fn abandon(&mut self) {
+    /// Ends the ownership at `now`, ns. The fingers go to their end state as if the owner had fallen silent.
+    pub fn abandon(&mut self, now: u64) {
         self.ownership.end();
-        self.silence = None;
+        // A finger that is still being recovered has no validity.
+        let end = u64::from(self.limits.end_ms) * MILLISECOND + GRACE;
+        (self.silence, self.stop_at) = (None, Some(now + end));
     }
 
     /// Stops this finger, or every finger if it is none, whoever owns the hand.
@@ -200,29 +203,28 @@ impl Desk {
             self.counts.caught += 1;
         }
         self.caught = caught;
-        if let Some(silence) = self.silence {
-            if silence.is_over(now) {
+        match self.silence {
+            Some(silence) if silence.is_over(now) => {
                 self.counts.ended += 1;
                 self.ownership.end();
                 (self.silence, self.stop_at) = (None, Some(now + GRACE));
-            } else {
-                self.fingers.advance(&silence, now);
             }
+            Some(silence) => self.fingers.advance(&silence, now),
+            // An acquire recovers fingers. The others wait for them.
+            None if self.ownership.owner().is_some() => self.fingers.keep_waiting(&self.silence_from(now)),
+            None => {}
         }
         if self.stop_at.is_some_and(|at| now >= at) {
             self.stop_at = None;
-            self.stop_what_moves();
+            // Fingers may not have stopped by themselves, because they were being calibrated. A recovery that the owner
+            // has requested may still be running, so faulted fingers are stopped too.
+            let _ = self.stop(None);
         }
     }
 
-    /// Stops the fingers that have not stopped by themselves, for example because they were being calibrated.
-    fn stop_what_moves(&self) {
-        for number in self.fingers.numbers() {
-            let stage = self.hand.report(number).map(|report| report.stage);
-            if !matches!(stage, Ok(Stage::Faulted(_) | Stage::Closed)) {
-                let _ = self.hand.stop(number);
-            }
-        }
+    /// The silence of an owner whose time limit begins at `now`, ns.
+    fn silence_from(&self, now: u64) -> Silence {
+        Silence::after_acquire(now, self.limits.catch_ms, self.limits.end_ms)
     }
 
     /// Returns an Answer of this time.

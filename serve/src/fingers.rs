@@ -1,8 +1,9 @@
 //! Sends what the owner wants to the fingers of the hand: new parts of Targets, the rest of the way to a destination
 //! that is far ahead of a finger, and the set points of fingers that were caught and whose owner lives again.
 
-use crate::goal::{Destination, Goal, is_path, matrix, rows};
-use crate::lead::admitted_part;
+mod leading;
+
+use crate::goal::{Destination, Goal, is_path, rows};
 use crate::silence::Silence;
 use std::sync::Arc;
 use sun2xp::control::events::Arrival;
@@ -128,6 +129,21 @@ impl Fingers {
         }
     }
 
+    /// Keeps the set points of fingers valid that wait until an acquire has recovered other fingers. A finger that was
+    /// caught meanwhile keeps its place.
+    pub fn keep_waiting(&self, silence: &Silence) {
+        for number in self.numbers() {
+            if self.hand.report(number).is_ok_and(|report| report.stage == Stage::Running && !report.expired) {
+                let _ = self.hand.keep_valid(number, silence.of_other());
+            }
+        }
+    }
+
+    /// Forgets the command numbers of the previous owner.
+    pub fn forget_commands(&mut self) {
+        self.goals.iter_mut().for_each(Goal::forget_command);
+    }
+
     /// Advances the set points of fingers whose destination is far ahead of them.
     pub fn advance(&mut self, silence: &Silence, now: u64) {
         if !silence.is_valid(now) {
@@ -144,7 +160,7 @@ impl Fingers {
             if let Destination::Path(end) = goal.destination {
                 if self.admitted(number, &goal, &report, &report.reference.joints) < 1.0 {
                     // The finger lags behind its path. It continues to the end of the path as to a single pose.
-                    self.goals[index].destination = Destination::Joints(end);
+                    (self.goals[index].destination, self.goals[index].whole) = (Destination::Joints(end), false);
                     self.send(number, &report, silence.of_commanded(), false);
                 }
             } else if goal.is_commanded() && !goal.whole {
@@ -222,49 +238,21 @@ impl Fingers {
         if command.pose.is_none() {
             (command.pose, goal.whole) = self.led(number, &goal, &report)?;
         }
+        if goal.destination == Destination::None && part.stiffness.is_some() {
+            // The new Kx pulls the finger to the set point in force, which may be far ahead of it.
+            let place = Destination::Joints(report.set_point.joints);
+            let mut pulled = goal;
+            (pulled.destination, pulled.whole) = (place, false);
+            if let (pose, false) = self.led(number, &pulled, &report)? {
+                (goal, command.pose) = (pulled, pose);
+            }
+        }
         if let Some((kx, damping)) = goal.spring.filter(|_| report.expired) {
             // The finger was caught and has the soft spring. The command contains the spring that the owner wants.
             (command.stiffness, command.damping) = (Some(rows(&kx)), Some(damping));
         }
         let empty = command.pose.is_none() && command.stiffness.is_none() && command.damping.is_none();
         Ok(Prepared { finger, goal, command: (!empty).then_some(command), path })
-    }
-
-    /// Returns the pose on the way to the destination that the lead admits, and whether it is the destination.
-    fn led(&self, number: i32, goal: &Goal, report: &FingerReport) -> Result<(Option<Pose>, bool), HandError> {
-        let (Destination::Joints(end) | Destination::Tip(end)) = goal.destination else { return Ok((None, true)) };
-        let part = self.admitted(number, goal, report, &end);
-        let joints = report.cycle.joints;
-        let place: [f64; 3] = if part < 1.0 { (joints + (end - joints) * part).into() } else { end.into() };
-        let pose = match goal.destination {
-            Destination::Tip(_) => Pose::Tip(self.hand.tip_at(number, place)?),
-            _ => Pose::Joints(place),
-        };
-        Ok((Some(pose), part >= 1.0))
-    }
-
-    /// Returns the part of the way from the finger to `end`, rad, that the lead admits.
-    fn admitted(&self, number: i32, goal: &Goal, report: &FingerReport, end: &Vector3<f64>) -> f64 {
-        let joints = report.cycle.joints;
-        let jacobian = self.hand.jacobian(number, Some(joints.into()));
-        match (goal.spring, jacobian) {
-            (Some((kx, _)), Ok(jacobian)) => admitted_part(&matrix(&jacobian), &kx, &joints, end, self.lead_force),
-            // Without a measured pose nothing is ahead of the finger.
-            _ => 0.0,
-        }
-    }
-
-    /// Returns joint angles within the limits, rad; none if the hand refuses these angles.
-    fn within_limits(&self, number: i32, joints: &[f64; 3]) -> Result<Option<Vector3<f64>>, HandError> {
-        let limits = self.hand.limits(number)?;
-        let (low, high) = (limits.joint_minimum, limits.joint_maximum);
-        let clamped: [f64; 3] = std::array::from_fn(|joint| joints[joint].clamp(low[joint], high[joint]));
-        let admitted = (0..3).all(|joint| {
-            // The hand admits a limit that was rounded to `float`.
-            let rounding = f64::from(f32::EPSILON) * low[joint].abs().max(high[joint].abs());
-            (joints[joint] - clamped[joint]).abs() <= rounding
-        });
-        Ok((admitted || !self.refuses).then(|| clamped.into()))
     }
 }
 

@@ -43,6 +43,11 @@ impl Goal {
         if time >= self.before.1 { self.command } else { self.before.0 }
     }
 
+    /// Forgets the command number, which belongs to the previous owner.
+    pub fn forget_command(&mut self) {
+        (self.command, self.before) = (0, (0, 0));
+    }
+
     /// Returns whether the owner has commanded the finger, and it was neither recovered nor calibrated since.
     #[must_use]
     pub fn is_commanded(&self) -> bool {

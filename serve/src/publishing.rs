@@ -76,11 +76,11 @@ impl Publishing {
     }
 
     fn publish(&mut self) {
-        let (goals, progress) = {
+        let (goals, progress, epoch) = {
             let desk = self.shared.desk.lock();
-            (desk.goals(), desk.progress())
+            (desk.goals(), desk.progress(), desk.epoch_number())
         };
-        let Taken { records, missing } = self.cycles.take(&goals, &progress);
+        let Taken { mut records, missing } = self.cycles.take(&goals, &progress);
         self.states += 1;
         let (time, owner) = {
             // The time and the epoch are read under one lock of the desk. Otherwise an Answer with a later time than
@@ -88,6 +88,12 @@ impl Publishing {
             let desk = self.shared.desk.lock();
             (now(), desk.epoch_number())
         };
+        if owner != epoch {
+            // The goals were those of the previous owner, who may have used the same command numbers.
+            for record in &mut records {
+                (record.command, record.arrived, record.settled) = (0, false, false);
+            }
+        }
         let missing = u32::try_from(missing).unwrap_or(u32::MAX);
         send(&self.state, State { missing, number: self.states, time, owner, records }.encode());
         for _ in 0..MOST_EVENTS {
@@ -114,7 +120,8 @@ impl Publishing {
         let [first, second, third, _] = event.values;
         // Read after the event, because the owner may have sent a new destination since the State.
         let goal = self.shared.desk.lock().goals()[index];
-        goal.is_reached(&Vector3::new(first, second, third), tolerance)
+        // The bound of the lead can make set points that are nearly at the destination.
+        (goal.whole || !goal.is_commanded()) && goal.is_reached(&Vector3::new(first, second, third), tolerance)
     }
 
     fn publish_event(&mut self, event: &Event) {

@@ -75,8 +75,12 @@ fn carry_out(shared: &Arc<Shared>, request: &Request, client: ClientName, reply:
         }
         Action::Release => {
             let mut desk = shared.desk.lock();
-            desk.release();
-            let answer = desk.answer(Code::Done, String::new(), request.epoch, time);
+            // Another client may have taken the hand over since.
+            let code = if desk.admits(&client, request.epoch) { Code::Done } else { Code::NotOwner };
+            if code == Code::Done {
+                desk.release();
+            }
+            let answer = desk.answer(code, String::new(), request.epoch, time);
             drop(desk);
             return reply.send(&answer);
         }
@@ -126,7 +130,7 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
         match recovered {
             Ok(()) => Answer { number, ..desk.answer(Code::Done, String::new(), epoch, time) },
             Err(error) => {
-                desk.abandon();
+                desk.abandon(time);
                 desk.answer(code_of(&error), error.to_string(), 0, time)
             }
         }
@@ -134,22 +138,28 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
     if !request.recover {
         return reply.send(&begin(shared, Ok(())));
     }
-    run(shared, reply, move |shared| {
+    let started = run(shared, reply, move |shared| {
         let recovered = recover(&shared.hand, None);
         begin(shared, recovered)
     });
+    if !started {
+        shared.desk.lock().abandon(now());
+    }
 }
 
 /// Runs a request that takes long, unless another such request is running.
 fn long(shared: &Arc<Shared>, epoch: u64, reply: impl Reply, body: impl FnOnce(&Shared) -> Answer + Send + 'static) {
     match shared.busy.swap(true, Ordering::AcqRel) {
         true => reply.send(&in_progress(shared, epoch)),
-        false => run(shared, reply, body),
+        false => {
+            run(shared, reply, body);
+        }
     }
 }
 
-/// Runs a request that takes long in a thread, and sends its Answer. The caller has set `busy`.
-fn run(shared: &Arc<Shared>, reply: impl Reply, body: impl FnOnce(&Shared) -> Answer + Send + 'static) {
+/// Runs a request that takes long in a thread, and sends its Answer. The caller has set `busy`. Returns whether the
+/// thread has started.
+fn run(shared: &Arc<Shared>, reply: impl Reply, body: impl FnOnce(&Shared) -> Answer + Send + 'static) -> bool {
     let of_thread = shared.clone();
     let started = spawn("sun2xp request", Priority::default(), move |_| {
         let answer = body(&of_thread);
@@ -162,10 +172,12 @@ fn run(shared: &Arc<Shared>, reply: impl Reply, body: impl FnOnce(&Shared) -> An
             let mut threads = shared.requests.lock();
             threads.retain(|thread| !thread.is_finished());
             threads.push(thread);
+            true
         }
         Err(error) => {
             shared.busy.store(false, Ordering::Release);
             complain(&format!("cannot start a thread for a request: {error}. Does the system limit threads?"));
+            false
         }
     }
 }

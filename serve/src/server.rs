@@ -114,7 +114,7 @@ impl Server {
     /// Ends the ownership, brings every finger to its end state, and closes session and hand.
     pub fn end(self) {
         let Self { shared, session, threads } = self;
-        shared.desk.lock().abandon();
+        shared.desk.lock().abandon(now());
         shared.ending.store(true, Ordering::Release);
         // A session that cannot be closed any more has ended already.
         let _ = session.close().wait();

@@ -183,6 +183,55 @@ fn only_the_arrival_at_the_destination_is_published() {
     rig.server.end();
 }
 
+/// A finger without stiffness stays where it is, far from its set point. A new owner sends only a stiffness.
+#[test]
+fn a_stiffness_alone_pulls_with_the_force_of_the_lead_only() {
+    let rig = Rig::new("lead_force = 1.0\nend_ms = 20000");
+    let mut alice = rig.connect("alice");
+    alice.acquire_with(request(Action::Acquire));
+    let from = report(&rig).cycle.joints;
+    let far = [from[0] + 0.5, from[1] + 0.3, from[2] + 0.4];
+    let mut limp = part(1, far);
+    limp.stiffness = Some([[0.0; 3]; 3]);
+    alice.repeat_until(&[limp], "set point", |_| (rig.set_point() == far).then_some(()));
+    let mut bob = rig.connect("bob");
+    let taken = bob.acquire_with(sun2xp_remote_protocol::Request { take_over: true, ..request(Action::Acquire) });
+    assert_eq!(taken.text, "");
+    let of_bob = wait_for("States of the new epoch", || {
+        Some(bob.states().into_iter().filter(|state| state.owner == taken.number).collect::<Vec<_>>())
+            .filter(|states| states.len() > 3)
+    });
+    assert!(of_bob.iter().flat_map(|state| &state.records).all(|record| record.command == 0), "alice used number 1");
+    let mut stiff = part(1, far);
+    (stiff.place, stiff.stiffness) = (Place::Kept, Some([[5.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 5.0]]));
+    bob.repeat_until(&[stiff.clone()], "stiffness", |_| {
+        (report(&rig).set_point.stiffness[(0, 0)] == 5.0).then_some(())
+    });
+    assert_ne!(rig.set_point(), far, "the set point is ahead of the finger by the lead only");
+    bob.repeat_until(&[stiff], "arrival", |_| (rig.set_point() == far).then_some(()));
+    rig.server.end();
+}
+
+/// The recovery of finger 1 takes longer than the owner may be silent.
+#[test]
+fn fingers_wait_while_an_acquire_recovers_another_one() {
+    let rig = Rig::new("end_ms = 200");
+    let mut alice = rig.connect("alice");
+    alice.acquire_with(request(Action::Acquire));
+    alice.send(vec![]);
+    rig.hand().stop(1).expect("finger 1");
+    wait_for("stop", || matches!(report(&rig).stage, Stage::Faulted(_)).then_some(()));
+    let mut bob = rig.connect("bob");
+    let taking = sun2xp_remote_protocol::Request { take_over: true, recover: true, ..request(Action::Acquire) };
+    assert_eq!(bob.acquire_with(taking).text, "");
+    for finger in [2, 3] {
+        let report = rig.hand().report(finger).expect("a report");
+        assert_eq!((report.stage, report.recoveries), (Stage::Running, 0), "finger {finger}");
+    }
+    assert_eq!(report(&rig).recoveries, 1);
+    rig.server.end();
+}
+
 #[test]
 fn a_path_does_not_outlive_its_owner() {
     let rig = Rig::new("end_ms = 20000");

@@ -40,6 +40,8 @@ pub struct Outbox {
     sent: Option<(u64, u64)>,
     /// The text of a refusal that no call has reported.
     refusal: Option<String>,
+    /// Refusals of Targets up to this sequence number are not reported any more.
+    reported: u64,
 }
 
 impl Outbox {
@@ -53,6 +55,7 @@ impl Outbox {
             stamp: None,
             sent: None,
             refusal: None,
+            reported: 0,
         }
     }
 
@@ -104,7 +107,12 @@ impl Outbox {
         self.seen = self.seen.max(answer.time);
         if self.ownership.is_ok_and(|ownership| ownership.epoch == answer.epoch) {
             self.slots.iter_mut().for_each(|slot| slot.refuse(answer.number));
-            self.refusal = Some(answer.text.clone());
+            if answer.number > self.reported {
+                self.refusal = Some(answer.text.clone());
+                // Until now every Target repeated what was refused. Each of them is refused too.
+                let others = self.slots.iter().filter_map(Slot::first_unconfirmed).min();
+                self.reported = others.map_or(self.sequence, |first| first - 1).max(answer.number);
+            }
         }
     }
 

@@ -77,4 +77,9 @@ impl Slot {
     pub fn refuse(&mut self, sequence: u64) {
         self.part.take_if(|part| !part.confirmed && part.sequence != 0 && part.sequence <= sequence);
     }
+
+    /// The first Target with a part that no record has confirmed.
+    pub fn first_unconfirmed(&self) -> Option<u64> {
+        self.part.as_ref().filter(|part| !part.confirmed && part.sequence != 0).map(|part| part.sequence)
+    }
 }

@@ -175,6 +175,25 @@ fn refused_values_are_not_sent_again() {
     assert_eq!(part(&mut outbox, 21 * MS).place, Place::Kept);
 }
 
+/// On a long line, a Target is repeated before its refusal arrives.
+#[test]
+fn the_refusals_of_repeated_targets_are_reported_once() {
+    let mut outbox = owner();
+    outbox.put(joints(0.5), None);
+    (0..3).for_each(|number| drop(part(&mut outbox, number * 20 * MS)));
+    outbox.refused(&answer(Code::Argument, 1));
+    assert!(outbox.take_refusal().is_some());
+    outbox.put(joints(0.25), None);
+    part(&mut outbox, 60 * MS);
+    for copy in [2, 3] {
+        outbox.refused(&answer(Code::Argument, copy));
+        assert_eq!(outbox.take_refusal(), None, "Target {copy}");
+    }
+    assert_eq!(part(&mut outbox, 80 * MS).command, 2, "the new part is sent");
+    outbox.refused(&answer(Code::Argument, 4));
+    assert!(outbox.take_refusal().is_some(), "that was the new part");
+}
+
 #[test]
 fn a_refusal_does_not_concern_later_or_confirmed_values() {
     let mut outbox = owner();

@@ -1,0 +1,58 @@
+//! How far the set point of a finger may be ahead of it.
+
+use super::Fingers;
+use crate::goal::{Destination, Goal, matrix};
+use crate::lead::admitted_part;
+use sun2xp::HandError;
+use sun2xp::finger::FingerReport;
+use sun2xp::motion::Pose;
+use sun2xp::nalgebra::Vector3;
+
+impl Fingers {
+    /// Returns the pose on the way to the destination that the lead admits, and whether it is the destination.
+    pub(super) fn led(
+        &self,
+        number: i32,
+        goal: &Goal,
+        report: &FingerReport,
+    ) -> Result<(Option<Pose>, bool), HandError> {
+        let (Destination::Joints(end) | Destination::Tip(end)) = goal.destination else { return Ok((None, true)) };
+        let part = self.admitted(number, goal, report, &end);
+        let joints = report.cycle.joints;
+        // The finger can be slightly beyond a limit. A set point on the way must not be.
+        let on_the_way = |part: f64| self.clamped(number, &(joints + (end - joints) * part).into());
+        let place: [f64; 3] = if part < 1.0 { on_the_way(part)? } else { end.into() };
+        let pose = match goal.destination {
+            Destination::Tip(_) => Pose::Tip(self.hand.tip_at(number, place)?),
+            _ => Pose::Joints(place),
+        };
+        Ok((Some(pose), part >= 1.0))
+    }
+
+    /// Returns the part of the way from the finger to `end`, rad, that the lead admits.
+    pub(super) fn admitted(&self, number: i32, goal: &Goal, report: &FingerReport, end: &Vector3<f64>) -> f64 {
+        let joints = report.cycle.joints;
+        let jacobian = self.hand.jacobian(number, Some(joints.into()));
+        match (goal.spring, jacobian) {
+            (Some((kx, _)), Ok(jacobian)) => admitted_part(&matrix(&jacobian), &kx, &joints, end, self.lead_force),
+            // Without a measured pose nothing is ahead of the finger.
+            _ => 0.0,
+        }
+    }
+
+    /// Returns joint angles within the limits, rad; none if the hand refuses these angles.
+    pub(super) fn within_limits(&self, number: i32, joints: &[f64; 3]) -> Result<Option<Vector3<f64>>, HandError> {
+        let clamped = self.clamped(number, joints)?;
+        // The hand admits a limit that was rounded to `float`.
+        let rounding = |limit: f64| f64::from(f32::EPSILON) * limit.abs();
+        let admitted = (0..3).all(|joint| (joints[joint] - clamped[joint]).abs() <= rounding(clamped[joint]));
+        Ok((admitted || !self.refuses).then(|| clamped.into()))
+    }
+
+    /// Returns the nearest joint angles within the limits, rad.
+    fn clamped(&self, number: i32, joints: &[f64; 3]) -> Result<[f64; 3], HandError> {
+        let limits = self.hand.limits(number)?;
+        let (low, high) = (limits.joint_minimum, limits.joint_maximum);
+        Ok(std::array::from_fn(|joint| joints[joint].clamp(low[joint], high[joint])))
+    }
+}
