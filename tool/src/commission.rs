@@ -147,10 +147,19 @@ pub struct Examined {
 pub fn examine(file: &Path, finger: FingerNumber, yes: bool, quiet: bool) -> Result<Examined, Failure> {
     let configured = Configured::read(file)?;
     let beside = path_beside(file);
-    let vitals = ProgressFile::read(&beside)?.fingers.remove(&finger.get()).unwrap_or_default().vitals;
-    if vitals.tendon_stiffness.is_none() {
-        let advice = format!("run sun2xp commission --config {} --finger {finger} first", ShownPath(file));
+    let known = ProgressFile::read(&beside)?.fingers.remove(&finger.get()).unwrap_or_default();
+    let advice = format!("run sun2xp commission --config {} --finger {finger} first", ShownPath(file));
+    if known.vitals.tendon_stiffness.is_none() {
         return Err(format!("{} has no measurements of finger {finger}: {advice}", ShownPath(&beside)).into());
+    }
+    if let Some(fault) = known.open_fault(Step::Tendons) {
+        return Err(format!("{fault}: {advice}").into());
+    }
+    if ![Step::Zeros, Step::Tendons].iter().all(|step| known.steps.contains_key(step)) {
+        return Err(format!(
+            "finger {finger} has changed since it was measured, because an earlier step was done again: {advice}"
+        )
+        .into());
     }
     let before = configured.configuration.fingers[finger.index()].clone();
     let steps = vec![Step::Zeros, Step::Tendons];
@@ -166,7 +175,7 @@ pub fn examine(file: &Path, finger: FingerNumber, yes: bool, quiet: bool) -> Res
     };
     measure(&mut desk, &steps)?;
     let today = (desk.vitals.clone(), desk.finger.clone());
-    Ok(Examined { before: (vitals, before), today })
+    Ok(Examined { before: (known.vitals, before), today })
 }
 
 /// Does these steps. A step that fails is repeated as long as the person or the terminal requests this.

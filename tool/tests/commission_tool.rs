@@ -74,6 +74,26 @@ fn an_open_fault_blocks_the_steps_that_move_the_finger() {
     );
 }
 
+/// The fault was found after the finger was commissioned.
+#[test]
+fn health_does_not_move_a_finger_with_an_open_fault() {
+    let desk = Desk::new(SIMULATED);
+    let health = |failed: &str, steps: &str| {
+        let vitals = r#"{ "tendon_stiffness": [300.0, 300.0, 300.0, 300.0] }"#;
+        let finger = format!(r#"{{ "steps": {{ {steps} }}, "failed": {{ {failed} }}, "vitals": {vitals} }}"#);
+        let journal = format!(r#"{{ "fingers": {{ "1": {finger} }} }}"#);
+        fs::write(desk.0.path().join("hand.commission.json"), journal).expect("written");
+        let mut tool = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+        let output = tool.args(["health", "--yes", "--config"]).arg(desk.file()).output().expect("the tool runs");
+        assert_eq!(output.status.code(), Some(1));
+        output.stderr
+    };
+    let motors = r#""motors": { "when": "today", "found": ["tendons 1 and 2 are swapped"] }"#;
+    let both = r#""zeros": { "when": "", "found": [] }, "tendons": { "when": "", "found": [] }"#;
+    contains(&health(motors, both), &["the step motors of today has not passed: tendons 1 and 2 are swapped"]);
+    contains(&health("", ""), &["finger 1 has changed since it was measured", "sun2xp commission --config"]);
+}
+
 /// The file is made for one finger, and gets a second one, each with the board that answers for it.
 #[test]
 fn a_finger_that_the_file_does_not_have_is_added_with_its_board() {

@@ -2,9 +2,10 @@
 
 use super::machine::{Machine, Reading};
 use super::outcome::Outcome;
-use super::person::{NoAnswer, Person};
+use super::person::{Act, Answer, NoAnswer, Person};
 use super::step::Step;
 use super::vitals::Vitals;
+use super::wrong::Wrong;
 use super::{computer, encoders, gauges, motors, spring, tendons, zeros};
 use crate::failure::Failure;
 use std::io;
@@ -50,6 +51,16 @@ impl Desk<'_> {
         Ok(outcome)
     }
 
+    /// Asks the person to prepare what follows. Returns false, and notes it, if this cannot be done. The step must then
+    /// end, because the finger could move while a hand is in its way.
+    pub fn prepare(&mut self, outcome: &mut Outcome, act: Act) -> Result<bool, Failure> {
+        let prepared = self.person.ask(act)? == Answer::Done;
+        if !prepared {
+            outcome.wrong(Wrong::NotPrepared);
+        }
+        Ok(prepared)
+    }
+
     /// Reads the sensors with the motors off. A reading without replies is repeated, so that a busy computer or a loose
     /// plug does not end a step whose earlier readings are good.
     pub fn read(&mut self, seconds: f64) -> Result<Reading, Failure> {
@@ -75,7 +86,7 @@ impl Desk<'_> {
     }
 
     /// Does one step until it passes, or until the person gives up. `failed` is called each time that it has not
-    /// passed.
+    /// passed, or has stopped with an error.
     pub fn complete(
         &mut self,
         step: Step,
@@ -89,7 +100,12 @@ impl Desk<'_> {
                 Ok(outcome) => failed(outcome)?,
                 // Nobody is there to ask.
                 Err(failure) if failure.is::<NoAnswer>() || failure.is::<io::Error>() => return done,
-                Err(failure) => self.person.show(&format!("the step has stopped: {failure}")),
+                Err(failure) => {
+                    let mut outcome = Outcome::default();
+                    outcome.wrong(Wrong::Stopped(failure.to_string()));
+                    failed(&outcome)?;
+                    self.person.show(&format!("the step has stopped: {failure}"));
+                }
             }
             if !self.person.again(&question)? {
                 return done;

@@ -51,10 +51,10 @@ pub fn encoders(desk: &mut Desk) -> Result<Outcome, Failure> {
         // The person may have turned another motor, or two of them.
         outcome.wrong.retain(|wrong| matches!(wrong, Wrong::MotorBlocked(_)));
         outcome.wrong(Wrong::EncodersUnclear(seen));
-    } else if is_exchange(order) {
+    } else if is_exchange(order) && outcome.passed() {
         // The signs and scales belong to encoders that are not at their motors yet.
-        outcome.wrong.retain(|wrong| !wrong.compensated());
-        outcome.wrong(exchanged(desk, order)?);
+        outcome.wrong.clear();
+        name_the_exchange(desk, &mut outcome, order)?;
     }
     if (1..=4).all(|encoder| outcome.wrong.contains(&Wrong::EncoderReversed(encoder)))
         && desk.person.ask(Act::ConfirmDirection)? == Answer::Cannot
@@ -136,7 +136,12 @@ fn judge(desk: &mut Desk, outcome: &mut Outcome, motor: usize, encoder: usize, t
 
 /// Names what is exchanged: only the encoders, or motors with their encoders. The routine that finds the signs shows
 /// which encoder a motor command turns.
-fn exchanged(desk: &mut Desk, order: [usize; 4]) -> Result<Wrong, Failure> {
+fn name_the_exchange(desk: &mut Desk, outcome: &mut Outcome, order: [usize; 4]) -> Result<(), Failure> {
+    desk.person.show("The encoders or the motors are swapped. To find out which, each motor turns a little.");
+    if !desk.prepare(outcome, Act::HoldStill)? {
+        outcome.wrong(Wrong::EncodersUnclear(order));
+        return Ok(());
+    }
     desk.machine.configure(&desk.finger)?;
     let pushed = desk.machine.carry_out(Task::Signs);
     desk.machine.off();
@@ -144,10 +149,18 @@ fn exchanged(desk: &mut Desk, order: [usize; 4]) -> Result<Wrong, Failure> {
         Err(Refused::Obstacle(Obstacle::SwappedMotor { motor, encoder }))
             if order[usize::from(motor) - 1] == usize::from(encoder) =>
         {
-            Ok(Wrong::EncodersExchanged(order))
+            outcome.wrong(Wrong::EncodersExchanged(order));
         }
-        Err(Refused::Failure(failure)) => Err(failure),
-        // The cables belong together: the command of each number turns the encoder of the same number.
-        Ok(_) | Err(Refused::Obstacle(_)) => Ok(Wrong::MotorsAndEncodersExchanged(order)),
+        // The cables belong together: the command of each number has turned the encoder of the same number.
+        Ok(_)
+        | Err(Refused::Obstacle(
+            Obstacle::NothingTightens { .. } | Obstacle::Swapped { .. } | Obstacle::InconsistentGauge { .. },
+        )) => outcome.wrong(Wrong::MotorsAndEncodersExchanged(order)),
+        Err(Refused::Obstacle(obstacle)) => {
+            outcome.wrong(Wrong::EncodersUnclear(order));
+            outcome.wrong(Wrong::Refused(obstacle.to_string()));
+        }
+        Err(Refused::Failure(failure)) => return Err(failure),
     }
+    Ok(())
 }

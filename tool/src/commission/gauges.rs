@@ -45,14 +45,19 @@ fn at_end(count: f64, noise: f64) -> bool {
 /// Carries out the step `gauges`.
 pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
-    desk.person.ask(Act::Loosen)?;
+    if !desk.prepare(&mut outcome, Act::Loosen)? {
+        return Ok(outcome);
+    }
     let empty = desk.read(READING)?;
     let (mut order, mut lines) = ([0; 4], [None; 4]);
     for tendon in 1..=4 {
-        let Some(Weighed { gauge, line }) = weigh(desk, tendon, &empty)? else {
-            outcome.wrong(Wrong::GaugeDead(tendon));
-            desk.person.show(&Wrong::GaugeDead(tendon).to_string());
-            continue;
+        let Weighed { gauge, line } = match weigh(desk, tendon, &empty)? {
+            Ok(weighed) => weighed,
+            Err(wrong) => {
+                desk.person.show(&wrong.to_string());
+                outcome.wrong(wrong);
+                continue;
+            }
         };
         desk.person.show(&format!(
             "gauge {}: {:.5} N per count, {:.3} N rms from the line",
@@ -105,13 +110,16 @@ fn name_the_missing(outcome: &mut Outcome, order: &mut [usize; 4]) {
     let unused: Vec<usize> = (1..=4).filter(|gauge| !order.contains(gauge)).collect();
     if let ([tendon], [gauge]) = (&missing[..], &unused[..]) {
         order[*tendon] = *gauge;
-        outcome.wrong.retain(|wrong| *wrong != Wrong::GaugeDead(tendon + 1));
-        outcome.wrong(Wrong::GaugeDead(*gauge));
+        for wrong in &mut outcome.wrong {
+            if *wrong == Wrong::GaugeDead(tendon + 1) {
+                *wrong = Wrong::GaugeDead(*gauge);
+            }
+        }
     }
 }
 
-/// Hangs every weight on one tendon. Returns `None` if no gauge shows it.
-fn weigh(desk: &mut Desk, tendon: usize, empty: &Reading) -> Result<Option<Weighed>, Failure> {
+/// Hangs every weight on one tendon. Returns what is wrong if no weight hung on it, or if no gauge shows the weight.
+fn weigh(desk: &mut Desk, tendon: usize, empty: &Reading) -> Result<Result<Weighed, Wrong>, Failure> {
     let mut readings = vec![(0.0, *empty)];
     for newton in desk.weights.clone() {
         if desk.person.ask(Act::Hang(tendon, newton))? == Answer::Cannot {
@@ -119,21 +127,25 @@ fn weigh(desk: &mut Desk, tendon: usize, empty: &Reading) -> Result<Option<Weigh
         }
         readings.push((newton, desk.read(READING)?));
     }
+    let (heaviest, last) = readings[readings.len() - 1];
+    if heaviest == 0.0 {
+        return Ok(Err(Wrong::NotWeighed(tendon)));
+    }
     desk.person.ask(Act::Unhang(tendon))?;
-    let Some(&(heaviest, last)) = readings.last() else { return Ok(None) };
     let scale = desk.finger.gauge.newton_per_count;
     let shown: [f64; 4] =
         std::array::from_fn(|gauge| ((last.gauges[gauge] - empty.gauges[gauge]) * scale[gauge]).abs());
     let gauge = (0..4).max_by(|&one, &other| shown[one].total_cmp(&shown[other])).unwrap_or(0);
-    if heaviest == 0.0 || shown[gauge] < LIVES * heaviest {
-        return Ok(None);
+    if shown[gauge] < LIVES * heaviest {
+        return Ok(Err(Wrong::GaugeDead(tendon)));
     }
     let point = |&(newton, reading): &(f64, Reading)| (reading.gauges[gauge], newton);
     // A count at the end of the range is not on the line. Two other counts are enough for a line.
     let inside = |&&(_, reading): &&(f64, Reading)| !at_end(reading.gauges[gauge], reading.noise[gauge]);
     let points: Vec<(f64, f64)> = readings.iter().filter(inside).map(point).collect();
     let all = || Line::through(&readings.iter().map(point).collect::<Vec<_>>());
-    Ok(Line::through(&points).or_else(all).map(|line| Weighed { gauge, line }))
+    let line = Line::through(&points).or_else(all);
+    Ok(line.map(|line| Weighed { gauge, line }).ok_or(Wrong::GaugeDead(tendon)))
 }
 
 /// Takes scale and zero of a gauge from its line. `empty` is the reading without load.

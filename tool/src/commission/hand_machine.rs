@@ -52,16 +52,20 @@ impl HandMachine {
         let hand = self.limp()?;
         let found = with_progress(hand, finger, task, "turning the motors");
         let calibrated = hand.calibrated(finger)?;
-        match found {
-            Ok(found) => {
-                self.configuration.fingers[self.finger.index()] = calibrated;
-                Ok(found)
-            }
-            Err(HandError::Calibration { obstacle, .. } | HandError::WrongWiring { obstacle, .. }) => {
-                Err(Refused::Obstacle(obstacle))
-            }
-            Err(error) => Err(error.into()),
+        let found = found.map_err(refused)?;
+        // The port of the open hand is the one at which its board was found.
+        let configured = &mut self.configuration.fingers[self.finger.index()];
+        *configured = ConfiguredFinger { port: configured.port.clone(), ..calibrated };
+        Ok(found)
+    }
+}
+
+fn refused(error: HandError) -> Refused {
+    match error {
+        HandError::Calibration { obstacle, .. } | HandError::WrongWiring { obstacle, .. } => {
+            Refused::Obstacle(obstacle)
         }
+        error => error.into(),
     }
 }
 
@@ -163,7 +167,7 @@ impl Machine for HandMachine {
 
     fn spring(&mut self) -> Result<(), Refused> {
         self.off();
-        self.hand = Some(Hand::open(self.configuration.clone())?);
+        self.hand = Some(Hand::open(self.configuration.clone()).map_err(refused)?);
         Ok(())
     }
 

@@ -12,7 +12,9 @@ use sun2xp::calibration::{Findings, Obstacle, Task};
 /// or the tendons.
 pub fn motors(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
-    desk.person.ask(Act::HoldStill)?;
+    if !desk.prepare(&mut outcome, Act::HoldStill)? {
+        return Ok(outcome);
+    }
     desk.machine.configure(&desk.finger)?;
     match desk.machine.carry_out(Task::Signs) {
         Ok(found) => adopt(desk, &mut outcome, &found),

@@ -19,7 +19,7 @@ pub fn add(file: &Path, hand: &Configuration, finger: FingerNumber, ports: &[Str
         others.filter_map(|other| Some((hand.fingers[other.index()].board?, hand.address(other)))).collect();
     let chosen = search(patterns, hand.fingers[finger.index()].baud, finger, &taken)
         .map_err(|reason| wrong_usage(format!("{} has no finger {finger}, and {reason}", ShownPath(file))))?;
-    let change = |text: &str| with(text, hand, finger, &chosen.answer, ports).map(Some);
+    let change = |text: &str| with(text, finger, &chosen.answer, ports).map(Some);
     update_file(file, LARGEST, change).map_err(|error| match error {
         UpdateError::File(error) => format!("cannot write {}: {error}", ShownPath(file)).into(),
         UpdateError::Change(error) => error,
@@ -29,13 +29,14 @@ pub fn add(file: &Path, hand: &Configuration, finger: FingerNumber, ports: &[Str
 }
 
 /// Returns the text with the finger.
-fn with(
-    text: &str,
-    configuration: &Configuration,
-    finger: FingerNumber,
-    answer: &Answer,
-    ports: &[String],
-) -> Result<String, Failure> {
+fn with(text: &str, finger: FingerNumber, answer: &Answer, ports: &[String]) -> Result<String, Failure> {
+    // Another process may have added a finger during the search.
+    let configuration = parse_configuration(text)?;
+    let own = (Some(answer.number()), answer.found.address);
+    let mut others = configuration.hand.fingers.members().filter(|&other| other != finger);
+    if others.any(|other| (configuration.fingers[other.index()].board, configuration.address(other)) == own) {
+        return Err(format!("another process has added board {} meanwhile: run the tool again", answer.number()).into());
+    }
     let mut document: DocumentMut = text.parse()?;
     let hand = table(document.as_table_mut(), "hand")?;
     let numbers = configuration.hand.fingers.with(finger).numbers();

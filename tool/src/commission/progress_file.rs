@@ -96,10 +96,10 @@ impl ProgressFile {
 }
 
 impl CommissionedFinger {
-    /// Adds a step that has passed. If it is one of the steps encoders, gauges or motors, the later steps no longer
-    /// count, because they belong to the finger as it was before.
+    /// Adds a step that has passed. If it is one of the steps encoders, gauges, motors or tendons, the later steps no
+    /// longer count, because they belong to the finger as it was before.
     pub fn pass(&mut self, step: Step, outcome: &Outcome, vitals: &Vitals, when: &str) {
-        if matches!(step, Step::Encoders | Step::Gauges | Step::Motors) {
+        if matches!(step, Step::Encoders | Step::Gauges | Step::Motors | Step::Tendons) {
             self.steps.retain(|&other, _| other <= step);
         }
         let mut found = outcome.found.clone();
@@ -178,5 +178,9 @@ mod tests {
         }
         finger.pass(Step::Motors, &good, &vitals, "today");
         assert_eq!(finger.open_fault(Step::Zeros), None);
+        for step in [Step::Zeros, Step::Tendons, Step::Bound, Step::Spring, Step::Tendons] {
+            finger.pass(step, &good, &vitals, "today");
+        }
+        assert!(!finger.steps.contains_key(&Step::Bound), "the bound of the tendons as they were before");
     }
 }

@@ -60,7 +60,10 @@ impl Step {
     pub fn does(self) -> &'static str {
         match self {
             Self::Board => "Says hello to the board, and tries its emergency stop. The motors are off.",
-            Self::Encoders => "Reads the encoders while you turn each motor by hand. The motors are off.",
+            Self::Encoders => {
+                "Reads the encoders while you turn each motor by hand. The motors are off. If encoders are swapped, \
+                 each motor turns a little after a question."
+            }
             Self::Gauges => {
                 "Reads the gauges without load, and while you hang known weights on each tendon. The motors are off."
             }

@@ -18,7 +18,9 @@ const GAIN: f64 = 0.05;
 /// Carries out the step `tendons`.
 pub fn tendons(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
-    desk.person.ask(Act::LetGo)?;
+    if !desk.prepare(&mut outcome, Act::LetGo)? {
+        return Ok(outcome);
+    }
     desk.machine.configure(&desk.finger)?;
     let found = match desk.machine.carry_out(Task::Identify) {
         Ok(Findings::Identified(found)) => found,

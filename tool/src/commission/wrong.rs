@@ -64,11 +64,17 @@ pub enum Wrong {
     InitialLowered(f64, f64),
     /// The person did not push.
     NotPushed,
+    /// No weight hung on this tendon.
+    NotWeighed(usize),
+    /// The person could not do what the step needs.
+    NotPrepared,
     Computer(String),
     /// The zeroing at a pose has stopped, with its own text.
     PoseRefused(String),
     /// A routine has stopped, with its own text.
     Refused(String),
+    /// The step has stopped because the finger or the system failed, with the text of this failure.
+    Stopped(String),
 }
 
 impl Wrong {

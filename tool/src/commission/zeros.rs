@@ -32,10 +32,16 @@ pub fn zeros(desk: &mut Desk) -> Result<Outcome, Failure> {
 /// finger.
 pub fn zero(desk: &mut Desk, outcome: &mut Outcome, held: bool) -> Result<bool, Failure> {
     let at_pose = desk.finger.zeroing_method() == ZeroingMethod::Pose;
-    if at_pose {
-        desk.person.ask(Act::HoldPose(desk.finger.zeroing.pose_degrees))?;
-    } else if held {
-        desk.person.ask(Act::LetGo)?;
+    let act = match at_pose {
+        true => Some(Act::HoldPose(desk.finger.zeroing.pose_degrees)),
+        false => held.then_some(Act::LetGo),
+    };
+    // A person may only turn motors that are off.
+    desk.machine.off();
+    if let Some(act) = act
+        && !desk.prepare(outcome, act)?
+    {
+        return Ok(false);
     }
     desk.machine.configure(&desk.finger)?;
     let zeros = match desk.machine.carry_out(Task::Zero) {
@@ -55,7 +61,7 @@ pub fn zero(desk: &mut Desk, outcome: &mut Outcome, held: bool) -> Result<bool, 
     outcome.about("encoder.zero", format!("zeroed {place}"));
     if at_pose {
         desk.person.show("The finger is zeroed and is a spring now.");
-        desk.person.ask(Act::LetGo)?;
+        return desk.prepare(outcome, Act::LetGo);
     }
     Ok(true)
 }

@@ -126,6 +126,8 @@ pub struct Helper {
     pub patience: usize,
     /// Whether the person says that the motors were turned the right way.
     pub right_way: bool,
+    /// What the person cannot do.
+    pub cannot: Option<fn(Act) -> bool>,
     /// What the person was asked after failures.
     pub questions: Vec<String>,
     /// What the person was asked to do.
@@ -144,6 +146,7 @@ impl Helper {
             holds: true,
             patience: 0,
             right_way: true,
+            cannot: None,
             questions: Vec::new(),
             acts: Vec::new(),
             turned: 0.0,
@@ -159,6 +162,9 @@ impl Person for Helper {
 
     fn ask(&mut self, act: Act) -> Result<Answer, Failure> {
         self.acts.push(act);
+        if self.cannot.is_some_and(|cannot| cannot(act)) {
+            return Ok(Answer::Cannot);
+        }
         let mut world = self.world.borrow_mut();
         let instead = self.instead;
         let mistaken = |part: usize| match instead {

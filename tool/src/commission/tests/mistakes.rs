@@ -70,6 +70,65 @@ fn a_step_whose_routine_has_failed_is_offered_again() {
     assert_eq!(person.questions, ["Remove the cause, then do the step motors again."]);
 }
 
+/// The step is noted as failed, so that it does not count as passed any more.
+#[test]
+fn a_step_that_stops_with_an_error_is_noted() {
+    let (world, belief) = world(|_| ());
+    let (mut machine, mut person) = (Bench(world.clone()), Helper::new(&world));
+    world.borrow_mut().lost.1 = 1;
+    let (weights, vitals) = (Vec::new(), Vitals::default());
+    let mut desk = Desk { machine: &mut machine, person: &mut person, finger: belief, weights, vitals };
+    let mut noted = Vec::new();
+    let stopped = desk.complete(Step::Motors, |outcome| {
+        noted.extend(outcome.wrong.clone());
+        Ok(())
+    });
+    assert!(stopped.is_err());
+    assert_eq!(noted, [Wrong::Stopped("the board has sent no measurement".into())]);
+}
+
+/// A hand may be in the way of the finger.
+#[test]
+fn nothing_moves_if_the_person_cannot_prepare_it() {
+    for (doing, cannot) in [
+        (Step::Motors, (|act| act == Act::HoldStill) as fn(Act) -> bool),
+        (Step::Zeros, |act| matches!(act, Act::HoldPose(_) | Act::LetGo)),
+        (Step::Tendons, |act| act == Act::LetGo),
+    ] {
+        let (world, belief) = world(|_| ());
+        let mut person = Helper::new(&world);
+        person.cannot = Some(cannot);
+        let (outcome, finger) = step(doing, &world, &mut person, &belief);
+        assert_eq!((outcome.wrong, finger), (vec![Wrong::NotPrepared], belief), "{doing}");
+        assert_eq!(world.borrow().largest_torque, 0.0, "{doing}");
+    }
+}
+
+#[test]
+fn a_gauge_without_a_weight_is_not_reported_as_dead() {
+    let (world, belief) = world(|_| ());
+    let mut person = Helper::new(&world);
+    person.cannot = Some(|act| matches!(act, Act::Hang(3, _)));
+    let (outcome, _) = step(Step::Gauges, &world, &mut person, &belief);
+    let open: Vec<_> = outcome.wrong.into_iter().filter(|wrong| !wrong.compensated()).collect();
+    assert_eq!(open, [Wrong::NotWeighed(3)]);
+}
+
+/// A motor without torque does not show whether the motors are swapped too.
+#[test]
+fn swapped_encoders_with_a_motor_that_does_not_turn_are_not_called_swapped_motors() {
+    let mut case = right(0);
+    (case.wiring.encoder_at, case.wiring.dead_motor) = ([1, 0, 2, 3], Some(0));
+    let world = World::new(&case.truth, &case.belief, case.wiring.clone());
+    let mut person = Helper::new(&world);
+    let (outcome, _) = step(Step::Encoders, &world, &mut person, &case.belief);
+    assert!(person.acts.contains(&Act::HoldStill));
+    let [Wrong::EncodersUnclear([2, 1, 3, 4]), Wrong::Refused(text)] = &outcome.wrong[..] else {
+        panic!("{outcome:?}")
+    };
+    assert!(text.contains("motor 1"), "{text}");
+}
+
 /// `sun2xp health` continues with the step that has failed.
 #[test]
 fn health_repeats_only_what_has_failed() {

@@ -85,7 +85,8 @@ impl Wrong {
                 "Check the masses of the weights, that they hang freely, and that nothing rubs on tendon {gauge}"
             ),
             Self::GaugeAtEnd(gauge, count, zero) => {
-                let direction = if zero < count { "up" } else { "down" };
+                // The count shows at which end of the range the gauge is. The zero by the weights is less certain.
+                let direction = if *count < 1.0 { "up" } else { "down" };
                 format!(
                     "Shift the offset of amplifier {gauge} {direction} by at least {:.0} counts, so that the count \
                      without load is inside the range. Then do the step again",
@@ -128,6 +129,13 @@ impl Wrong {
                 "Until that is removed, later steps may stop with lost replies, and readings may be missing".into()
             }
             Self::NotPushed => "Push the tip before you press Enter".into(),
+            Self::NotWeighed(tendon) => format!("Hang at least one weight on tendon {tendon}"),
+            Self::NotPrepared => "Make it possible, or leave with q and do the step later".into(),
+            Self::Refused(_) => {
+                "If this requires a change of the configuration file, leave with q, change the file, and start the \
+                 tool again. The tool reads the file only when it starts"
+                    .into()
+            }
             _ => String::new(),
         }
     }

@@ -43,9 +43,8 @@ impl Display for Wrong {
             Self::EmergencyStop => write!(f, "the emergency stop is pressed, or its contact is open"),
             Self::EmergencyStopUnseen => write!(f, "the board does not see the emergency stop"),
             Self::Supply => write!(f, "the motors have no supply"),
-            Self::Board(text) | Self::Computer(text) | Self::PoseRefused(text) | Self::Refused(text) => {
-                write!(f, "{text}")
-            }
+            Self::Board(text) | Self::Computer(text) | Self::PoseRefused(text) => write!(f, "{text}"),
+            Self::Refused(text) | Self::Stopped(text) => write!(f, "{text}"),
             Self::EncodersExchanged(order) => write!(f, "encoders {} are swapped", parts(order)),
             Self::MotorsAndEncodersExchanged(order) => {
                 write!(f, "motors {} are swapped together with their encoders", parts(order))
@@ -105,6 +104,8 @@ impl Wrong {
                 write!(f, "the measured stiffness is {found:.1} N/cm, and {sent:.1} N/cm were sent")
             }
             Self::SpringReturn(millimetres) => write!(f, "the tip came to rest {millimetres:.1} mm from its pose"),
+            Self::NotWeighed(tendon) => write!(f, "no weight hung on tendon {tendon}, so its gauge was not tried"),
+            Self::NotPrepared => write!(f, "the step was not done, because you could not do what it asked for"),
             // Only `NotPushed` is left, because the caller handles all other cases.
             _ => write!(f, "the tip did not move"),
         }
