@@ -23,6 +23,25 @@ def answer(code, epoch, number=0, text=""):
     return struct.pack("<BBHIQQQH", 6, 1, code, 100, epoch, time.monotonic_ns(), number, len(data)) + data
 
 
+def status():
+    """The bytes of the Status of a hand with three fingers."""
+    head = STATUS.pack(4, 1, 7, 100, 1000, 1, time.monotonic_ns(), 1000.0, 10.0, 1.0, *range(8))
+    finger = FINGER.pack(3, 0, 0, 5, 0, 0, 0, -0.5, 0.0, 0.0, 0.5, 1.5, 1.5, 4.0, 0.0, 0, b"")
+    return head + 3 * finger + b"\x07planner"
+
+
+def read_target(data):
+    """Returns validity, epoch, sequence number, time sent, time seen and parts of a Target."""
+    _, _, count, validity, epoch, sequence, sent, seen = TARGET.unpack_from(data)
+    parts, offset = [], TARGET.size
+    for _ in range(count):
+        finger, place, bits, poses, command, *values = PART.unpack_from(data, offset)
+        offset += PART.size + 32 * poses
+        parts.append((finger, command, place, bits, poses, values))
+    assert offset == len(data)
+    return validity, epoch, sequence, sent, seen, parts
+
+
 class Double:
     """A hand with fingers 1 to 3 that takes every set point at once, or refuses it with `refusal`."""
 
@@ -52,7 +71,7 @@ class Double:
         self._ends = threading.Event()
         declare = self.session.declare_queryable
         self.declared = [
-            declare(f"{self.prefix}status", lambda query: query.reply(f"{self.prefix}status", self.status())),
+            declare(f"{self.prefix}status", lambda query: query.reply(f"{self.prefix}status", status())),
             *[declare(f"{self.prefix}{action}/*", self._take_request) for action in _messages.ACTIONS],
             self.session.declare_subscriber(f"{self.prefix}target/*", self._take_target),
         ]
@@ -66,12 +85,6 @@ class Double:
         self._ends.set()
         self._thread.join()
         self.session.close()
-
-    def status(self):
-        """The bytes of a Status."""
-        head = STATUS.pack(4, 1, 7, 100, 1000, 1, time.monotonic_ns(), 1000.0, 10.0, 1.0, *range(8))
-        finger = FINGER.pack(3, 0, 0, 5, 0, 0, 0, -0.5, 0.0, 0.0, 0.5, 1.5, 1.5, 4.0, 0.0, 0, b"")
-        return head + 3 * finger + b"\x07planner"
 
     def put_event(self, finger, kind, cycle):
         """Publishes an Event."""
@@ -114,14 +127,7 @@ class Double:
         query.reply(query.key_expr, reply)
 
     def _take_target(self, sample):
-        data = bytes(sample.payload)
-        _, _, count, validity, epoch, sequence, sent, seen = TARGET.unpack_from(data)
-        parts, offset = [], TARGET.size
-        for _ in range(count):
-            finger, place, bits, poses, command, *values = PART.unpack_from(data, offset)
-            offset += PART.size + 32 * poses
-            parts.append((finger, command, place, bits, poses, values))
-        assert offset == len(data)
+        validity, epoch, sequence, sent, seen, parts = read_target(bytes(sample.payload))
         with self.lock:
             if epoch != self.epoch:
                 return

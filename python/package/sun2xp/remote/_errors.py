@@ -14,7 +14,7 @@ class NotOwner(Error):
 
 
 class Stale(TimedOut):
-    """The newest state of the hand is older than `stale`: the line or the server has failed."""
+    """The newest state of the finger is older than `stale`: the line or the server has failed."""
 
 
 class NoAnswer(TimedOut):

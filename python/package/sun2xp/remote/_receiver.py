@@ -13,7 +13,7 @@ import numpy.typing
 from .._types import Event, EventKind
 from . import _messages
 from ._errors import Stale
-from ._messages import State
+from ._messages import STAGES, State
 
 #: Number of States that are kept for `cycles`: 5 s, because the server publishes a State every 5 ms.
 _KEPT_STATES = 1000
@@ -149,16 +149,25 @@ class Receiver:
                 return float("inf")
             return (time.monotonic_ns() - self._offset - self._published) * 1e-9
 
+    def _age_of(self, record: numpy.void) -> float:
+        # A finger that has faulted has no new cycles, but the server repeats the newest one.
+        if STAGES[record["stage"]] == "faulted":
+            return self.age()
+        return self.age() + (self._published - int(record["time"])) * 1e-9
+
     def newest(self, finger: int, stale: float) -> numpy.void:
         """Returns the newest record of a finger.
 
         Raises:
             Stale: it is older than `stale` s.
         """
-        age = self.age()
-        record = self._newest.get(finger)
+        with self.changed:
+            record = self._newest.get(finger)
+            age = self.age() if record is None else self._age_of(record)
         if record is None or age > stale:
-            known = "no state has arrived" if record is None else f"the newest state is {age * 1e3:.0f} ms old"
+            known = f"the state of finger {finger} is {age * 1e3:.0f} ms old"
+            if record is None:
+                known = f"no state of finger {finger} has arrived"
             remedy = "Check the line and sun2xp serve, or allow older data with stale"
             raise Stale(f"{known}, and {stale * 1e3:.0f} ms are allowed. {remedy}.", number=14, remedy=remedy)
         return record
