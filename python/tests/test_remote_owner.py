@@ -3,11 +3,16 @@
 import time
 import types
 
+import numpy
 import pytest
-from remote_scripted import Scripted, S
+from remote_scripted import HOME, Scripted, S, holds
 
+import sun2xp
 import sun2xp.remote
 from sun2xp.remote import _messages, _receiver
+
+KX = numpy.eye(3)
+PATH = ([1.0], [HOME])
 
 
 @pytest.fixture
@@ -18,6 +23,63 @@ def server():
 @pytest.fixture
 def hand(server):
     return server.hand
+
+
+def test_after_a_refusal_nothing_is_sent_to_the_finger_until_a_new_command(server, hand):
+    hand.send_position(1, HOME)
+    server.apply()
+    hand.send_tip(1, [50.0, 0.0, 0.0])
+    server.refuse(server.targets[-1][0])
+    assert server.target() == []
+    with pytest.raises(sun2xp.Refused, match="out of reach"):
+        hand.wait(timeout=0)
+    server.state()
+    assert server.target() == [] and holds(hand)
+    hand.send_stiffness(1, KX)
+    assert server.command()[:3] == (3, 0, 1)
+
+
+def test_a_refusal_does_not_concern_later_commands(server, hand):
+    hand.send_tip(1, [50.0, 0.0, 0.0])
+    refused = server.targets[-1][0]
+    hand.send_position(1, HOME)
+    server.refuse(refused)
+    server.target()
+    assert server.command()[:2] == (2, 1)
+    with pytest.raises(sun2xp.Refused):
+        hand.wait(1, timeout=0)
+    server.apply()
+    assert holds(hand)
+
+
+def test_a_refused_value_is_not_sent_with_later_commands(server, hand):
+    hand.send_tip(1, [50.0, 0.0, 0.0])
+    refused = server.targets[-1][0]
+    hand.send_stiffness(1, KX)
+    assert server.command()[:3] == (2, 2, 1)
+    server.refuse(refused)
+    with pytest.raises(sun2xp.Refused):
+        hand.send_damping(1, 1.5)
+    hand.send_damping(1, 1.5)
+    assert server.command()[:3] == (3, 0, 3)
+
+
+def test_a_refusal_does_not_concern_what_was_applied_or_another_epoch(server, hand):
+    hand.send_position(1, HOME)
+    server.apply()
+    hand.send_tip(2, [50.0, 0.0, 0.0])
+    server.refuse(server.targets[-1][0])
+    assert [part[:2] for part in server.target()] == [(1, 1)]
+    hand.send_position(1, HOME)
+    refused = server.targets[-1][0]
+    hand.acquire(take_over=True)
+    hand.send_position(1, HOME)
+    server.number -= 1
+    server.refuse(refused + 10)
+    server.number += 1
+    assert server.target()[0][:2] == (1, 4)
+    server.apply()
+    assert holds(hand)
 
 
 def test_the_age_is_that_of_the_record_of_the_finger(server, hand):
@@ -39,3 +101,42 @@ def test_the_age_of_a_finger_that_has_stopped_is_that_of_the_state(server, hand,
     monkeypatch.setattr(_receiver, "time", later)
     with pytest.raises(sun2xp.remote.Stale):
         hand.state(1)
+
+
+def test_a_path_is_sent_with_one_command_number(server, hand):
+    hand.send_path(1, *PATH)
+    assert server.command()[:3] == (1, 3, 0)
+    # Kx waits for the path.
+    hand.send_stiffness(1, KX)
+    hand.send_damping(1, 1.5)
+    server.target()
+    assert server.command()[:3] == (1, 3, 0) and not holds(hand)
+    server.apply()
+    assert not holds(hand)
+    server.target()
+    assert server.command()[:3] == (2, 0, 3)
+    server.apply()
+    assert holds(hand)
+
+
+def test_a_place_replaces_a_path_at_once(server, hand):
+    hand.send_path(1, *PATH)
+    hand.send_stiffness(1, KX)
+    hand.send_position(1, HOME)
+    assert server.command()[:3] == (2, 1, 1)
+
+
+def test_a_group_waits_as_a_whole_for_a_path(server, hand):
+    hand.send_path(1, *PATH)
+    hand.send_group([sun2xp.SetPoint(1, stiffness=KX), sun2xp.SetPoint(2, position=HOME)])
+    assert [part[:2] for part in server.target()] == [(1, 1)]
+    server.apply()
+    assert [part[:2] for part in server.target()] == [(1, 2), (2, 3)]
+
+
+def test_what_waits_for_a_refused_path_is_sent(server, hand):
+    hand.send_path(1, *PATH)
+    hand.send_stiffness(1, KX)
+    server.refuse(server.targets[-1][0])
+    server.target()
+    assert server.command()[:3] == (2, 0, 1)

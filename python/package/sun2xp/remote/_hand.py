@@ -136,7 +136,8 @@ class RemoteHand(Reading):
         self._send(self.parts(set_points))
 
     def send_path(self, finger: int, times: numpy.typing.ArrayLike, joints: numpy.typing.ArrayLike) -> None:
-        """Sends a path of 1 to 32 poses. Errors are those of `send_position`.
+        """Sends a path of 1 to 32 poses. A Kx or damping that is sent right after a path waits until the server has
+        taken the path. Errors are those of `send_position`.
 
         Args:
             times: from the moment at which the server takes the path, s: shape (n,).
@@ -177,7 +178,8 @@ class RemoteHand(Reading):
         if condition not in ("applied", *_CONDITIONS):
             raise Refused(f'condition is {condition!r}, not "applied", "arrived" or "settled"', number=7)
         if fingers is None:
-            fingers = [finger for finger in self.fingers if self._owner.pending(finger) is not None]
+            with self._network.sender.lock:
+                fingers = self._owner.commanded()
         wanted = [fingers] if isinstance(fingers, int) else list(fingers)
         self._check(*wanted)
         deadline = None if timeout is None else time.monotonic() + timeout
@@ -224,10 +226,10 @@ class RemoteHand(Reading):
         self._request("identify", finger, self._owner.epoch, timeout=_CALIBRATION_TIME)
 
     def _holds(self, finger: int, condition: str) -> bool:
-        pending = self._owner.pending(finger)
-        command, bits = self._receiver.applied(finger)
-        if pending is None or command != pending:
-            return False
+        with self._network.sender.lock:
+            if not self._owner.is_applied(finger):
+                return False
+        bits = self._receiver.applied(finger)[1]
         return condition == "applied" or bool(bits & _CONDITIONS[condition])
 
     def _check_fault(self, finger: int) -> None:

@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import collections
-import dataclasses
 import threading
 import time
-from typing import Callable, Deque, Dict, Iterable, List, Optional, Tuple
+from typing import Callable, Dict, Iterable, List, Optional, Tuple
 
 from .._errors import Closed, ErrorNumber, Refused
 from . import _messages
 from ._errors import NotOwner
-from ._messages import NO_PLACE, Answer, Part, Target
+from ._messages import Answer, Part, Target
 from ._receiver import Receiver
+from ._slot import Slot
 
 #: Interval between two Targets, s. The protocol needs one every 25 ms.
 PERIOD = 0.02
-
-#: Number of Targets whose commands are remembered, for a refusal that arrives late.
-_REMEMBERED = 500
 
 #: The largest command number. The next command has the number 1.
 _LAST_COMMAND = 2**32 - 1
@@ -36,11 +32,8 @@ class Owner:
         self._number = self._since = 0
         self._sequence = 0
         self._command = 0
-        #: The last part of each finger that a State has confirmed.
-        self._confirmed: Dict[int, Part] = {}
-        #: The later commands of each finger: what each one changes, and the part that was sent for it.
-        self._open: Dict[int, List[Tuple[Part, Part]]] = {}
-        self._sent: Deque[Tuple[int, Dict[int, int]]] = collections.deque(maxlen=_REMEMBERED)
+        #: What is sent to the fingers that this client has commanded in this epoch.
+        self._slots: Dict[int, Slot] = {}
         self._refusals: Dict[int, str] = {}
 
     @property
@@ -52,8 +45,7 @@ class Owner:
         """Begins the epoch of an Answer to acquire."""
         self._epoch, self._validity = answer.epoch, answer.catch_ms
         self._number, self._since, self._sequence = answer.number, answer.time, 0
-        self._confirmed, self._open, self._refusals = {}, {}, {}
-        self._sent.clear()
+        self._slots, self._refusals = {}, {}
 
     def end(self) -> None:
         """Ends the epoch: nothing more is sent."""
@@ -63,24 +55,16 @@ class Owner:
         """Processes what a State has shown: the number of the owner's epoch, and the applied commands."""
         if published > self._since and owner != self._number:
             self._epoch = 0
-        for finger, commands in self._open.items():
-            applied = self._receiver.applied(finger)[0]
-            index = next((index for index, (_, part) in enumerate(commands) if part.command == applied), None)
-            if index is not None:
-                self._confirmed[finger] = commands[index][1]
-                del commands[: index + 1]
+        for finger, slot in self._slots.items():
+            slot.confirm(self._receiver.applied(finger)[0])
 
     def refused(self, answer: Answer) -> None:
         """Processes the refusal of a Target: drops those of its set points that no State has confirmed."""
         if answer.epoch != self._epoch:
             return
-        sent = next((commands for sequence, commands in self._sent if sequence == answer.number), {})
-        for finger, command in sent.items():
-            commands = self._open.get(finger, [])
-            if any(part.command == command for _, part in commands):
+        for finger, slot in self._slots.items():
+            if slot.refuse(answer.number):
                 self._refusals[finger] = answer.text
-                # A later command repeats the values of this one.
-                commands.clear()
 
     def take_refusal(self, fingers: Iterable[int]) -> None:
         """Raises the refusal of an earlier command of these fingers, once.
@@ -92,10 +76,14 @@ class Owner:
         if texts:
             raise Refused(" ".join(sorted(texts)), number=ErrorNumber.LIMIT)
 
-    def pending(self, finger: int) -> Optional[int]:
-        """Returns the number of the newest command of a finger; None if there is none."""
-        part = self._part(finger)
-        return None if part is None else part.command
+    def commanded(self) -> List[int]:
+        """Returns the fingers to which this client has sent something in this epoch."""
+        return sorted(self._slots)
+
+    def is_applied(self, finger: int) -> bool:
+        """Returns whether something was sent to a finger, and the server has applied or refused all of it."""
+        slot = self._slots.get(finger)
+        return slot is not None and slot.is_applied
 
     def check(self, fingers: Iterable[int]) -> None:
         """Checks that commands for these fingers can be accepted.
@@ -112,18 +100,16 @@ class Owner:
     def command(self, changes: List[Part]) -> None:
         """Accepts new set points. Each contains only the values that shall change. All other values stay the same."""
         for change in changes:
-            self._command = self._command % _LAST_COMMAND + 1
-            part = dataclasses.replace(change, command=self._command)
-            commands = self._open.setdefault(change.finger, [])
-            # The server may have missed what no State has confirmed, so the new part repeats it.
-            for earlier, _ in reversed(commands):
-                _fill(part, earlier)
-            commands.append((change, part))
+            self._slots.setdefault(change.finger, Slot()).change(change)
 
-    def _part(self, finger: int) -> Optional[Part]:
-        """Returns the part of a finger that is in force, or that shall come into force."""
-        commands = self._open.get(finger)
-        return commands[-1][1] if commands else self._confirmed.get(finger)
+    def _renew(self) -> None:
+        """Puts the waiting changes into parts with new command numbers. Changes of a group wait for each other."""
+        if any(slot.is_blocked for slot in self._slots.values()):
+            return
+        for slot in self._slots.values():
+            if slot.waits:
+                self._command = self._command % _LAST_COMMAND + 1
+                slot.renew(self._command, self._sequence)
 
     def publish(self, sent: int) -> None:
         """Sends a Target with everything that is in force.
@@ -134,20 +120,10 @@ class Owner:
         if self._epoch == 0:
             return
         self._sequence += 1
-        parts = [part for part in map(self._part, (1, 2, 3)) if part is not None]
+        self._renew()
+        parts = [slot.part for slot in self._slots.values() if slot.part is not None]
         target = Target(self._validity, self._epoch, self._sequence, sent, self._receiver.seen, parts)
-        self._sent.append((self._sequence, {part.finger: part.command for part in parts}))
         self._put(_messages.write_target(target))
-
-
-def _fill(part: Part, earlier: Part) -> None:
-    """Adds the values of an earlier part that this one does not have."""
-    if part.place == NO_PLACE:
-        part.place, part.values, part.poses = earlier.place, earlier.values, earlier.poses
-    if part.stiffness is None:
-        part.stiffness = earlier.stiffness
-    if part.damping is None:
-        part.damping = earlier.damping
 
 
 class Sender:
