@@ -5,7 +5,7 @@ import types
 
 import numpy
 import pytest
-from remote_scripted import HOME, Scripted, S, holds
+from remote_scripted import BEGIN, HOME, MS, Scripted, S, holds
 
 import sun2xp
 import sun2xp.remote
@@ -13,6 +13,7 @@ from sun2xp.remote import _messages, _receiver
 
 KX = numpy.eye(3)
 PATH = ([1.0], [HOME])
+ARRIVED, EVERYTHING = _messages.ARRIVED, 15
 
 
 @pytest.fixture
@@ -80,6 +81,102 @@ def test_a_refusal_does_not_concern_what_was_applied_or_another_epoch(server, ha
     assert server.target()[0][:2] == (1, 4)
     server.apply()
     assert holds(hand)
+
+
+def test_a_state_from_before_the_acquire_applies_nothing(server, hand):
+    server.now += 30 * MS
+    hand.acquire(take_over=True)
+    hand.send_position(1, HOME)
+    command = server.command()[0]
+    # This State was published before the Answer, and arrives after it. Another client had the same command number.
+    server.records["command"], server.records["bits"] = command, EVERYTHING
+    server.now -= 30 * MS
+    server.state(owner=server.number - 1)
+    assert not holds(hand) and not holds(hand, condition="arrived")
+    server.now += 30 * MS
+    server.records["command"] = 0
+    server.state()
+    assert not holds(hand)
+    server.apply()
+    assert holds(hand) and holds(hand, condition="arrived")
+
+
+def test_a_state_of_an_earlier_epoch_applies_nothing(server, hand):
+    hand.send_position(1, HOME)
+    server.records["bits"] = EVERYTHING
+    server.apply()
+    assert holds(hand, condition="arrived")
+    # Command numbers of other clients may be those of this one.
+    server.records["command"] = 2
+    server.state(owner=server.number + 7)
+    hand.acquire(take_over=True)
+    hand.send_position(1, HOME)
+    assert server.command()[0] == 2
+    assert not holds(hand) and not holds(hand, condition="arrived")
+
+
+def test_only_the_own_command_number_counts(server, hand):
+    hand.send_position(1, HOME)
+    server.records["command"], server.records["bits"] = 2, EVERYTHING
+    server.state()
+    assert not holds(hand)
+    server.records["bits"] = 0
+    server.apply()
+    assert holds(hand) and not holds(hand, condition="arrived")
+    server.records["bits"] = ARRIVED
+    server.state()
+    assert holds(hand, condition="arrived")
+
+
+def test_a_wait_says_that_the_hand_was_lost(server, hand):
+    hand.send_position(1, HOME)
+    server.records["bits"] = EVERYTHING
+    server.apply()
+    server.state(owner=server.number + 1)
+    for condition in ("applied", "arrived", "settled"):
+        with pytest.raises(sun2xp.remote.NotOwner):
+            hand.wait(1, condition, timeout=0)
+    with pytest.raises(sun2xp.remote.NotOwner):
+        hand.wait(timeout=0)
+    hand.acquire()
+    hand.send_position(1, HOME)
+    server.apply()
+    assert holds(hand)
+
+
+@pytest.mark.parametrize("back", [MS, 9 * S, BEGIN - MS])
+def test_a_restart_of_the_machine_ends_the_epoch(server, hand, back):
+    hand.send_position(1, HOME)
+    server.now, server.states = server.now - back, 0
+    server.records["command"], server.records["bits"] = server.command()[0], EVERYTHING
+    server.state(after=0, owner=0)
+    assert not hand.owned
+    with pytest.raises(sun2xp.remote.NotOwner):
+        hand.wait(1, timeout=0)
+    # What arrives from then on is new.
+    assert hand.state(1).time == server.now
+    hand.acquire()
+    server.state()
+    hand.send_position(1, HOME)
+    server.apply()
+    assert hand.owned and holds(hand)
+
+
+def test_a_restart_of_the_server_ends_the_epoch(server, hand):
+    server.states = 0
+    server.state(owner=0)
+    assert not hand.owned
+
+
+def test_a_hand_that_is_acquired_after_a_restart_stays_owned(server, hand):
+    server.now, server.states = 20 * S, 0
+    hand.acquire()
+    # The State from before the Answer arrives after it.
+    server.state(after=-MS, owner=0)
+    server.state(after=2 * MS)
+    hand.send_position(1, HOME)
+    server.apply()
+    assert hand.owned and holds(hand)
 
 
 def test_the_age_is_that_of_the_record_of_the_finger(server, hand):

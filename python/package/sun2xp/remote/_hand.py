@@ -27,7 +27,7 @@ _RECOVERY_TIME = 30.0
 _CALIBRATION_TIME = 600.0
 
 #: Bits of a record for the conditions of `wait`.
-_CONDITIONS = {"arrived": _messages.ARRIVED, "settled": _messages.SETTLED}
+_CONDITIONS = {"applied": 0, "arrived": _messages.ARRIVED, "settled": _messages.SETTLED}
 
 
 class RemoteHand(Reading):
@@ -172,10 +172,11 @@ class RemoteHand(Reading):
 
         Raises:
             TimedOut: the time limit is over.
+            NotOwner: this client does not command the hand, or has lost it.
             Refused: the server has refused the set point.
             Fault: a finger is faulted.
         """
-        if condition not in ("applied", *_CONDITIONS):
+        if condition not in _CONDITIONS:
             raise Refused(f'condition is {condition!r}, not "applied", "arrived" or "settled"', number=7)
         if fingers is None:
             with self._network.sender.lock:
@@ -185,14 +186,12 @@ class RemoteHand(Reading):
         deadline = None if timeout is None else time.monotonic() + timeout
         while True:
             left = 0.1 if deadline is None else min(0.1, deadline - time.monotonic())
-            holds = self._receiver.wait_for(
-                lambda: all(self._holds(finger, condition) for finger in wanted), max(left, 0)
-            )
+            holds = self._receiver.wait_for(lambda: self._hold(wanted, _CONDITIONS[condition]), max(left, 0))
             self._check()
             # After a refusal, the set point before the refused one counts as the last one, and the condition may hold
             # for it. The refusal must be raised nevertheless.
             with self._network.sender.lock:
-                self._owner.take_refusal(wanted)
+                self._owner.check(wanted)
             for finger in wanted:
                 self._check_fault(finger)
             if holds:
@@ -225,12 +224,9 @@ class RemoteHand(Reading):
         """Measures gauge gains, friction and tendon stiffness of a finger. Errors are those of `zero`."""
         self._request("identify", finger, self._owner.epoch, timeout=_CALIBRATION_TIME)
 
-    def _holds(self, finger: int, condition: str) -> bool:
+    def _hold(self, fingers: List[int], bits: int) -> bool:
         with self._network.sender.lock:
-            if not self._owner.is_applied(finger):
-                return False
-        bits = self._receiver.applied(finger)[1]
-        return condition == "applied" or bool(bits & _CONDITIONS[condition])
+            return all(self._owner.holds(finger, bits) for finger in fingers)
 
     def _check_fault(self, finger: int) -> None:
         # A wait goes on during a short pause of the line.
@@ -247,7 +243,8 @@ class RemoteHand(Reading):
         state = self._receiver.state(data)
         if state is not None:
             with self._network.sender.lock:
-                self._owner.heard(state.published, state.owner)
+                self._owner.heard(state)
+            self._receiver.notify()
 
     def _take_refusal(self, data: bytes) -> None:
         answer = _messages.read_answer(data)
@@ -255,8 +252,7 @@ class RemoteHand(Reading):
             self._receiver.answered(answer.time)
             with self._network.sender.lock:
                 self._owner.refused(answer)
-            with self._receiver.changed:
-                self._receiver.changed.notify_all()
+            self._receiver.notify()
 
     def _request(
         self, action: str, finger: int, epoch: int = 0, timeout: float = ANSWER_TIME, **flags: bool

@@ -9,7 +9,7 @@ from typing import Callable, Dict, Iterable, List, Optional, Tuple
 from .._errors import Closed, ErrorNumber, Refused
 from . import _messages
 from ._errors import NotOwner
-from ._messages import Answer, Part, Target
+from ._messages import Answer, Part, State, Target
 from ._receiver import Receiver
 from ._slot import Slot
 
@@ -30,6 +30,8 @@ class Owner:
         self._validity = 0
         #: The number of the epoch, and the server's time from which every State contains this number.
         self._number = self._since = 0
+        #: The number of restarts of the server's machine at the beginning of the epoch.
+        self._restarts = 0
         self._sequence = 0
         self._command = 0
         #: What is sent to the fingers that this client has commanded in this epoch.
@@ -45,18 +47,27 @@ class Owner:
         """Begins the epoch of an Answer to acquire."""
         self._epoch, self._validity = answer.epoch, answer.catch_ms
         self._number, self._since, self._sequence = answer.number, answer.time, 0
+        self._restarts = self._receiver.restarts
         self._slots, self._refusals = {}, {}
 
     def end(self) -> None:
         """Ends the epoch: nothing more is sent."""
         self._epoch = 0
 
-    def heard(self, published: int, owner: int) -> None:
-        """Processes what a State has shown: the number of the owner's epoch, and the applied commands."""
-        if published > self._since and owner != self._number:
+    def heard(self, state: State) -> None:
+        """Processes what a State has shown: the number of the owner's epoch, and the records of this epoch."""
+        if self._receiver.restarts != self._restarts:
             self._epoch = 0
+        # An earlier State shows another epoch, in which other clients had the same command numbers.
+        if self._epoch == 0 or state.published <= self._since:
+            return
+        if state.owner != self._number:
+            self._epoch = 0
+            return
         for finger, slot in self._slots.items():
-            slot.confirm(self._receiver.applied(finger)[0])
+            records = state.records[state.records["finger"] == finger]
+            if len(records) > 0:
+                slot.heard(int(records["command"][-1]), int(records["bits"][-1]))
 
     def refused(self, answer: Answer) -> None:
         """Processes the refusal of a Target: drops those of its set points that no State has confirmed."""
@@ -66,36 +77,29 @@ class Owner:
             if slot.refuse(answer.number):
                 self._refusals[finger] = answer.text
 
-    def take_refusal(self, fingers: Iterable[int]) -> None:
-        """Raises the refusal of an earlier command of these fingers, once.
-
-        Raises:
-            Refused: the server has refused what was sent before.
-        """
-        texts = {self._refusals.pop(finger) for finger in fingers if finger in self._refusals}
-        if texts:
-            raise Refused(" ".join(sorted(texts)), number=ErrorNumber.LIMIT)
-
     def commanded(self) -> List[int]:
         """Returns the fingers to which this client has sent something in this epoch."""
         return sorted(self._slots)
 
-    def is_applied(self, finger: int) -> bool:
-        """Returns whether something was sent to a finger, and the server has applied or refused all of it."""
+    def holds(self, finger: int, bits: int) -> bool:
+        """Returns whether something was sent to a finger in this epoch, the server has applied or refused all of it,
+        and the newest record has these bits."""
         slot = self._slots.get(finger)
-        return slot is not None and slot.is_applied
+        return slot is not None and slot.holds(bits)
 
     def check(self, fingers: Iterable[int]) -> None:
-        """Checks that commands for these fingers can be accepted.
+        """Checks that this client commands these fingers, and that none of its commands was refused.
 
         Raises:
             NotOwner: this client is not the owner.
-            Refused: the server has refused what was sent before.
+            Refused: the server has refused what was sent before. This is raised once.
         """
         if self._epoch == 0:
             remedy = "hand.acquire() gets the hand, if no other client owns it"
             raise NotOwner(f"this client does not command the hand. {remedy}.", number=5, remedy=remedy)
-        self.take_refusal(fingers)
+        texts = {self._refusals.pop(finger) for finger in fingers if finger in self._refusals}
+        if texts:
+            raise Refused(" ".join(sorted(texts)), number=ErrorNumber.LIMIT)
 
     def command(self, changes: List[Part]) -> None:
         """Accepts new set points. Each contains only the values that shall change. All other values stay the same."""

@@ -24,7 +24,8 @@ _KEPT_EVENTS = 4096
 #: Largest difference between the rates of two clocks.
 _DRIFT = 1e-3
 
-#: A step of the server's clock to an earlier time that no reordering of messages explains, ns.
+#: An Answer that is so much earlier than the newest State comes from a machine that was started again, ns. It cannot
+#: have been on its way for so long.
 _RESTARTED = 10_000_000_000
 
 Records = numpy.typing.NDArray[numpy.void]
@@ -46,8 +47,8 @@ class Receiver:
         self.changed = threading.Condition()
         #: The newest time of the server's clock that has arrived, ns: *seen* of the protocol.
         self.seen = 0
-        #: The number of the owner's epoch in the newest State.
-        self.owner = 0
+        #: Number of times that the server's clock has started anew, because its machine was started again.
+        self.restarts = 0
         #: Cycles that the server has not sent, and States that have not arrived.
         self.missing = [0, 0]
         self.closed = False
@@ -61,24 +62,23 @@ class Receiver:
         self._arrived = 0
 
     def state(self, data: bytes) -> Optional[State]:
-        """Takes a State. Returns None if it is malformed, or not newer than the newest State so far."""
+        """Takes a State. Returns None if it is malformed. Call `notify` when the State is processed."""
         state = _messages.read_state(data)
         with self.changed:
             if state is None:
                 return None
-            self._note_restart(state.published)
+            # States arrive in their order.
             if state.published <= self._published:
-                return None
+                self._restart()
             self._note_time(state.published)
             # A server that was started again counts from 1.
             if 0 < self._number < state.number:
                 self.missing[1] += state.number - self._number - 1
             self.missing[0] += state.missing
-            self._number, self._published, self.owner = state.number, state.published, state.owner
+            self._number, self._published = state.number, state.published
             for finger in (1, 2, 3):
                 self._note_finger(finger, state.records[state.records["finger"] == finger])
             self._states.append(state.records)
-            self.changed.notify_all()
         return state
 
     def _note_finger(self, finger: int, records: Records) -> None:
@@ -86,11 +86,17 @@ class Receiver:
             return
         self._newest[finger] = records[-1]
 
-    def _note_restart(self, published: int) -> None:
-        """Starts anew if the server's clock has started anew. The server's machine was then started again."""
-        if published < self._published - _RESTARTED:
-            self._number = self._published = self.seen = 0
-            self._offset = None
+    def notify(self) -> None:
+        """Makes waits look at what has changed."""
+        with self.changed:
+            self.changed.notify_all()
+
+    def _restart(self) -> None:
+        """Forgets what depends on the server's clock, which has started anew."""
+        self.restarts += 1
+        self._number = self._published = self.seen = 0
+        self._offset = None
+        self._newest.clear()
 
     def _note_time(self, published: int) -> None:
         now = time.monotonic_ns()
@@ -103,7 +109,8 @@ class Receiver:
     def answered(self, published: int) -> None:
         """Takes the time of an Answer."""
         with self.changed:
-            self._note_restart(published)
+            if published < self._published - _RESTARTED:
+                self._restart()
             self.seen = max(self.seen, published)
 
     def event(self, data: bytes) -> None:
@@ -171,12 +178,6 @@ class Receiver:
             remedy = "Check the line and sun2xp serve, or allow older data with stale"
             raise Stale(f"{known}, and {stale * 1e3:.0f} ms are allowed. {remedy}.", number=14, remedy=remedy)
         return record
-
-    def applied(self, finger: int) -> tuple:
-        """Returns the number of the command that the server has applied last to a finger, and the bits of the newest
-        record."""
-        record = self._newest.get(finger)
-        return (0, 0) if record is None else (int(record["command"]), int(record["bits"]))
 
     def take(self) -> List[Records]:
         """Returns the records of the States that have arrived since the last call."""

@@ -30,16 +30,20 @@ class Slot:
         #: Changes that no Target has yet.
         self._waiting: Optional[Part] = None
         self._open: List[_Command] = []
+        #: Bits of the newest record of this epoch; None if there is none yet.
+        self._bits: Optional[int] = None
 
     @property
     def waits(self) -> bool:
         """Whether there are changes that no Target has yet."""
         return self._waiting is not None
 
-    @property
-    def is_applied(self) -> bool:
-        """Whether a State has confirmed everything that was sent and not refused."""
-        return not self._open and not self.waits
+    def holds(self, bits: int) -> bool:
+        """Returns whether States have confirmed everything that was sent and not refused, and the newest record has
+        these bits."""
+        if self._open or self.waits or self._bits is None:
+            return False
+        return self._bits & bits == bits
 
     @property
     def is_blocked(self) -> bool:
@@ -67,8 +71,9 @@ class Slot:
             _fill(self.part, earlier.change)
         self._open.append(_Command(change, self.part, sequence))
 
-    def confirm(self, command: int) -> None:
-        """Notes that a State has shown this command number."""
+    def heard(self, command: int, bits: int) -> None:
+        """Processes a record of this epoch. The commands up to its command number are confirmed."""
+        self._bits = bits
         numbers = [sent.part.command for sent in self._open]
         if command in numbers:
             del self._open[: numbers.index(command) + 1]
