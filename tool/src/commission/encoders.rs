@@ -2,7 +2,7 @@
 
 use super::desk::Desk;
 use super::machine::Refused;
-use super::order::{is_exchange, repeats};
+use super::order::{is_exchange, name_the_missing, repeats};
 use super::outcome::Outcome;
 use super::person::{Act, Answer};
 use super::wrong::Wrong;
@@ -45,7 +45,7 @@ pub fn encoders(desk: &mut Desk) -> Result<Outcome, Failure> {
         }
     }
     let seen = order;
-    name_the_missing(&mut outcome, &mut order);
+    name_the_missing(&mut outcome, &mut order, Wrong::EncoderDead);
     let unclear = outcome.wrong.iter().any(|wrong| matches!(wrong, Wrong::EncoderUnclear(..)));
     if repeats(seen) || (is_exchange(order) && unclear) {
         // The person may have turned another motor, or two of them.
@@ -74,22 +74,6 @@ fn report(desk: &Desk, outcome: &mut Outcome) {
     outcome.found(format!("each encoder counts with its motor; signs {signs}, counts per turn {counts}"));
     outcome.about("encoder.sign", "motors turned by hand so that their tendons came loose");
     outcome.about("encoder.counts_per_revolution", "counts of one turn by hand, to the nearest usual ratio");
-}
-
-/// If exactly one motor turned no encoder, and exactly one encoder was turned by no motor, the two belong together.
-/// Adds this encoder to the order, which is then complete.
-fn name_the_missing(outcome: &mut Outcome, order: &mut [usize; 4]) {
-    let missing: Vec<usize> = (0..4).filter(|&motor| order[motor] == 0).collect();
-    let unused: Vec<usize> = (1..=4).filter(|encoder| !order.contains(encoder)).collect();
-    if let ([motor], [encoder]) = (&missing[..], &unused[..]) {
-        order[*motor] = *encoder;
-        // The dead encoder is the one that no motor turned.
-        for wrong in &mut outcome.wrong {
-            if *wrong == Wrong::EncoderDead(motor + 1) {
-                *wrong = Wrong::EncoderDead(*encoder);
-            }
-        }
-    }
 }
 
 /// Asks for one turn of a motor, and reads which encoder followed.

@@ -3,7 +3,7 @@
 use super::desk::Desk;
 use super::line::Line;
 use super::machine::Reading;
-use super::order::{is_exchange, repeats};
+use super::order::{is_exchange, name_the_missing, repeats};
 use super::outcome::Outcome;
 use super::person::{Act, Answer};
 use super::wrong::Wrong;
@@ -69,7 +69,7 @@ pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
         lines[gauge] = Some(line);
     }
     let seen = order;
-    name_the_missing(&mut outcome, &mut order);
+    name_the_missing(&mut outcome, &mut order, Wrong::GaugeDead);
     for (gauge, line) in lines.iter().enumerate() {
         if let Some(line) = line {
             judge(desk, &mut outcome, gauge, line, &empty);
@@ -101,20 +101,6 @@ fn name_the_order(outcome: &mut Outcome, seen: [usize; 4], order: [usize; 4]) {
     } else if is_exchange(order) {
         outcome.wrong.retain(|wrong| !wrong.compensated());
         outcome.wrong.insert(0, Wrong::GaugesExchanged(order));
-    }
-}
-
-/// If only one tendon has no gauge, and only one gauge has no tendon, this gauge is dead and belongs to this tendon.
-fn name_the_missing(outcome: &mut Outcome, order: &mut [usize; 4]) {
-    let missing: Vec<usize> = (0..4).filter(|&tendon| order[tendon] == 0).collect();
-    let unused: Vec<usize> = (1..=4).filter(|gauge| !order.contains(gauge)).collect();
-    if let ([tendon], [gauge]) = (&missing[..], &unused[..]) {
-        order[*tendon] = *gauge;
-        for wrong in &mut outcome.wrong {
-            if *wrong == Wrong::GaugeDead(tendon + 1) {
-                *wrong = Wrong::GaugeDead(*gauge);
-            }
-        }
     }
 }
 

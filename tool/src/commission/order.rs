@@ -1,5 +1,8 @@
 //! The order of parts: which encoder or gauge responds at the place of each number.
 
+use super::outcome::Outcome;
+use super::wrong::Wrong;
+
 /// The order of a finger whose parts are all at their places.
 pub const RIGHT: [usize; 4] = [1, 2, 3, 4];
 
@@ -13,6 +16,22 @@ pub fn is_exchange(order: [usize; 4]) -> bool {
 /// Whether a part answers at two places. 0 means that no part answers.
 pub fn repeats(order: [usize; 4]) -> bool {
     (1..=4).any(|part| order.iter().filter(|&&found| found == part).count() > 1)
+}
+
+/// If exactly one motor or tendon has no sensor in `order`, and exactly one sensor is not in `order`, the two belong
+/// together. Adds this sensor to the order, which is then complete. If the sensor was reported as `dead` under the
+/// number of the motor or tendon, it gets its own number.
+pub fn name_the_missing(outcome: &mut Outcome, order: &mut [usize; 4], dead: fn(usize) -> Wrong) {
+    let missing: Vec<usize> = (0..4).filter(|&place| order[place] == 0).collect();
+    let unused: Vec<usize> = (1..=4).filter(|sensor| !order.contains(sensor)).collect();
+    if let ([place], [sensor]) = (&missing[..], &unused[..]) {
+        order[*place] = *sensor;
+        for wrong in &mut outcome.wrong {
+            if *wrong == dead(place + 1) {
+                *wrong = dead(*sensor);
+            }
+        }
+    }
 }
 
 #[cfg(test)]
