@@ -18,6 +18,9 @@ use sun2xp_remote_protocol::{Action, Answer, ClientName, Code, DecodeError, Fing
 /// Interval at which recoveries are polled.
 const POLLED: Duration = Duration::from_millis(2);
 
+/// The text of an Answer to a client that does not own the hand.
+const NOT_OWNED: &str = "you do not own the hand, or the epoch of the request is old: acquire the hand first";
+
 /// Answers a Request. `reply` sends the Answer, at once or later. `client` is the client whose key the Request has.
 pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload: &[u8], reply: impl Reply) {
     let refuse = |code, text: String| shared.desk.lock().answer(code, text, 0, now());
@@ -69,18 +72,20 @@ fn carry_out(shared: &Arc<Shared>, request: &Request, client: ClientName, reply:
             return reply.send(&answer);
         }
         _ if !owned => {
-            let text = "you do not own the hand, or the epoch of the request is old: acquire the hand first".into();
-            let answer = shared.desk.lock().answer(Code::NotOwner, text, request.epoch, time);
+            let answer = shared.desk.lock().answer(Code::NotOwner, NOT_OWNED.into(), request.epoch, time);
             return reply.send(&answer);
         }
         Action::Release => {
             let mut desk = shared.desk.lock();
             // Another client may have taken the hand over since.
-            let code = if desk.admits(&client, request.epoch) { Code::Done } else { Code::NotOwner };
+            let (code, text) = match desk.admits(&client, request.epoch) {
+                true => (Code::Done, ""),
+                false => (Code::NotOwner, NOT_OWNED),
+            };
             if code == Code::Done {
                 desk.release();
             }
-            let answer = desk.answer(code, String::new(), request.epoch, time);
+            let answer = desk.answer(code, text.into(), request.epoch, time);
             drop(desk);
             return reply.send(&answer);
         }
