@@ -2044,8 +2044,8 @@ int sun2xp_wait_event(sun2xp_hand *hand, struct sun2xp_event *event, double seco
  The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 
  When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
- called again. If the callback itself makes one of these calls, the call does not wait for the callback.
- The callback is not called again after it has returned.
+ called again. If a callback makes one of these calls, the call does not wait. A previous callback that
+ runs then is not called again after it has returned.
 
  Returns 0, or a negative number with
    EPERM    forked child

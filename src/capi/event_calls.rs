@@ -14,6 +14,7 @@ use crate::capi::remote_hand::RemoteHand;
 use crate::capi::sized_struct::fill_next;
 use crate::capi::status_calls::count;
 use crate::events::{self, EventQueue};
+use crate::hand::HandError;
 use std::ffi::{c_int, c_void};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI32, Ordering};
@@ -114,8 +115,8 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
 /// The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 ///
 /// When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
-/// called again. If the callback itself makes one of these calls, the call does not wait for the callback.
-/// The callback is not called again after it has returned.
+/// called again. If a callback makes one of these calls, the call does not wait. A previous callback that
+/// runs then is not called again after it has returned.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -152,13 +153,15 @@ pub extern "C" fn sun2xp_on_event(
         });
         Ok(move || {
             let events = hand_table::events(hand)?;
-            let start = |callback| hand_table::with(hand, |hand| events.listener(hand, callback));
-            // An open hand is needed to remove a callback too.
-            let listener = match callback {
-                Some(callback) => Some(start(callback)?),
-                None => hand_table::with(hand, |_| Ok::<_, Refusal>(None))?,
-            };
-            events.replace(listener, in_callback);
+            // The hand stays open until the callback is replaced. Otherwise this call could replace the callback of a
+            // hand that is opened at the same place of the table meanwhile.
+            let previous = hand_table::with(hand, |hand| {
+                let listener = callback.map(|callback| events.listener(hand, callback)).transpose()?;
+                Ok::<_, HandError>(events.replace(listener))
+            })?;
+            if let Some(previous) = previous {
+                previous.end(in_callback);
+            }
             Ok(())
         })
     })

@@ -16,9 +16,16 @@ pub(super) struct HandEvents {
     /// The queue of the open hand. It is shared, so that a thread that waits for an event does not delay closing.
     queue: RwLock<Option<(Handle, Arc<EventQueue>)>>,
     /// The callback of the open hand.
-    listener: Mutex<Option<EventListener>>,
+    listener: Mutex<Option<Listener>>,
     /// Locked while the planner's callback runs. The exit handler waits for it.
     calling: Mutex<()>,
+}
+
+/// A thread that calls a planner's function.
+pub(super) struct Listener {
+    thread: EventListener,
+    /// Set when the function must not be called again.
+    removed: Arc<AtomicBool>,
 }
 
 /// Set when the process exits. From then on no callback of the planner is called.
@@ -42,7 +49,9 @@ impl HandEvents {
     /// Ends the callback and the queue of a hand that is closed. Waits until the callback has returned, unless
     /// `in_callback` is true.
     pub fn close(&self, in_callback: bool) {
-        self.replace(None, in_callback);
+        if let Some(listener) = self.replace(None) {
+            listener.end(in_callback);
+        }
         drop(self.queue.write().take());
     }
 
@@ -72,29 +81,38 @@ impl HandEvents {
         &'static self,
         hand: &Hand,
         callback: impl FnMut(&Event, u64) + Send + 'static,
-    ) -> Result<EventListener, HandError> {
-        hand.on_event(self.guarded(callback))
+    ) -> Result<Listener, HandError> {
+        let removed = Arc::new(AtomicBool::new(false));
+        let thread = hand.on_event(self.guarded(removed.clone(), callback))?;
+        Ok(Listener { thread, removed })
     }
 
-    /// Replaces the callback. Waits until the previous one has returned, unless `in_callback` is true. The caller must
-    /// hold no lock, because the previous callback may make calls that need it.
-    pub fn replace(&self, listener: Option<EventListener>, in_callback: bool) {
-        let previous = std::mem::replace(&mut *self.listener.lock(), listener);
-        match previous {
-            Some(previous) if in_callback => previous.detach(),
-            previous => drop(previous),
-        }
+    /// Replaces the callback. Returns the previous one, which the caller ends without holding a lock.
+    pub fn replace(&self, listener: Option<Listener>) -> Option<Listener> {
+        std::mem::replace(&mut *self.listener.lock(), listener)
     }
 
     /// Wraps the planner's callback in a function that tells [`in_callback`] and [`end`] whether the callback runs.
-    fn guarded(&'static self, mut callback: impl FnMut(&Event, u64)) -> impl FnMut(&Event, u64) {
+    fn guarded(&self, removed: Arc<AtomicBool>, mut callback: impl FnMut(&Event, u64)) -> impl FnMut(&Event, u64) {
         move |event, lost| {
             let _calling = self.calling.lock();
-            if !ENDED.load(Ordering::Acquire) {
+            // Both can have changed while this thread waited for the lock.
+            if !ENDED.load(Ordering::Acquire) && !removed.load(Ordering::Acquire) {
                 IN_CALLBACK.set(true);
                 callback(event, lost);
                 IN_CALLBACK.set(false);
             }
+        }
+    }
+}
+
+impl Listener {
+    /// Ends the calls of the function. Waits until the function has returned, unless `in_callback` is true. The caller
+    /// must hold no lock, because the function may make calls that need it.
+    pub fn end(self, in_callback: bool) {
+        self.removed.store(true, Ordering::Release);
+        if in_callback {
+            self.thread.detach();
         }
     }
 }
@@ -111,5 +129,26 @@ pub(super) fn end<'a>(limit: Duration, hands: impl Iterator<Item = &'a HandEvent
     ENDED.store(true, Ordering::Release);
     if !in_callback() {
         hands.for_each(|events| drop(try_for(limit, || events.calling.try_lock())));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::events::EventKind;
+    use crate::model::{FingerNumber, Part};
+
+    /// A listener can be ended in a callback while its own thread waits for the lock of the callbacks.
+    #[test]
+    fn a_removed_callback_is_not_called() {
+        let (finger, kind, part) = (FingerNumber::ONE, EventKind::Settled, Part::Finger);
+        let event = Event { finger, cycle: 7, time: 7_000_000, kind, part, values: [0.0; 4] };
+        let (events, removed, mut calls) = (HandEvents::new(), Arc::new(AtomicBool::new(false)), 0);
+        let mut guarded = events.guarded(removed.clone(), |_, _| calls += 1);
+        guarded(&event, 0);
+        removed.store(true, Ordering::Release);
+        guarded(&event, 0);
+        drop(guarded);
+        assert_eq!(calls, 1);
     }
 }
