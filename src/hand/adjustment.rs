@@ -97,7 +97,9 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
             }
             Ok::<(), SetPointError>(())
         };
-        member.mailbox.try_send((replaced, Validity::default()), clamp).map_err(faulted)??;
+        // This is refused only if the finger has faulted since the controller was replaced. A finger that has faulted
+        // has no set point that could be outside the limits, and recovers with the new controller.
+        let _ = member.mailbox.try_send((replaced, Validity::default()), clamp);
     }
     *admission = changed;
     Ok(())
