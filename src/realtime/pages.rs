@@ -35,11 +35,16 @@ unsafe impl<T: ?Sized + Send + Sync> Sync for SharedPages<T> {}
 impl<T> Pages<T> {
     /// Moves a value into pages of its own.
     pub fn new(value: T) -> Self {
-        let mapping = Mapping::new(Layout::new::<T>());
+        Self::try_new(value).unwrap_or_else(|| handle_alloc_error(Layout::new::<T>()))
+    }
+
+    /// As [`Pages::new`]. Returns none if the system has no memory.
+    pub(super) fn try_new(value: T) -> Option<Self> {
+        let mapping = Mapping::new(Layout::new::<T>())?;
         let place = mapping.start.cast();
         // SAFETY: the mapping has room for the value and is empty.
         unsafe { place.write(value) };
-        Self { place, mapping }
+        Some(Self { place, mapping })
     }
 }
 
@@ -143,24 +148,21 @@ struct Mapping {
 
 impl Mapping {
     fn for_many<T>(count: usize) -> Self {
-        match Layout::array::<T>(count) {
-            Ok(layout) => Self::new(layout),
-            Err(_) => handle_alloc_error(Layout::new::<T>()),
-        }
+        let layout = Layout::array::<T>(count).unwrap_or_else(|_| handle_alloc_error(Layout::new::<T>()));
+        Self::new(layout).unwrap_or_else(|| handle_alloc_error(layout))
     }
 
-    /// Maps enough pages for a value of this layout. MAP_POPULATE makes every page present.
-    fn new(layout: Layout) -> Self {
+    /// Maps enough pages for a value of this layout. MAP_POPULATE makes every page present. Returns none if the system
+    /// has no memory.
+    fn new(layout: Layout) -> Option<Self> {
         let bytes = layout.size().max(1).next_multiple_of(page_size());
         assert!(layout.align() <= page_size(), "the alignment of a value is at most the page size");
         let protection = libc::PROT_READ | libc::PROT_WRITE;
         let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | libc::MAP_POPULATE;
         // SAFETY: the mapping is new, and the system chooses its address.
         let start = unsafe { libc::mmap(std::ptr::null_mut(), bytes, protection, kind, -1, 0) };
-        match NonNull::new(start.cast()).filter(|_| start != libc::MAP_FAILED) {
-            Some(start) => Self { start, bytes },
-            None => handle_alloc_error(layout),
-        }
+        let start = NonNull::new(start.cast()).filter(|_| start != libc::MAP_FAILED)?;
+        Some(Self { start, bytes })
     }
 }
 
