@@ -30,10 +30,8 @@ impl Exchange {
 
     /// Takes a State that was received.
     pub fn take_state(&mut self, state: &State, now: u64) {
-        if !self.view.take_state(state, now) {
-            self.outbox.lose(Loss::Restarted);
-        }
-        self.outbox.heard(state.time, state.owner);
+        let continued = self.view.take_state(state, now);
+        self.outbox.heard(state.time, state.owner, continued);
         if self.outbox.ownership().is_ok_and(|ownership| ownership.number == state.owner) {
             for record in &state.records {
                 self.outbox.confirm(record.finger, record.command);

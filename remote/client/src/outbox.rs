@@ -12,6 +12,10 @@ pub const REPETITION: u64 = 20_000_000;
 /// planner sends without a pause.
 const LEAST_INTERVAL: u64 = 500_000;
 
+/// A State that is so much earlier than an Answer comes from a machine that was started again, ns. A State cannot be on
+/// its way for so long.
+const RESTARTED: u64 = 10_000_000_000;
+
 /// The ownership of the hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ownership {
@@ -81,15 +85,20 @@ impl Outbox {
         }
     }
 
-    /// Notes the time and the owner of a State that was received.
-    pub fn heard(&mut self, time: u64, owner: u64) {
-        self.seen = self.seen.max(time);
-        if let Ok(Ownership { number, since, .. }) = self.ownership
-            && time > since
-            && owner != number
-        {
-            self.lose(if owner == 0 { Loss::Ended } else { Loss::TakenOver });
+    /// Notes the time and the owner of a State that was received. `continued` is false if the server was started again
+    /// since the State before.
+    pub fn heard(&mut self, time: u64, owner: u64, continued: bool) {
+        if let Ok(Ownership { number, since, .. }) = self.ownership {
+            // A State that is not later than the Answer may show an earlier owner. It may also be the first State of a
+            // server that was started again and has given this epoch.
+            let lost = if time > since { owner != number } else { since - time > RESTARTED };
+            match (lost, continued) {
+                (false, _) => {}
+                (true, false) => self.lose(Loss::Restarted),
+                (true, true) => self.lose(if owner == 0 { Loss::Ended } else { Loss::TakenOver }),
+            }
         }
+        self.seen = self.seen.max(time);
     }
 
     /// Notes that a record of this owner has shown the command number.
@@ -155,7 +164,7 @@ impl Outbox {
             stamp = self.stamp.take().unwrap_or(now);
             for slot in self.slots.iter_mut().filter(|slot| slot.waits()) {
                 self.command = self.command.checked_add(1).unwrap_or(1);
-                slot.renew(self.command);
+                slot.renew(self.command, self.sequence + 1);
             }
         }
         // The time stamps of Targets must never decrease.
@@ -163,7 +172,7 @@ impl Outbox {
         self.sequence += 1;
         self.sent = Some((now, stamp));
         let sequence = self.sequence;
-        let parts = Finger::ALL.iter().zip(&mut self.slots).filter_map(|(&finger, slot)| slot.part(finger, sequence));
+        let parts = Finger::ALL.iter().zip(&self.slots).filter_map(|(&finger, slot)| slot.part(finger));
         let parts = parts.collect();
         let validity_ms = catch_ms.clamp(1, LONGEST_VALIDITY_MS);
         Some(Target { validity_ms, epoch, sequence, sent: stamp, seen: self.seen, parts })

@@ -1,6 +1,7 @@
 //! What is sent to one finger.
 
 use crate::change::Change;
+use std::collections::VecDeque;
 use sun2xp_remote_protocol::{Finger, Part, Place};
 
 /// What is sent to one finger: the part that Targets contain, and the changes that are not in this part yet.
@@ -8,18 +9,20 @@ use sun2xp_remote_protocol::{Finger, Part, Place};
 pub struct Slot {
     /// Changes that no Target has yet.
     pending: Change,
-    /// The part that Targets repeat; none if the finger was not commanded.
-    part: Option<Repeated>,
+    /// The command number and the values of the part that Targets repeat; none if the finger was not commanded, or if
+    /// the newest part was refused.
+    part: Option<(u32, Change)>,
+    /// What was sent and is not confirmed, the oldest first.
+    unconfirmed: VecDeque<Sent>,
 }
 
+/// A change that was sent.
 #[derive(Clone, Debug)]
-struct Repeated {
+struct Sent {
+    change: Change,
     command: u32,
-    values: Change,
-    /// The first Target with this part; 0 if there is none yet.
+    /// The first Target with this change.
     sequence: u64,
-    /// Whether a record has shown its command number.
-    confirmed: bool,
 }
 
 impl Slot {
@@ -34,52 +37,50 @@ impl Slot {
 
     /// Whether a record has shown everything that was sent.
     pub fn is_applied(&self) -> bool {
-        !self.waits() && self.part.as_ref().is_none_or(|part| part.confirmed)
+        !self.waits() && self.unconfirmed.is_empty()
     }
 
     /// Whether the waiting changes must not be sent yet, because a path was sent and is not confirmed. If the path were
     /// repeated with the changes, it could begin twice. If it were left out, it could be lost.
     pub fn is_blocked(&self) -> bool {
-        let unconfirmed_path =
-            |part: &Repeated| !part.confirmed && part.sequence != 0 && matches!(part.values.place, Place::Path(_));
-        self.waits() && self.pending.place == Place::Kept && self.part.as_ref().is_some_and(unconfirmed_path)
+        let path = matches!(&self.part, Some((_, values)) if matches!(values.place, Place::Path(_)));
+        self.waits() && self.pending.place == Place::Kept && path && !self.unconfirmed.is_empty()
     }
 
-    /// Makes a part with a new command number. It contains the waiting changes, and everything that no record has
-    /// confirmed.
-    pub fn renew(&mut self, command: u32) {
-        let mut values = match self.part.take() {
-            Some(part) if !part.confirmed => part.values,
-            _ => Change::default(),
-        };
-        values.add(std::mem::take(&mut self.pending));
-        self.part = Some(Repeated { command, values, sequence: 0, confirmed: false });
+    /// Makes a part with a new command number, for the Target with this sequence number. The part contains the waiting
+    /// changes, and everything that no record has confirmed.
+    pub fn renew(&mut self, command: u32, sequence: u64) {
+        self.unconfirmed.push_back(Sent { change: std::mem::take(&mut self.pending), command, sequence });
+        let mut values = Change::default();
+        self.unconfirmed.iter().for_each(|sent| values.add(sent.change.clone()));
+        self.part = Some((command, values));
     }
 
-    /// The part of the Target with this sequence number.
-    pub fn part(&mut self, finger: Finger, sequence: u64) -> Option<Part> {
-        let part = self.part.as_mut()?;
-        if part.sequence == 0 {
-            part.sequence = sequence;
-        }
-        let Change { place, stiffness, damping } = part.values.clone();
-        Some(Part { finger, command: part.command, place, stiffness, damping })
+    /// The part of the next Target.
+    pub fn part(&self, finger: Finger) -> Option<Part> {
+        let (command, Change { place, stiffness, damping }) = self.part.clone()?;
+        Some(Part { finger, command, place, stiffness, damping })
     }
 
-    /// Notes that a record has shown this command number.
+    /// Notes that a record has shown this command number. Earlier changes were in the same part.
     pub fn confirm(&mut self, command: u32) {
-        if let Some(part) = self.part.as_mut().filter(|part| part.command == command) {
-            part.confirmed = true;
+        if let Some(place) = self.unconfirmed.iter().position(|sent| sent.command == command) {
+            self.unconfirmed.drain(..=place);
         }
     }
 
-    /// Drops the part if it was in the refused Target with this sequence number, and is not confirmed.
+    /// Drops the changes that were in the refused Target with this sequence number, and are not confirmed. Later
+    /// changes are kept: if they were sent together with the dropped ones, their own Target is refused too.
     pub fn refuse(&mut self, sequence: u64) {
-        self.part.take_if(|part| !part.confirmed && part.sequence != 0 && part.sequence <= sequence);
+        let before = self.unconfirmed.len();
+        self.unconfirmed.retain(|sent| sent.sequence > sequence);
+        if self.unconfirmed.is_empty() && before > 0 {
+            self.part = None;
+        }
     }
 
-    /// The first Target with a part that no record has confirmed.
+    /// The first Target with a change that no record has confirmed.
     pub fn first_unconfirmed(&self) -> Option<u64> {
-        self.part.as_ref().filter(|part| !part.confirmed && part.sequence != 0).map(|part| part.sequence)
+        self.unconfirmed.front().map(|sent| sent.sequence)
     }
 }

@@ -1,5 +1,7 @@
 //! What calls report, in simulated time.
 
+mod ownership;
+
 use super::*;
 use crate::command::FingerCommand;
 use crate::error::RemoteErrorKind;
@@ -206,30 +208,6 @@ fn set_points_are_not_sent_into_silence() {
     assert!(text.starts_with("nothing was heard of the hand left for 101 ms"), "{text}");
     assert_eq!(exchange.status(3010 * MS).map(|status| status.catch_ms).ok(), Some(100));
     assert_eq!(exchange.status(3011 * MS).expect_err("old").kind(), RemoteErrorKind::NotConnected);
-}
-
-#[test]
-fn a_client_that_lost_the_hand_is_told_why() {
-    let mut exchange = owner();
-    exchange.take_state(&State { owner: 3, ..state(2, 11 * MS, Stage::Running) }, 11 * MS);
-    let (kind, text) = refused(send(&mut exchange, good(1), 11 * MS));
-    assert_eq!(kind, RemoteErrorKind::NotOwner);
-    assert!(text.contains("another client has acquired it"), "{text}");
-    assert!(exchange.moving(1, 11 * MS).is_ok(), "it can still read");
-}
-
-#[test]
-fn a_server_that_was_started_again_is_noticed() {
-    for restarted in [state(1, 20 * MS, Stage::Running), State { time: 7 * MS, ..state(9, 0, Stage::Running) }] {
-        let mut exchange = owner();
-        exchange.take_state(&restarted, 30 * MS);
-        let (kind, text) = refused(send(&mut exchange, good(1), 30 * MS));
-        assert!(kind == RemoteErrorKind::NotOwner && text.contains("the server was started again"), "{text}");
-    }
-    let mut exchange = owner();
-    let other = State { owner: 0, ..state(9, 20 * MS, Stage::Running) };
-    exchange.take_state(&other, 30 * MS);
-    assert!(refused(send(&mut exchange, good(1), 30 * MS)).1.contains("the server has ended its ownership"));
 }
 
 #[test]

@@ -62,7 +62,7 @@ fn an_owner_that_commands_nothing_says_that_it_lives() {
     assert_eq!((target.epoch, target.sequence, target.validity_ms, target.seen), (77, 1, 100, 1000 * MS));
     assert!(target.parts.is_empty());
     assert_eq!(outbox.next(19 * MS), None);
-    outbox.heard(1010 * MS, 5);
+    outbox.heard(1010 * MS, 5, true);
     let target = outbox.next(20 * MS).expect("after 20 ms");
     assert_eq!((target.sequence, target.sent, target.seen), (2, 20 * MS, 1010 * MS));
     assert_eq!(outbox.due(), Some(40 * MS));
@@ -104,11 +104,15 @@ fn what_is_not_confirmed_is_sent_with_the_next_change() {
     outbox.put(stiffness(), None);
     let both = part(&mut outbox, MS);
     assert_eq!((both.command, &both.place, both.stiffness), (2, &Place::Joints([0.5; 3]), Some(KX)));
-    // A confirmation of the earlier part does not confirm this one.
-    outbox.confirm(ONE, 1);
     outbox.put(changes(Change::of(&FingerCommand::new(1).damping(0.5))), None);
     let all = part(&mut outbox, 2 * MS);
     assert_eq!((&all.place, all.stiffness, all.damping), (&Place::Joints([0.5; 3]), Some(KX), Some(0.5)));
+    // A confirmation of the first part does not confirm what came later.
+    outbox.confirm(ONE, 1);
+    assert!(!outbox.is_applied(ONE));
+    outbox.put(changes(Change::of(&FingerCommand::new(1).damping(0.75))), None);
+    let later = part(&mut outbox, 3 * MS);
+    assert_eq!((&later.place, later.stiffness, later.damping), (&Place::Kept, Some(KX), Some(0.75)));
 }
 
 #[test]
@@ -175,6 +179,26 @@ fn refused_values_are_not_sent_again() {
     assert_eq!(part(&mut outbox, 21 * MS).place, Place::Kept);
 }
 
+/// A refusal arrives while later set points are on the way, so the newest Target is never the refused one.
+#[test]
+fn later_set_points_do_not_contain_a_refused_value_for_ever() {
+    let mut outbox = owner();
+    outbox.put(stiffness(), None);
+    part(&mut outbox, 0);
+    for number in 1..=20 {
+        outbox.put(joints(f64::from(number)), None);
+        let sent = part(&mut outbox, u64::from(number as u32) * MS);
+        // The refusal of a Target arrives after the next two.
+        assert_eq!(sent.stiffness.is_some(), number <= 2, "set point {number}");
+        match number {
+            1 => {}
+            2 | 3 => outbox.refused(&answer(Code::Argument, number as u64 - 1)),
+            _ => outbox.confirm(ONE, sent.command - 1),
+        }
+    }
+    assert_eq!(part(&mut outbox, 40 * MS).place, Place::Joints([20.0; 3]));
+}
+
 /// On a long line, a Target is repeated before its refusal arrives.
 #[test]
 fn the_refusals_of_repeated_targets_are_reported_once() {
@@ -213,14 +237,14 @@ fn a_refusal_does_not_concern_later_or_confirmed_values() {
 #[test]
 fn the_owner_notices_that_it_has_lost_the_hand() {
     let mut outbox = owner();
-    outbox.heard(1000 * MS, 4);
+    outbox.heard(1000 * MS, 4, true);
     assert!(outbox.ownership().is_ok(), "that State was older than the Answer");
-    outbox.heard(1001 * MS, 5);
+    outbox.heard(1001 * MS, 5, true);
     assert!(outbox.ownership().is_ok());
-    outbox.heard(1002 * MS, 6);
+    outbox.heard(1002 * MS, 6, true);
     assert_eq!(outbox.ownership(), Err(Loss::TakenOver));
     let mut outbox = owner();
-    outbox.heard(1002 * MS, 0);
+    outbox.heard(1002 * MS, 0, true);
     assert_eq!(outbox.ownership(), Err(Loss::Ended));
 }
 

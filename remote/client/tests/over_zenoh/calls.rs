@@ -213,6 +213,20 @@ fn hands_are_found_and_commanded_together() {
     assert_eq!(places, [(TWO, Place::Joints([0.75; 3])), (ONE, Place::Joints([0.5; 3]))], "and nothing before it");
 }
 
+/// Just after a client has connected, Zenoh may not know the way to the server yet.
+#[test]
+fn a_request_that_reaches_nobody_is_repeated() {
+    let port = free_port();
+    let server = FakeServer::start(port, &["left"]);
+    server.hand().lock().unanswered = 2;
+    let hand = RemoteHand::open(&configuration(port, "left", "planner")).expect("open");
+    assert!(hand.is_owner());
+    server.hand().lock().unanswered = usize::MAX;
+    let error = hand.recover(None).expect_err("nobody answers");
+    assert_eq!(error.kind(), RemoteErrorKind::NotConnected);
+    assert!(error.to_string().contains("the request `recover` has no answer. Check the line"), "{error}");
+}
+
 #[test]
 fn what_cannot_be_opened_says_why() {
     let port = free_port();

@@ -24,6 +24,8 @@ pub struct FakeHand {
     pub refuse: Option<String>,
     /// The events to publish, the last one first.
     pub events: Vec<Event>,
+    /// Number of Requests that get no answer, as if they had reached nobody.
+    pub unanswered: usize,
     /// The version byte of its Status.
     pub version: u8,
     /// Whether the server publishes nothing.
@@ -46,6 +48,7 @@ impl FakeHand {
             stage: Stage::Running,
             refuse: None,
             events: Vec::new(),
+            unanswered: 0,
             version: 1,
             silent: false,
             ended: false,

@@ -146,7 +146,13 @@ fn serve(session: &Session, name: &str) -> Arc<Watched> {
         let answer = move |query: zenoh::query::Query| {
             let client = hand.keys.client_of_request(action, query.key_expr()).expect("a client");
             let payload = query.payload().expect("a payload").to_bytes().into_owned();
-            let answer = hand.lock().answer(&client, &payload);
+            let mut locked = hand.lock();
+            if locked.unanswered > 0 {
+                locked.unanswered -= 1;
+                return;
+            }
+            let answer = locked.answer(&client, &payload);
+            drop(locked);
             hand.changed.notify_all();
             query.reply(query.key_expr().clone(), answer).wait().expect("a reply");
         };
