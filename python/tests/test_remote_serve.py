@@ -22,6 +22,9 @@ pytestmark = pytest.mark.skipif(SERVER is None, reason="SUN2XP_SERVE does not na
 
 HOME = [0.0, 0.6, 0.9]
 
+#: Allowed age of the data that a client reads, s. The machine may be busy. test_remote.py tests old data.
+STALE = 1.0
+
 
 def free_port():
     with socket.socket() as probe:
@@ -69,7 +72,7 @@ def endpoint(tmp_path):
 
 
 def test_a_finger_is_moved_held_and_read(endpoint):
-    with sun2xp.remote.open("hand", endpoint) as hand:
+    with sun2xp.remote.open("hand", endpoint, stale=STALE) as hand:
         assert list(sun2xp.remote.discover(endpoint)) == ["hand"]
         hand.send_group([sun2xp.SetPoint(finger, position=HOME) for finger in hand.fingers])
         hand.send_stiffness(1, numpy.diag([2.0, 2.0, 1.0]))
@@ -83,7 +86,7 @@ def test_a_finger_is_moved_held_and_read(endpoint):
         with pytest.raises(sun2xp.Refused):
             hand.send_tip(2, [100.0, 0.0, 0.0])
             hand.wait(2, timeout=10)
-        with sun2xp.remote.open("hand", endpoint, client="screen", read_only=True, stale=1.0) as screen:
+        with sun2xp.remote.open("hand", endpoint, client="screen", read_only=True, stale=STALE) as screen:
             assert abs(screen.position(1) - HOME).max() < 0.05
             with pytest.raises(sun2xp.remote.NotOwner):
                 screen.acquire(take_over=True)
@@ -103,7 +106,7 @@ def test_a_finger_is_moved_held_and_read(endpoint):
 def test_a_planner_that_is_stopped_loses_the_hand(endpoint):
     program = (
         "import sun2xp.remote, sys, time\n"
-        "hand = sun2xp.remote.open('hand', sys.argv[1])\n"
+        f"hand = sun2xp.remote.open('hand', sys.argv[1], stale={STALE})\n"
         f"hand.send_position(1, {HOME})\n"
         "hand.wait(1, timeout=30)\n"
         "print('holds', flush=True)\n"
@@ -113,7 +116,7 @@ def test_a_planner_that_is_stopped_loses_the_hand(endpoint):
     planner = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:
         assert planner.stdout.readline() == "holds\n"
-        with sun2xp.remote.open("hand", endpoint, client="screen", read_only=True, stale=1.0) as screen:
+        with sun2xp.remote.open("hand", endpoint, client="screen", read_only=True, stale=STALE) as screen:
             assert screen.status().owner == "planner"
             planner.send_signal(signal.SIGSTOP)
             end = time.monotonic() + 5
@@ -125,7 +128,7 @@ def test_a_planner_that_is_stopped_loses_the_hand(endpoint):
     finally:
         planner.kill()
         planner.wait()
-    with sun2xp.remote.open("hand", endpoint) as hand:
+    with sun2xp.remote.open("hand", endpoint, stale=STALE) as hand:
         hand.send_position(1, HOME)
         hand.wait(1, timeout=30)
 
@@ -140,7 +143,7 @@ def test_certificates_name_the_client(tmp_path):
         return sun2xp.remote.Tls(folder / "ca.pem", folder / f"{client}.pem", folder / f"{client}.key")
 
     with Server(tmp_path / "hand", settings("hand", {"planner": "command"}, listen=endpoint, tls=folder)):
-        with sun2xp.remote.open("hand", endpoint, tls=tls("planner")) as hand:
+        with sun2xp.remote.open("hand", endpoint, tls=tls("planner"), stale=STALE) as hand:
             assert hand.status().owner == "planner"
             hand.send_position(1, HOME)
             hand.wait(1, timeout=30)
