@@ -44,8 +44,10 @@ impl QueueState {
             let closed = self.source.is_closed();
             let recheck = match self.look() {
                 Next::Event(_) => return true,
-                _ if closed || stop() || now() >= deadline => return false,
+                _ if stop() || now() >= deadline => return false,
+                // The last events of a closed hand are held back too.
                 Next::Waiting(due) => due.min(now() + HELD_BACK_CHECK),
+                Next::Nothing if closed => return false,
                 Next::Nothing => u64::MAX,
             };
             self.source.readers.wait(prepared, deadline.min(recheck));
@@ -75,5 +77,31 @@ impl QueueState {
         let mut merged = self.merged.lock();
         merged.events.clear();
         merged.found = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::finger::events::{EventKind, Occurrence, event_log};
+    use crate::model::{FingerNumber, Part};
+    use crate::realtime::{EventCount, Pages};
+
+    #[test]
+    fn an_event_that_is_held_back_when_the_hand_is_closed_ends_the_wait() {
+        let (mut writers, logs): (Vec<_>, Vec<_>) = FingerNumber::ALL.map(event_log).into_iter().unzip();
+        let period = 1_000_000;
+        let source = EventSource::new(logs, Pages::new(EventCount::default()).into(), period);
+        let queue = QueueState::new(Arc::new(source));
+        // The other fingers have not finished this cycle, so the event waits for theirs.
+        let began = now() + 20 * period;
+        writers[0].begin_cycle(1, began);
+        writers[0].write(Occurrence { kind: EventKind::Contact, part: Part::Finger, values: [0.0; 4] });
+        writers[0].publish(began + period);
+        queue.source.close();
+        assert!(queue.take().is_none());
+        assert!(queue.wait_until(u64::MAX, || false));
+        assert!(queue.take().is_some());
+        assert!(!queue.wait_until(u64::MAX, || false));
     }
 }
