@@ -2,6 +2,7 @@
 
 use crate::errors::Refusal;
 use crate::fork;
+use crate::pending::{self, Pending};
 use parking_lot::{Mutex, RwLock};
 use pyo3::prelude::*;
 use std::sync::{Arc, Weak};
@@ -38,6 +39,7 @@ impl Shared {
     /// Closes the hand, if it is open: waits until every finger is in its end state.
     fn close(&self) {
         if self.check_process().is_ok() {
+            let _closing = Pending::closing();
             let hand = self.hand.write().take();
             drop(hand);
         }
@@ -76,7 +78,8 @@ impl Hand {
     #[new]
     fn new(opened: &Bound<'_, Opened>) -> PyResult<Self> {
         let hand = opened.get().0.lock().take();
-        let hand = hand.ok_or_else(|| Refusal::Closed.raise(opened.py()))?;
+        // The hand is in the list below before `_opening` is dropped.
+        let (hand, _opening) = hand.ok_or_else(|| Refusal::Closed.raise(opened.py()))?;
         let shared = Arc::new(Shared { hand: RwLock::new(Some(hand)), generation: fork::generation() });
         let mut hands = HANDS.lock();
         hands.retain(|hand| hand.strong_count() > 0);
@@ -133,11 +136,22 @@ impl Drop for Hand {
 
 /// Carries an open hand from the function that opened it to the constructor of `Hand`.
 #[pyclass(frozen, module = "sun2xp._sun2xp")]
-pub struct Opened(pub Mutex<Option<sun2xp::Hand>>);
+pub struct Opened(pub Mutex<Option<(sun2xp::Hand, Pending)>>);
 
-/// Closes all hands at the end of the interpreter, so that their fingers reach their end states.
+/// Closes all hands at the end of the interpreter, so that their fingers reach their end states. Ends the openings of
+/// other threads, and waits until their hands are closed.
 #[pyfunction]
 pub fn close_all(py: Python<'_>) {
+    py.detach(|| {
+        pending::end_openings();
+        close_listed();
+        pending::wait();
+        // Hands whose openings had just ended.
+        close_listed();
+    });
+}
+
+fn close_listed() {
     let hands = std::mem::take(&mut *HANDS.lock());
-    py.detach(|| hands.iter().filter_map(Weak::upgrade).for_each(|hand| hand.close()));
+    hands.iter().filter_map(Weak::upgrade).for_each(|hand| hand.close());
 }

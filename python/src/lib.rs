@@ -8,6 +8,7 @@ mod fork;
 mod hand;
 mod messages;
 mod opening;
+mod pending;
 mod queries;
 mod recording;
 mod records;

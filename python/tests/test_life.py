@@ -36,7 +36,7 @@ def test_a_configuration_is_refused_with_its_line(tmp_path):
     file.write_text("[hand]\nrate = 1\n")
     with pytest.raises(sun2xp.ConfigurationError, match=r"hand.toml:2: hand.rate"):
         sun2xp.open(file)
-    with pytest.raises(sun2xp.ConfigurationError, match="the text of the configuration:1: "):
+    with pytest.raises(sun2xp.ConfigurationError, match="configuration text:1: "):
         sun2xp.open(text="hands = 3")
     with pytest.raises(sun2xp.ConfigurationError, match="hand.rate"):
         sun2xp.simulated(rate=7)
@@ -48,6 +48,24 @@ def test_a_configuration_is_refused_with_its_line(tmp_path):
         sun2xp.open(file, text="")
     file.write_text("[finger]\nport = 'simulated'\n")
     sun2xp.open(str(file)).close()
+
+
+def test_a_hand_on_another_machine_is_not_replaced_by_a_simulated_one(tmp_path):
+    text = "[remote]\nendpoint = 'tcp/cell:7447'\nhand = 'left'\nclient = 'planner'\n"
+    (tmp_path / "hand.toml").write_text(text)
+    for opening in (lambda: sun2xp.open(tmp_path / "hand.toml"), lambda: sun2xp.open(text=text)):
+        with pytest.raises(sun2xp.ConfigurationError, match=r"table \[remote\].*sun2xp.remote.open"):
+            opening()
+
+
+def test_a_simulated_hand_ignores_boards_and_names_of_its_text():
+    board = "thread = 1\nbaud = 2000000\nboard = '00 01 02 03 04 05 06 07 08 09 0a 0b'"
+    text = f"[finger]\n{board}\n[finger.simulation]\nhand = 'worn'\nstart_degrees = [2, 30, 40]\n"
+    with sun2xp.simulated("cheap", text=text) as hand:
+        simulation = hand.configuration(1)["simulation"]
+        assert (simulation["hand"], simulation["start_degrees"]) == ("cheap", [2, 30, 40])
+        # Only a simulated finger can be pushed.
+        hand.push(1, [0, 0, 0])
 
 
 def test_a_faulted_finger_recovers(hand):

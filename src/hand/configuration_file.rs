@@ -2,6 +2,7 @@
 
 mod named_hand;
 mod place;
+mod simulated;
 mod text;
 mod values;
 mod wrong;
@@ -64,11 +65,12 @@ pub fn read_configuration(path: &Path) -> Result<Configuration, ConfigurationErr
 /// # Errors
 /// Returns [`ConfigurationError::Invalid`], with line and reason, if the text is wrong.
 pub fn parse_configuration(text: &str) -> Result<Configuration, ConfigurationError> {
-    parse(text).map_err(|wrong| ConfigurationError::Invalid {
-        file: "the text of the configuration".into(),
-        line: wrong.line(text),
-        reason: wrong.to_string(),
-    })
+    parse(text).map_err(|wrong| invalid_text(text, &wrong))
+}
+
+fn invalid_text(text: &str, wrong: &Wrong) -> ConfigurationError {
+    let file = PathBuf::from("configuration text");
+    ConfigurationError::Invalid { file, line: wrong.line(text), reason: wrong.to_string() }
 }
 
 /// Reads and checks the text of a configuration file.
@@ -96,20 +98,23 @@ impl Configured {
     /// # Errors
     /// Returns [`ConfigurationError::Invalid`], with line and reason, if the text is wrong.
     pub fn from_text(text: &str) -> Result<Self, ConfigurationError> {
-        match text::parse(text) {
-            Ok((configuration, said)) => {
-                Ok(Self { configuration, file: None, said: Said { ports: [true; FINGERS], ..said } })
-            }
-            Err(wrong) => {
-                let file = PathBuf::from("configuration text");
-                Err(ConfigurationError::Invalid { file, line: wrong.line(text), reason: wrong.to_string() })
-            }
-        }
+        let (configuration, said) = text::parse(text).map_err(|wrong| invalid_text(text, &wrong))?;
+        Ok(Self { configuration, file: None, said: Said { ports: [true; FINGERS], ..said } })
     }
 
     /// Whether the table `[remote]` names a hand on another machine.
     pub(crate) fn is_remote(&self) -> bool {
         self.said.remote
+    }
+
+    /// Refuses a configuration with a table `[remote]`, for calls that open only hands of this machine. Its fingers
+    /// have no ports, so these calls would open a simulated hand instead.
+    pub(super) fn refuse_remote(&self) -> Result<(), ConfigurationError> {
+        if self.said.remote {
+            let file = self.file.clone().unwrap_or_else(|| "configuration text".into());
+            return Err(ConfigurationError::Remote { file });
+        }
+        Ok(())
     }
 
     /// Notes that the program provides the hardware of this finger, so that its port does not matter.
@@ -195,7 +200,7 @@ mod tests {
     fn a_wrong_text_is_refused_with_its_line() {
         assert_eq!(parse_configuration("[hand]\nrate = 500\n").expect("usable").hand.rate, 500.0);
         let refusal = parse_configuration("[hand]\nrate = 1\n").expect_err("refused");
-        assert!(refusal.to_string().starts_with("the text of the configuration:2: hand.rate: "), "{refusal}");
+        assert!(refusal.to_string().starts_with("configuration text:2: hand.rate: "), "{refusal}");
     }
 
     #[test]
@@ -204,6 +209,15 @@ mod tests {
         assert_eq!((configuration, said.remote), (Configuration::default(), false));
         let (configuration, said) = text::parse("[remote]\nendpoint = 'tcp/cell:7447'\n").expect("usable");
         assert_eq!((configuration, said.remote), (Configuration::default(), true));
+    }
+
+    #[test]
+    fn a_hand_on_another_machine_is_refused_by_calls_that_open_hands_of_this_machine() {
+        let text = "[remote]\nendpoint = 'tcp/cell:7447'\nhand = 'left'\n";
+        let configured = Configured::from_text(text).expect("usable");
+        let refusal = crate::hand::Hand::open_as(configured).err().expect("refused").to_string();
+        assert!(refusal.starts_with("configuration text has a table [remote]"), "{refusal}");
+        assert!(Configured::from_text("").expect("usable").refuse_remote().is_ok());
     }
 
     #[test]

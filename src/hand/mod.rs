@@ -26,6 +26,7 @@ mod missing_permissions;
 mod motion_limits;
 mod notice;
 mod object;
+mod open_while;
 mod open_with_io;
 mod opening;
 mod paths;

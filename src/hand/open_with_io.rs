@@ -14,7 +14,7 @@ impl Hand {
     /// Returns the errors of [`Hand::open`]. Returns an error if the step of the tensions does not fit the configured
     /// gauges.
     pub fn open_with_io(configuration: Configuration, io: HandIo) -> Result<Self, HandError> {
-        Self::open_from(configuration, None, Fingers::ALL, Hardware::new(io), false)
+        Self::open_from(configuration, None, Fingers::ALL, Hardware::new(io), false, &|| true)
     }
 
     /// Does the same as [`Hand::open_with_io`] for a configuration that may come from a file. If it does, calibration
@@ -23,6 +23,6 @@ impl Hand {
         let hardware = Hardware::new(io);
         hardware.members().for_each(|finger| configured.provides(finger));
         configured.announce(Fingers::ALL);
-        Self::open_from(configured.configuration, configured.file, Fingers::ALL, hardware, false)
+        Self::open_from(configured.configuration, configured.file, Fingers::ALL, hardware, false, &|| true)
     }
 }

@@ -262,6 +262,15 @@ fn carries(configuration: &Configuration, number: FingerNumber) -> Result<(), Un
     }
 }
 
+/// Refuses to continue if `goes_on` returns false.
+pub(super) fn check_goes_on(goes_on: &dyn Fn() -> bool) -> Result<(), HandError> {
+    if goes_on() {
+        return Ok(());
+    }
+    let source = std::io::Error::from_raw_os_error(libc::ECANCELED);
+    Err(HandError::System { doing: "open the hand while the program ends", source })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,7 +5,7 @@ use crate::hand::board_search::find_boards;
 use crate::hand::dispatcher::Dispatcher;
 use crate::hand::events::EventSource;
 use crate::hand::hardware::Hardware;
-use crate::hand::opening::{Connected, black_box_folder, check, from_here, reach};
+use crate::hand::opening::{Connected, black_box_folder, check, check_goes_on, from_here, reach};
 use crate::hand::reconnection::Recovery;
 use crate::hand::servo_threads::{PortServo, RealtimeState, start};
 use crate::hand::simulated_hand::SimulatedHand;
@@ -71,10 +71,9 @@ impl Hand {
     /// Opens the hand of a configuration, which may come from a file ([`Configured::read`]).
     ///
     /// # Errors
-    /// Returns the errors of [`Hand::open`].
+    /// Returns the errors of [`Hand::open`], and an error if the configuration names a hand on another machine.
     pub fn open_as(configured: Configured) -> Result<Self, HandError> {
-        configured.announce(Fingers::ALL);
-        Self::open_from(configured.configuration, configured.file, Fingers::ALL, Hardware::default(), false)
+        Self::open_while(configured, &|| true)
     }
 
     /// Opens the hand, with the fingers of `hand.fingers`. Shakes hands with its boards, takes up the slack of its
@@ -84,7 +83,7 @@ impl Hand {
     /// Returns an error if the configuration cannot be used, if a port or board does not work, or if a finger faults.
     /// Then everything that was opened is closed again, and every motor is in its end state.
     pub fn open(configuration: Configuration) -> Result<Self, HandError> {
-        Self::open_from(configuration, None, Fingers::ALL, Hardware::default(), false)
+        Self::open_from(configuration, None, Fingers::ALL, Hardware::default(), false, &|| true)
     }
 
     /// Opens these fingers of the hand with their motors off, so that signs and zeros can be found before a tendon is
@@ -94,7 +93,7 @@ impl Hand {
     /// # Errors
     /// Returns the errors of [`Hand::open`].
     pub fn open_limp(configuration: Configuration, file: Option<PathBuf>, fingers: Fingers) -> Result<Self, HandError> {
-        Self::open_from(configuration, file, fingers, Hardware::default(), true)
+        Self::open_from(configuration, file, fingers, Hardware::default(), true, &|| true)
     }
 
     pub(super) fn open_from(
@@ -103,6 +102,7 @@ impl Hand {
         fingers: Fingers,
         mut hardware: Hardware,
         limp: bool,
+        goes_on: &dyn Fn() -> bool,
     ) -> Result<Self, HandError> {
         hardware.prepare(&mut configuration, fingers)?;
         check(&configuration)?;
@@ -116,6 +116,7 @@ impl Hand {
         let tested = configuration.hand.self_test && !limp;
         let connected = reach(&configuration, opened, &simulated, &mut hardware, limp || tested)?;
         let Connected { lines, reached, gate, repairs, events } = connected;
+        check_goes_on(goes_on)?;
         let recovery = Recovery::new(repairs);
         let dispatcher = Dispatcher::new(reached, configuration.hand.fingers, gate);
         let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOP_CONFIRMATION;
@@ -144,7 +145,7 @@ impl Hand {
         };
         collecting.map_err(|source| HandError::System { doing: "start the thread that collects reports", source })?;
         hand.real_time = start(&hand.configuration.read(), lines, &mut hand.servos)?;
-        hand.wait_for_every_finger()?;
+        hand.wait_for_every_finger(goes_on)?;
         if tested {
             hand.test_every_finger()?;
         }
@@ -245,8 +246,9 @@ impl Hand {
     pub fn close(self) {}
 
     /// Waits until every finger is a spring that holds its pose. Each finger applies the open time-out itself.
-    fn wait_for_every_finger(&self) -> Result<(), HandError> {
+    fn wait_for_every_finger(&self, goes_on: &dyn Fn() -> bool) -> Result<(), HandError> {
         loop {
+            check_goes_on(goes_on)?;
             let mut opening = false;
             for member in self.dispatcher.members() {
                 match member.mailbox.report().stage {

@@ -123,7 +123,7 @@ def simulated(name: str = "nominal", *, rate: float = 1000.0, text: str = "") ->
     Args:
         name: "nominal", or a hand that differs from its configuration: "worn", "sheathed" or "cheap".
         rate: rate of the servos, Hz, 500 to 5000.
-        text: further configuration. Name, rate and ports of this text are ignored.
+        text: further configuration. Names of hands, rate, ports and boards of this text are ignored.
 
     Raises:
         ConfigurationError: there is no such name or rate, or the text is wrong.

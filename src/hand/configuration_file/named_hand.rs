@@ -3,7 +3,7 @@
 use super::values::to_document;
 use super::wrong::Wrong;
 use crate::model::configuration::ConfiguredSimulation;
-use toml_edit::{Item, Table};
+use toml_edit::{Item, Table, value};
 
 /// Adds the values for which `simulation.hand` stands to the table of a finger. Keys that the table contains keep their
 /// values. An unknown name adds nothing: the conversion of the table refuses it.
@@ -18,4 +18,12 @@ pub(super) fn add_named_values(finger: &mut Table) -> Result<(), Wrong> {
         }
     }
     Ok(())
+}
+
+/// Sets the name in the table of a finger. If `simulation` is no table, the conversion of the finger refuses it.
+pub(super) fn set_name(finger: &mut Table, name: &str) {
+    let simulation = finger.entry("simulation").or_insert_with(|| Item::Table(Table::new()));
+    if let Some(simulation) = simulation.as_table_like_mut() {
+        simulation.insert("hand", value(name));
+    }
 }

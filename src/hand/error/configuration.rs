@@ -45,6 +45,16 @@ pub enum ConfigurationError {
         /// What is wrong.
         reason: String,
     },
+    /// The configuration names a hand on another machine, and the call opens only hands of this machine.
+    #[error(
+        "{} has a table [remote], which names a hand on another machine, and this call opens only hands of this \
+         machine: open the hand with sun2xp.remote.open in Python or with RemoteHand in Rust, or remove the table",
+        ShownPath(file)
+    )]
+    Remote {
+        /// The configuration file.
+        file: PathBuf,
+    },
     /// A configuration that was made by a program, and not read from a file, has an error.
     #[error("{section}.{}: {}", unusable.key, unusable.reason)]
     Unusable {
@@ -113,7 +123,7 @@ impl ConfigurationError {
             // text.
             Self::Unreadable { source, .. } => source.raw_os_error().unwrap_or(libc::EINVAL),
             Self::UntrustedEnvironment { .. } => libc::EACCES,
-            Self::Invalid { .. } | Self::Unusable { .. } => libc::EINVAL,
+            Self::Invalid { .. } | Self::Remote { .. } | Self::Unusable { .. } => libc::EINVAL,
             Self::Adjustment { .. } | Self::Mismatch { .. } => libc::EINVAL,
             Self::Permanent { .. } => libc::EBUSY,
             Self::Unwritable { source, .. } => errno(source),

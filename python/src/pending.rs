@@ -1,0 +1,78 @@
+//! Hands that are opening or closing. The end of the interpreter waits for them, so that no motor stays wound up.
+
+use crate::fork;
+use parking_lot::{Condvar, Mutex, MutexGuard};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static PENDING: Mutex<State> = Mutex::new(State { generation: 0, ending: false, count: 0 });
+static CHANGED: Condvar = Condvar::new();
+
+struct State {
+    /// The generation of the process to which the other fields belong. A forked child has none of these threads.
+    generation: u32,
+    /// Whether the interpreter is ending.
+    ending: bool,
+    /// The number of hands that are closing, or that are opening and may have pulled their tendons.
+    count: usize,
+}
+
+fn state() -> MutexGuard<'static, State> {
+    let mut state = PENDING.lock();
+    let generation = fork::generation();
+    if state.generation != generation {
+        *state = State { generation, ending: false, count: 0 };
+    }
+    state
+}
+
+/// A hand that is opening or closing, until this is dropped.
+pub struct Pending {
+    counted: AtomicBool,
+    generation: u32,
+}
+
+impl Pending {
+    /// Notes an opening. It is not waited for until the first call of [`Pending::goes_on`].
+    pub fn opening() -> Self {
+        Self { counted: AtomicBool::new(false), generation: fork::generation() }
+    }
+
+    /// Notes a closing.
+    pub fn closing() -> Self {
+        state().count += 1;
+        Self { counted: AtomicBool::new(true), generation: fork::generation() }
+    }
+
+    /// Returns whether the opening goes on: the interpreter is not ending. From now on the end of the interpreter waits
+    /// for this opening.
+    pub fn goes_on(&self) -> bool {
+        let mut state = state();
+        if !state.ending && !self.counted.swap(true, Ordering::Relaxed) {
+            state.count += 1;
+        }
+        !state.ending
+    }
+}
+
+impl Drop for Pending {
+    fn drop(&mut self) {
+        let mut state = state();
+        if *self.counted.get_mut() && self.generation == state.generation {
+            state.count -= 1;
+            CHANGED.notify_all();
+        }
+    }
+}
+
+/// Ends all openings.
+pub fn end_openings() {
+    state().ending = true;
+}
+
+/// Waits until no hand is opening or closing.
+pub fn wait() {
+    let mut state = state();
+    while state.count > 0 {
+        CHANGED.wait(&mut state);
+    }
+}

@@ -1,0 +1,18 @@
+//! Opens a hand for a program that may end meanwhile.
+
+use crate::hand::hardware::Hardware;
+use crate::hand::{Configured, Hand, HandError};
+use crate::model::Fingers;
+
+impl Hand {
+    /// Does the same as [`Hand::open_as`], but gives up if `goes_on` returns false. Calls `goes_on` before the motors
+    /// can pull, and then every millisecond until the tendons are taut. Before the first call every motor is off.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Hand::open_as`], and [`HandError::System`] with `ECANCELED` if `goes_on` returns false.
+    pub fn open_while(configured: Configured, goes_on: &dyn Fn() -> bool) -> Result<Self, HandError> {
+        configured.refuse_remote()?;
+        configured.announce(Fingers::ALL);
+        Self::open_from(configured.configuration, configured.file, Fingers::ALL, Hardware::default(), false, goes_on)
+    }
+}
