@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sun2xp::finger::{Fault, FaultKind};
+use sun2xp::finger::FaultKind;
 use sun2xp::{ConfigurationError, HandError};
 
 /// Why a call is refused.
@@ -41,7 +41,7 @@ impl Refusal {
         details.set_item("remedy", self.remedy())?;
         if let Some((finger, fault)) = self.fault() {
             details.set_item("finger", finger)?;
-            details.set_item("fault", fault.kind.number())?;
+            details.set_item("fault", fault.number())?;
         }
         let class = py.import("sun2xp._errors")?.getattr(self.class())?;
         Ok(PyErr::from_value(class.call((self.text(),), Some(&details))?))
@@ -113,19 +113,24 @@ impl Refusal {
         }
     }
 
-    fn fault(&self) -> Option<(i32, Fault)> {
+    /// The finger and the kind of its fault.
+    fn fault(&self) -> Option<(i32, FaultKind)> {
         match self {
             Self::Hand(HandError::Faulted { finger, fault } | HandError::FaultedAtOpening { finger, fault }) => {
-                Some((finger.get(), *fault))
+                Some((finger.get(), fault.kind))
             }
+            Self::Hand(HandError::WrongWiring { finger, .. }) => Some((finger.get(), FaultKind::WrongWiring)),
             _ => None,
         }
     }
 
     /// What the caller should do. The texts of the library end with the remedy, after the last colon.
     fn remedy(&self) -> String {
-        if let Some((_, fault)) = self.fault() {
-            return remedy(fault.kind).into();
+        // The text about wrong wiring has a remedy for what was found.
+        if let Some((_, fault)) = self.fault()
+            && fault != FaultKind::WrongWiring
+        {
+            return remedy(fault).into();
         }
         let text = self.text();
         text.rsplit_once(": ").map_or(String::new(), |(_, remedy)| remedy.into())
