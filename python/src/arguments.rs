@@ -1,7 +1,8 @@
 //! Conversion of arguments to numbers: numpy arrays, lists, and everything else that numpy converts.
 
 use crate::errors::Refusal;
-use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::ndarray::Dimension;
+use numpy::{PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
 
@@ -21,7 +22,9 @@ pub fn numbers(object: &Bound<'_, PyAny>, name: &str, shape: &[usize]) -> PyResu
 pub fn vector(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
     // These two cases are quick. All others become an array first.
     if let Ok(array) = object.cast::<PyArray1<f64>>() {
-        if let (3, [Some(x), Some(y), Some(z)]) = (array.len(), [0, 1, 2].map(|place| array.get_owned(place))) {
+        if is_regular(array)
+            && let (3, [Some(x), Some(y), Some(z)]) = (array.len(), [0, 1, 2].map(|place| array.get_owned(place)))
+        {
             return Ok([x, y, z]);
         }
     } else if let Ok(numbers) = object.extract::<[f64; 3]>() {
@@ -35,6 +38,7 @@ pub fn vector(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
 pub fn rows(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3]; 3]> {
     if let Ok(array) = object.cast::<PyArray2<f64>>()
         && array.shape() == [3, 3]
+        && is_regular(array)
     {
         let entry = |row, column| array.get_owned([row, column]).unwrap_or(f64::NAN);
         return Ok(std::array::from_fn(|row| std::array::from_fn(|column| entry(row, column))));
@@ -45,12 +49,23 @@ pub fn rows(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3]; 3]> {
 
 /// Returns the array itself, or a new one with the same numbers as `float64`.
 pub fn as_array<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    if let Ok(array) = object.cast::<PyArrayDyn<f64>>() {
+    if let Ok(array) = object.cast::<PyArrayDyn<f64>>()
+        && is_regular(array)
+    {
         return Ok(array.clone());
     }
     let py = object.py();
-    let array = py.import("numpy")?.call_method1(intern!(py, "asarray"), (object, intern!(py, "float64")))?;
+    // `array` copies an irregular array, which `asarray` does not.
+    let array = py.import("numpy")?.call_method1(intern!(py, "array"), (object, intern!(py, "float64")))?;
     Ok(array.cast_into::<PyArrayDyn<f64>>()?)
+}
+
+/// Whether each number of the array is at a multiple of its own size. In the columns of a structured array they may be
+/// elsewhere. The crate `numpy` reads such arrays at wrong places.
+fn is_regular<D: Dimension>(array: &Bound<'_, PyArray<f64, D>>) -> bool {
+    const SIZE: usize = size_of::<f64>();
+    array.data().addr().is_multiple_of(SIZE)
+        && array.strides().iter().all(|stride| stride.unsigned_abs().is_multiple_of(SIZE))
 }
 
 fn tuple(shape: &[usize]) -> String {

@@ -130,3 +130,22 @@ def test_the_jacobian_is_the_derivative_of_the_tip(shared):
     columns = [(there(HOME + step * axis) - there(HOME - step * axis)) / (2 * step) for axis in numpy.eye(3)]
     assert abs(shared.jacobian(1, HOME) - numpy.transpose(columns)).max() < 1e-6
     assert shared.jacobian(1).shape == (3, 3)
+
+
+def test_arrays_with_any_layout_have_the_same_numbers(hand):
+    packed = numpy.array([(0.1, 1), (0.5, 2), (0.9, 3)], [("angle", "f8"), ("joint", "i4")])
+    bytes_of = numpy.zeros(25, "u1")
+    shifted = bytes_of[1:].view("f8")
+    shifted[:] = [0.1, 0.5, 0.9]
+    expected = hand.forward_kinematics(1, [0.1, 0.5, 0.9])
+    for angles in (packed["angle"], shifted, packed["angle"][::-1].copy()[::-1], packed["angle"].astype(">f8")):
+        assert (hand.forward_kinematics(1, angles) == expected).all()
+    springs = numpy.zeros(2, [("flag", "i1"), ("kx", "f8", (3, 3))])
+    springs["kx"] = numpy.diag([3.0, 3.0, 1.0])
+    hand.send_stiffness(1, springs["kx"][1])
+    cycles = numpy.zeros(4, [("flag", "i1"), ("time", "f8"), ("joints", "f8", 3)])
+    cycles["time"] = [0.5, 1.0, 1.5, 2.0]
+    cycles["joints"] = HOME
+    hand.send_path(2, cycles["time"], joints=cycles["joints"])
+    hand.wait(2, "settled", timeout=30)
+    assert abs(hand.position(2) - HOME).max() < 0.04
