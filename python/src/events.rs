@@ -44,11 +44,14 @@ impl Queue {
         let deadline = limit.and_then(|limit| Instant::now().checked_add(limit));
         loop {
             let left = deadline.map_or(Duration::MAX, |deadline| deadline.saturating_duration_since(Instant::now()));
+            // Events may come after the wait, before this thread has the interpreter lock again. Only a queue that was
+            // closed before the wait gets no later events.
+            let closed = self.queue.is_closed();
             let event = py.detach(|| self.queue.wait(Some(left.min(SLICE))));
             if let Some(event) = event {
                 return record(py, &event).map(Some);
             }
-            if left.is_zero() || self.queue.is_closed() {
+            if left.is_zero() || closed {
                 return Ok(None);
             }
             py.check_signals()?;

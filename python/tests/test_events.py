@@ -80,3 +80,19 @@ def test_asyncio_waits_with_a_limit(hand):
     event, first = asyncio.run(wait())
     assert (event.kind, event.finger) == (sun2xp.EventKind.FAULT, 2) and "stop" in event.text
     assert (first.kind, first.finger) == (sun2xp.EventKind.FAULT, 3)
+
+
+def test_several_tasks_wait_for_one_queue(hand):
+    async def wait():
+        events = hand.events()
+        tasks = [asyncio.ensure_future(events.next()) for _ in range(3)]
+        # One of them gives up. The others still wait.
+        assert await events.next(timeout=0.05) is None
+        hand.stop(1)
+        done, waiting = await asyncio.wait(tasks, timeout=20, return_when=asyncio.FIRST_COMPLETED)
+        assert len(done) == 1 and len(waiting) == 2
+        await asyncio.get_running_loop().run_in_executor(None, hand.close)
+        return await asyncio.wait_for(asyncio.gather(*tasks), 20)
+
+    found = asyncio.run(wait())
+    assert sorted(event is None for event in found) == [False, True, True]

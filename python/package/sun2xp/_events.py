@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import AsyncIterator, Iterator, Optional
+from typing import AsyncIterator, Dict, Iterator, Optional, Set
 
 from . import _sun2xp
 from ._types import Event
@@ -42,13 +42,25 @@ class Events(_sun2xp.Queue):
             yield event
 
     async def _ready(self, loop: asyncio.AbstractEventLoop, timeout: Optional[float]) -> None:
-        ready = asyncio.Event()
         descriptor = self.fileno()
-        # The loop watches the descriptor only during the wait, because it is readable as long as there are events.
-        loop.add_reader(descriptor, ready.set)
+        # A loop calls one function for a descriptor, so all tasks that wait for this queue share it.
+        every: Dict[asyncio.AbstractEventLoop, Set[asyncio.Event]] = self.__dict__.setdefault("_waiting", {})
+        tasks = every.setdefault(loop, set())
+        ready = asyncio.Event()
+        tasks.add(ready)
         try:
+            # The loop watches the descriptor only during a wait, because it is readable as long as there are events.
+            loop.add_reader(descriptor, _wake, tasks)
             await asyncio.wait_for(ready.wait(), timeout)
         except asyncio.TimeoutError:
             pass
         finally:
-            loop.remove_reader(descriptor)
+            tasks.remove(ready)
+            if not tasks:
+                loop.remove_reader(descriptor)
+                del every[loop]
+
+
+def _wake(tasks: Set[asyncio.Event]) -> None:
+    for ready in tasks:
+        ready.set()
