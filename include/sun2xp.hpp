@@ -237,7 +237,8 @@ private:
 /// An open hand. Its destructor closes it.
 class hand {
 public:
-    /// Called with each event of a hand, in a thread of the library. It must not throw.
+    /// Called with each event of a hand, in a thread of the library. It must not throw. It may replace or end itself
+    /// with on_event, and may destroy the hand: it stays alive until it returns.
     using event_callback = std::function<void(const struct sun2xp_event &)>;
 
     /// Opens the hand of a configuration file.
@@ -319,9 +320,13 @@ public:
     /// Calls a function with each event. An empty function ends that.
     void on_event(event_callback callback)
     {
-        auto next = callback ? std::make_unique<event_callback>(std::move(callback)) : nullptr;
+        std::shared_ptr<listener> next;
+        if (callback) {
+            next = std::make_shared<listener>();
+            next->call = std::move(callback);
+        }
         detail::checked(sun2xp_on_event(hand_, next ? &pass_on : nullptr, next.get()));
-        // The previous function is not running any more.
+        // The previous function is running only if it makes this call. Then pass_on keeps it.
         callback_ = std::move(next);
     }
 
@@ -343,13 +348,19 @@ private:
         return result;
     }
 
-    static void pass_on(const struct sun2xp_event *event, void *callback) noexcept
+    /// A function that is called with events.
+    struct listener : std::enable_shared_from_this<listener> {
+        event_callback call;
+    };
+
+    static void pass_on(const struct sun2xp_event *event, void *context) noexcept
     {
-        (*static_cast<event_callback *>(callback))(*event);
+        const std::shared_ptr<listener> running = static_cast<listener *>(context)->shared_from_this();
+        running->call(*event);
     }
 
     sun2xp_hand *hand_ = nullptr;
-    std::unique_ptr<event_callback> callback_;
+    std::shared_ptr<listener> callback_;
 };
 
 /// Stops every finger of every hand of the process. It may be called in a signal handler.

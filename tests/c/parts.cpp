@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <future>
+#include <memory>
 #include "sun2xp.hpp"
 
 #define CHECK(Condition) \
@@ -67,6 +69,23 @@ static void moves(sun2xp::hand &hand)
     CHECK(!hand.finger(1).wait(sun2xp::until::arrived, 0s));
 }
 
+// A callback that ends itself still has what it has captured.
+static void is_called_once(sun2xp::hand &hand)
+{
+    auto captured = std::make_shared<int>(0);
+    const std::weak_ptr<int> witness = captured;
+    std::promise<bool> found;
+
+    hand.on_event([captured = std::move(captured), &witness, &found, &hand](const sun2xp_event &) {
+        const std::weak_ptr<int> *const is_there = &witness;
+        std::promise<bool> *const result = &found;
+        hand.on_event(nullptr);
+        result->set_value(!is_there->expired());
+    });
+    hand.finger(2).send_position({0.0, 0.5, 0.9});
+    CHECK(found.get_future().get());
+}
+
 static void knows_itself(sun2xp::hand &hand)
 {
     sun2xp::finger finger = hand.finger(3);
@@ -104,6 +123,7 @@ int main()
     CHECK(first.handle() == nullptr && hand.handle() != nullptr);
     is_refused(hand);
     moves(hand);
+    is_called_once(hand);
     knows_itself(hand);
     sun2xp::hand other = sun2xp::hand::named("cheap");
     other = std::move(hand);
