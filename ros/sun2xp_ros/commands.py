@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from functools import partial
-from typing import Any, Callable, Dict, Optional, Sequence, Tuple
+from typing import Any, Callable, Collection, Dict, Optional, Sequence, Tuple
 
 import numpy
 import sun2xp
@@ -14,7 +14,8 @@ from std_msgs.msg import Float64MultiArray
 from trajectory_msgs.msg import JointTrajectory
 
 from . import names
-from .trajectory import Path, Unusable, paths
+from .trajectory import Path, Unusable, begins_in, paths
+from .waiting import WaitingTrajectories
 
 #: cm in a metre.
 CM_PER_M = 100.0
@@ -32,6 +33,7 @@ class Commands:
         self._fingers = fingers
         self._prefix = prefix
         self._said: Dict[str, float] = {}
+        self._waiting = WaitingTrajectories(node)
         #: Pose of each finger's frame in the palm's: origin, cm, and axes as columns.
         self._mounts: Dict[int, Tuple[numpy.ndarray, numpy.ndarray]] = {}
         subscribe = partial(self._subscribe, node)
@@ -43,14 +45,18 @@ class Commands:
             subscribe(PointStamped, f"{name}/target", f"target of {name}", partial(self._aim, finger))
             subscribe(Float64MultiArray, f"{name}/stiffness", f"stiffness of {name}", partial(self._soften, finger))
 
-    def _subscribe(self, node: Node, kind: Any, topic: str, what: str, action: Callable[[Any], None]) -> None:
-        def take(message: Any) -> None:
-            try:
-                action(message)
-            except (sun2xp.Error, Unusable) as refusal:
-                self._refuse(f"{what} refused: {refusal}")
+    def forget(self, finger: int) -> None:
+        """Drops the trajectories of a finger that wait for their stamps, because the finger was stopped."""
+        self._waiting.forget([finger])
 
-        node.create_subscription(kind, topic, take, 10)
+    def _subscribe(self, node: Node, kind: Any, topic: str, what: str, action: Callable[[Any], None]) -> None:
+        node.create_subscription(kind, topic, lambda message: self._take(what, partial(action, message)), 10)
+
+    def _take(self, what: str, action: Callable[[], None]) -> None:
+        try:
+            action()
+        except (sun2xp.Error, Unusable) as refusal:
+            self._refuse(f"{what} refused: {refusal}")
 
     def _refuse(self, text: str) -> None:
         now = time.monotonic()
@@ -59,13 +65,30 @@ class Commands:
             self._said[text] = now
             self._node.get_logger().error(text)
 
+    def _now(self) -> float:
+        return self._node.get_clock().now().nanoseconds * 1e-9
+
     def _move(self, message: JointTrajectory) -> None:
         if not message.points:
             # As for other controllers of ROS, an empty trajectory stops the motion.
+            self._waiting.forget(self._fingers)
             self._hold(self._fingers)
             return
-        now = self._node.get_clock().now().nanoseconds * 1e-9
-        demanded = paths(message, self._prefix, self._fingers, now)
+        now = self._now()
+        demanded = [path.finger for path in paths(message, self._prefix, self._fingers, now)]
+        delay = begins_in(message, now)
+        if delay:
+            self._waiting.add(delay, demanded, partial(self._begin_at_stamp, message))
+        else:
+            self._begin(message, demanded)
+
+    def _begin_at_stamp(self, message: JointTrajectory, fingers: Collection[int]) -> None:
+        self._take("trajectory", partial(self._begin, message, fingers))
+
+    def _begin(self, message: JointTrajectory, fingers: Collection[int]) -> None:
+        """Sends the paths of these fingers."""
+        demanded = paths(message, self._prefix, self._fingers, self._now())
+        demanded = [path for path in demanded if path.finger in fingers]
         for place, path in enumerate(demanded):
             try:
                 self._follow(path)
@@ -74,6 +97,7 @@ class Commands:
                 # theirs hold their poses, so no finger executes the trajectory.
                 self._hold([before.finger for before in demanded[:place]])
                 raise
+        self._waiting.forget(fingers)
 
     def _follow(self, path: Path) -> None:
         if len(path.times):
@@ -102,6 +126,7 @@ class Commands:
         elif frame != base:
             raise Unusable(f"the frame is {frame!r}: send the point in {palm!r} or {base!r}")
         self._hand.send_tip(finger, point)
+        self._waiting.forget([finger])
 
     def _soften(self, finger: int, message: Float64MultiArray) -> None:
         numbers = list(message.data)[message.layout.data_offset :]

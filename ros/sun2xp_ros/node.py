@@ -5,7 +5,6 @@ The servos are threads of the library that run no Python, so nothing here delays
 from __future__ import annotations
 
 import logging
-import time
 from typing import Any, Dict, List, Optional, Sequence
 
 import rclpy
@@ -13,7 +12,6 @@ import sun2xp
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Vector3, Wrench, WrenchStamped
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
-from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -23,6 +21,7 @@ from std_msgs.msg import String
 from . import names
 from .commands import Commands
 from .diagnostics import FingerDiagnostics
+from .moment import Moment
 from .services import Services
 
 #: N cm in an N m.
@@ -72,7 +71,7 @@ class HandNode(Node):
         self._before: Dict[int, sun2xp.JointState] = {}
         self._faults = [described.fault() for described in self._described]
         self._takes = Commands(self, self.hand, self.fingers, self._prefix)
-        self._serves = Services(self, self.hand, self.fingers)
+        self._serves = Services(self, self.hand, self.fingers, self._takes.forget)
         rate = self._parameter("rate", 100.0, "rate of joint states and wrenches, Hz", (1.0, 1000.0))
         slow = self._parameter("diagnostics_rate", 1.0, "rate of diagnostics, Hz", (0.1, 10.0))
         self.create_timer(1.0 / rate, self._publish_measurements)
@@ -113,23 +112,23 @@ class HandNode(Node):
         self._description.publish(String(data=names.with_prefix(self.hand.urdf(), self._prefix)))
 
     def _publish_measurements(self) -> None:
-        message, oldest = JointState(), time.monotonic_ns()
-        stamp = self.get_clock().now()
+        message, now = JointState(), Moment(self.get_clock())
+        times: List[int] = []
         for finger in self.fingers:
             try:
                 state = self.hand.joint_state(finger)
-                self._publish_wrench(finger, stamp.to_msg())
+                self._publish_wrench(finger, now.on_ros.to_msg())
             except sun2xp.Error:
                 # A finger that has stopped measures nothing. Diagnostics have the reason.
                 self._before.pop(finger, None)
                 continue
-            oldest = min(oldest, state.time)
+            times.append(state.time)
             message.name.extend(names.joints(self._prefix, finger))
             message.position.extend(state.position)
             message.velocity.extend(self._mean_rate(finger, state))
             message.effort.extend(state.torque / N_CM_PER_N_M)
-        # The time of the oldest measurement, on the clock of ROS.
-        message.header.stamp = (stamp - Duration(nanoseconds=time.monotonic_ns() - oldest)).to_msg()
+        # The time of the oldest measurement.
+        message.header.stamp = now.time_of(min(times, default=now.monotonic)).to_msg()
         self._joint_states.publish(message)
         faults = [described.fault() for described in self._described]
         if faults != self._faults:

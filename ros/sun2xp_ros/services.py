@@ -19,8 +19,10 @@ Action = Callable[[int], str]
 class Services:
     """Offers zero, recover and stop, for all fingers and for each."""
 
-    def __init__(self, node: Node, hand: sun2xp.Hand, fingers: Sequence[int]) -> None:
+    def __init__(self, node: Node, hand: sun2xp.Hand, fingers: Sequence[int], stopped: Callable[[int], None]) -> None:
+        """Calls `stopped` with each finger that the service `stop` has stopped."""
         self._node = node
+        self._stopped = stopped
         self._hand = hand
         #: A zeroing takes half a minute. It waits in a thread of its own, and the node continues to publish.
         self._waiting = ThreadPoolExecutor(max_workers=len(fingers) + 1, thread_name_prefix="sun2xp service")
@@ -65,4 +67,5 @@ class Services:
 
     def _stop(self, finger: int) -> str:
         self._hand.stop(finger)
+        self._stopped(finger)
         return "is stopped: the service recover makes it a spring again"

@@ -10,6 +10,10 @@ import numpy
 from . import names
 
 
+#: Shortest time of the first pose of a path, s. The library refuses shorter ones.
+SHORTEST = 1e-3
+
+
 class Unusable(Exception):
     """A message that no hand can execute."""
 
@@ -19,7 +23,7 @@ class Path:
     """What a trajectory demands of one finger."""
 
     finger: int
-    #: Times from now, s. Empty: `joints` has one row, the pose to take at once.
+    #: Times from the beginning of the path, s. Empty: `joints` has one row, the pose to take at once.
     times: numpy.ndarray
     #: Angles of joints 0, 1 and 2, rad: a row for each time.
     joints: numpy.ndarray
@@ -30,8 +34,15 @@ def seconds(duration: Any) -> float:
     return duration.sec + duration.nanosec * 1e-9
 
 
+def begins_in(message: Any, now: float) -> float:
+    """The time from now until the stamp of a trajectory, s; 0 if it has no stamp or its stamp has passed."""
+    stamp = seconds(message.header.stamp)
+    return max(stamp - now, 0.0) if stamp else 0.0
+
+
 def paths(message: Any, prefix: str, fingers: Sequence[int], now: float) -> List[Path]:
-    """Returns the paths of a trajectory with at least one point.
+    """Returns the paths of a trajectory with at least one point. A path begins at once, so a trajectory whose stamp is
+    in the future must be sent at its stamp. Its times are those from the stamp.
 
     Args:
         message: a trajectory_msgs/JointTrajectory. It names all joints of each finger that it moves.
@@ -45,13 +56,14 @@ def paths(message: Any, prefix: str, fingers: Sequence[int], now: float) -> List
         if len(angles) != len(message.joint_names):
             raise Unusable(f"point {place} has {len(angles)} positions for {len(message.joint_names)} joints")
     stamp = seconds(message.header.stamp)
-    delay = stamp - now if stamp else 0.0
-    times = numpy.array([delay + seconds(point.time_from_start) for point in message.points])
+    late = max(now - stamp, 0.0) if stamp else 0.0
+    times = numpy.array([seconds(point.time_from_start) - late for point in message.points])
     # Planners often send the present state as the point at the time 0. A path begins there anyway.
-    ahead = times > 0.0
+    ahead = times >= SHORTEST
     if not ahead.any():
-        if stamp:
-            raise Unusable(f"the trajectory ended {-times.max():.3f} s ago: send it earlier, or without a stamp")
+        if late:
+            ago = max(-times.max(), 0.0)
+            raise Unusable(f"the trajectory ended {ago:.3f} s ago: send it earlier, or without a stamp")
         times, positions = times[:0], positions[-1:]
     else:
         times = times[ahead]

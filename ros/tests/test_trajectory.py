@@ -3,7 +3,7 @@
 import numpy
 import pytest
 from builtin_interfaces.msg import Duration, Time
-from sun2xp_ros.trajectory import Unusable, paths
+from sun2xp_ros.trajectory import Unusable, begins_in, paths
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 NAMES = [f"finger{finger}_joint{joint}" for finger in (1, 3) for joint in (0, 1, 2)]
@@ -28,13 +28,24 @@ def test_columns_are_those_of_the_names():
     assert numpy.allclose(second.joints, [[1.2, 1.1, 1.0], [2.7, 2.6, 2.5]])
 
 
-def test_a_stamp_moves_the_times_and_points_of_the_past_are_left_out():
-    (path, _) = paths(message([0.0, 1.0, 2.0], stamp=10), "", (1, 3), now=8.5)
-    assert path.times.tolist() == [1.5, 2.5, 3.5]
+def test_points_of_the_past_are_left_out():
     (path, _) = paths(message([0.0, 1.0, 2.0], stamp=10), "", (1, 3), now=11.5)
     assert path.times.tolist() == [0.5] and path.joints[0, 0] == 2.0
     with pytest.raises(Unusable, match="ended 3.000 s ago"):
         paths(message([0.0, 1.0, 2.0], stamp=10), "", (1, 3), now=15.0)
+
+
+def test_a_point_that_is_nearly_past_is_left_out():
+    """The library refuses a path whose first pose is less than 1 ms ahead."""
+    (path, _) = paths(message([0.0, 1.0, 2.0], stamp=10), "", (1, 3), now=10.9995)
+    assert path.times.tolist() == pytest.approx([1.0005])
+
+
+def test_a_stamp_in_the_future_delays_the_beginning_and_not_the_points():
+    later = message([0.0, 1.0, 2.0], stamp=10)
+    assert begins_in(later, 8.5) == 1.5 and begins_in(later, 10.5) == 0.0 and begins_in(message([1.0]), 8.5) == 0.0
+    (path, _) = paths(later, "", (1, 3), now=8.5)
+    assert path.times.tolist() == [1.0, 2.0]
 
 
 def test_a_point_at_the_time_0_is_a_pose_to_take_at_once():

@@ -1,0 +1,22 @@
+"""Times of the library on the clock of ROS."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from rclpy.duration import Duration
+from rclpy.time import Time
+
+
+class Moment:
+    """The same moment on the clock of ROS and on CLOCK_MONOTONIC, which stamps the measurements of the library."""
+
+    def __init__(self, clock: Any) -> None:
+        self.on_ros: Time = clock.now()
+        #: ns.
+        self.monotonic: int = time.monotonic_ns()
+
+    def time_of(self, measured: int) -> Time:
+        """The time of a measurement, ns of CLOCK_MONOTONIC, on the clock of ROS."""
+        return self.on_ros + Duration(nanoseconds=measured - self.monotonic)

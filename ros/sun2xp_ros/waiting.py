@@ -1,0 +1,46 @@
+"""Trajectories that wait for their stamps. Needs no hand, so that every rule can be tested without one."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, List, Sequence, Set
+
+
+class _Waiting:
+    """A trajectory, and its fingers that have got no other command since."""
+
+    def __init__(self, fingers: Sequence[int]) -> None:
+        self.fingers: Set[int] = set(fingers)
+        self.timer: Any = None
+
+
+class WaitingTrajectories:
+    """Begins trajectories at their stamps, unless the finger gets another command before."""
+
+    def __init__(self, node: Any) -> None:
+        self._node = node
+        self._waiting: List[_Waiting] = []
+
+    def add(self, delay: float, fingers: Sequence[int], begin: Callable[[Set[int]], None]) -> None:
+        """Calls `begin` after `delay`, s, with the fingers that have got no other command until then."""
+        self.forget(fingers)
+        one = _Waiting(fingers)
+
+        def run() -> None:
+            if one in self._waiting:
+                self._end(one)
+                begin(one.fingers)
+
+        one.timer = self._node.create_timer(delay, run)
+        self._waiting.append(one)
+
+    def forget(self, fingers: Sequence[int]) -> None:
+        """Notes that these fingers have got another command."""
+        for one in list(self._waiting):
+            one.fingers.difference_update(fingers)
+            if not one.fingers:
+                self._end(one)
+
+    def _end(self, one: _Waiting) -> None:
+        self._waiting.remove(one)
+        # A timer of ROS is called again and again.
+        self._node.destroy_timer(one.timer)

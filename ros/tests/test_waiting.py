@@ -1,0 +1,122 @@
+"""Trajectories that wait for their stamps, and the times of measurements, without a hand and without nodes."""
+
+import time
+
+import pytest
+from builtin_interfaces.msg import Time as Stamp
+from rclpy.time import Time
+from sun2xp_ros.commands import Commands
+from sun2xp_ros.moment import Moment
+from test_trajectory import NAMES, message
+
+
+class Logger:
+    def __init__(self):
+        self.lines = []
+
+    def error(self, line):
+        self.lines.append(line)
+
+
+class Node:
+    """A node whose clock stands still until a test moves it."""
+
+    def __init__(self):
+        self.now_ns = int(8.5e9)
+        self.takes, self.timers, self.logger = {}, [], Logger()
+
+    def create_subscription(self, _kind, topic, take, _depth):
+        self.takes[topic] = take
+
+    def create_timer(self, delay, run):
+        self.timers.append((self.now_ns + round(delay * 1e9), run))
+        return self.timers[-1]
+
+    def destroy_timer(self, timer):
+        self.timers.remove(timer)
+
+    def get_clock(self):
+        return self
+
+    def now(self):
+        return Time(nanoseconds=self.now_ns)
+
+    def get_logger(self):
+        return self.logger
+
+    def advance_to(self, seconds):
+        self.now_ns = int(seconds * 1e9)
+        for due, run in list(self.timers):
+            if due <= self.now_ns:
+                run()
+
+
+class Hand:
+    """Notes the commands that it gets."""
+
+    def __init__(self):
+        self.calls = []
+
+    def palm_pose(self, _finger):
+        return self
+
+    base = rotation = None
+
+    def position(self, _finger):
+        return [0.0, 0.0, 0.0]
+
+    def send_path(self, finger, times, joints):
+        self.calls.append(("path", finger, times.tolist()))
+
+    def send_position(self, finger, _joints):
+        self.calls.append(("position", finger))
+
+
+@pytest.fixture
+def one():
+    node, hand = Node(), Hand()
+    commands = Commands(node, hand, (1, 3), "")
+    return node, hand, commands
+
+
+def test_a_trajectory_begins_at_its_stamp(one):
+    node, hand, _ = one
+    node.takes["joint_trajectory"](message([0.0, 1.0, 2.0], stamp=10))
+    node.advance_to(9.9)
+    assert hand.calls == []
+    node.advance_to(10.0)
+    assert hand.calls == [("path", 1, [1.0, 2.0]), ("path", 3, [1.0, 2.0])] and not node.timers
+
+
+def test_a_later_command_replaces_a_trajectory_that_waits(one):
+    node, hand, commands = one
+    take = node.takes["joint_trajectory"]
+    take(message([1.0], stamp=10))
+    take(message([0.0], names=NAMES[:3]))
+    assert hand.calls == [("position", 1)]
+    node.advance_to(10.0)
+    assert hand.calls[1:] == [("path", 3, [1.0])]
+    take(message([1.0], stamp=12))
+    commands.forget(3)
+    node.advance_to(12.0)
+    assert hand.calls[2:] == [("path", 1, [1.0])]
+    take(message([1.0], stamp=14))
+    take(message([]))
+    node.advance_to(14.0)
+    assert hand.calls[3:] == [("position", 1), ("position", 3)] and not node.timers and not node.logger.lines
+
+
+def test_a_trajectory_that_no_hand_can_execute_is_refused_at_once(one):
+    node, _, _ = one
+    node.takes["joint_trajectory"](message([1.0], stamp=10, names=NAMES[:2]))
+    assert not node.timers and "finger1_joint2 is missing" in node.logger.lines[0]
+
+
+def test_the_time_of_a_measurement_does_not_depend_on_the_time_of_reading(monkeypatch):
+    node = Node()
+    monkeypatch.setattr(time, "monotonic_ns", lambda: 1_000_000)
+    moment = Moment(node)
+    # Reading the fingers takes 20 ms.
+    monkeypatch.setattr(time, "monotonic_ns", lambda: 21_000_000)
+    assert moment.time_of(900_000).to_msg() == Stamp(sec=8, nanosec=499_900_000)
+    assert moment.time_of(1_100_000).to_msg() == Stamp(sec=8, nanosec=500_100_000)
