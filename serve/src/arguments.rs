@@ -86,7 +86,7 @@ pub fn run(arguments: Arguments) -> Result<(), ServeError> {
         return Ok(());
     }
     prepare(&mut configured.configuration, &settings.limits);
-    let hand = Hand::open_as(configured)?;
+    let hand = Hand::open_as(configured.of_this_machine())?;
     announce(&settings);
     let server = Server::start(hand, settings)?;
     say("ready");

@@ -107,6 +107,14 @@ impl Configured {
         self.said.remote
     }
 
+    /// Ignores a table `[remote]`. The server of a hand opens the hand of this machine, and its clients may share its
+    /// file.
+    #[must_use]
+    pub fn of_this_machine(mut self) -> Self {
+        self.said.remote = false;
+        self
+    }
+
     /// Refuses a configuration with a table `[remote]`, for calls that open only hands of this machine. Its fingers
     /// have no ports, so these calls would open a simulated hand instead.
     pub(super) fn refuse_remote(&self) -> Result<(), ConfigurationError> {
@@ -215,6 +223,7 @@ mod tests {
     fn a_hand_on_another_machine_is_refused_by_calls_that_open_hands_of_this_machine() {
         let text = "[remote]\nendpoint = 'tcp/cell:7447'\nhand = 'left'\n";
         let configured = Configured::from_text(text).expect("usable");
+        assert!(configured.clone().of_this_machine().refuse_remote().is_ok());
         let refusal = crate::hand::Hand::open_as(configured).err().expect("refused").to_string();
         assert!(refusal.starts_with("configuration text has a table [remote]"), "{refusal}");
         assert!(Configured::from_text("").expect("usable").refuse_remote().is_ok());
