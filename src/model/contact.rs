@@ -9,6 +9,9 @@ use thiserror::Error;
 /// covers the rounding of a planner that works in `float`.
 const ROUNDING: f64 = 1e-3;
 
+/// A negative eigenvalue of at most this fraction of the largest one is the rounding error of a zero, and is kept.
+const NEGLIGIBLE: f64 = 64.0 * f64::EPSILON;
+
 /// The spring of a contact as a symmetric, positive semi-definite 6 x 6 stiffness at the tip, in the axes of the
 /// finger's frame. Rows and columns 0 to 2 are translation (N/cm), 3 to 5 are rotation (N cm/rad), and the blocks
 /// between them are in N/rad.
@@ -64,9 +67,13 @@ impl Contact {
     /// Three joints turn the tip only by moving it, so the rotational stiffness stiffens the tip in one direction.
     ///
     /// # Errors
-    /// Returns an error if K is not a spring, or if the normal is zero or not finite.
+    /// Returns an error if K or its translational block is not a spring, or if the normal is zero or not finite.
     pub fn soft_finger(stiffness: Matrix4<f64>, normal: Vector3<f64>) -> Result<Self, ContactError> {
-        let (stiffness, normal) = directed(&stiffness, normal)?;
+        let (checked, normal) = directed(&stiffness, normal)?;
+        // The rotational stiffness has another unit, and is often by far the largest entry. It must not determine how
+        // negative a translational stiffness may be.
+        spring(&stiffness.fixed_view::<3, 3>(0, 0).into_owned())?;
+        let stiffness = checked;
         let mut selection = SMatrix::<f64, 4, 6>::zeros();
         selection.fixed_view_mut::<3, 6>(0, 0).copy_from(&translation());
         selection.fixed_view_mut::<1, 3>(3, 3).copy_from(&normal.transpose());
@@ -99,8 +106,7 @@ impl Contact {
         DefaultAllocator: Allocator<Const<D>, DimDiff<Const<D>, U1>> + Allocator<DimDiff<Const<D>, U1>>,
     {
         finite(selection.as_slice())?;
-        let (checked, _) = spring(stiffness)?;
-        Self::selected(&checked, selection)
+        Self::selected(&nonnegative(stiffness)?, selection)
     }
 
     /// Returns S^T K S for a K that is a spring.
@@ -184,6 +190,22 @@ where
     Ok((symmetric, (smallest, largest)))
 }
 
+/// Returns [`spring`] with its negative eigenvalues replaced by zero. The rows of S have any length, so S^T K S could
+/// turn an eigenvalue slightly below zero into a large negative stiffness.
+fn nonnegative<const D: usize>(asked: &SMatrix<f64, D, D>) -> Result<SMatrix<f64, D, D>, ContactError>
+where
+    Const<D>: DimSub<U1>,
+    DefaultAllocator: Allocator<Const<D>, DimDiff<Const<D>, U1>> + Allocator<DimDiff<Const<D>, U1>>,
+{
+    let (checked, (smallest, largest)) = spring(asked)?;
+    if smallest >= -NEGLIGIBLE * largest {
+        return Ok(checked);
+    }
+    let mut eigen = checked.symmetric_eigen();
+    eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.max(0.0));
+    Ok(symmetrised(&eigen.recompose()))
+}
+
 /// Removes a slight asymmetry of a matrix, so that its eigenvalues can be computed for any finite entries. The halves
 /// are added, because the sum of two entries may be infinite. Entries below the rounding error of the largest entry
 /// become zero, because the squares of much smaller entries underflow in the iteration for the eigenvalues. Infinite
@@ -208,7 +230,7 @@ where
     DefaultAllocator: Allocator<Const<D>, DimDiff<Const<D>, U1>> + Allocator<DimDiff<Const<D>, U1>>,
 {
     finite(normal.as_slice())?;
-    let (checked, _) = spring(stiffness)?;
+    let checked = nonnegative(stiffness)?;
     Ok((checked, direction(&normal).ok_or(ContactError::NoNormal)?))
 }
 
@@ -217,82 +239,4 @@ fn translation() -> SMatrix<f64, 3, 6> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        /// Lengths from almost the smallest to almost the largest double are tried.
-        #[test]
-        fn the_length_of_a_normal_does_not_matter(
-            mantissa in 1.0..1.7f64, exponent in -300..=308i32,
-            direction in proptest::array::uniform3(-1.0..1.0f64)
-                .prop_filter("no direction", |d| d.iter().any(|x| x.abs() > 0.1)),
-        ) {
-            let unit = Vector3::from(direction).normalize();
-            let long = unit * format!("{mantissa}e{exponent}").parse::<f64>().expect("a number");
-            let soft = Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 2.0, 1.0, 1e6));
-            let (point, soft) = (
-                |normal| Contact::frictionless_point(3.0, normal).expect("a spring"),
-                |normal| Contact::soft_finger(soft, normal).expect("a spring"),
-            );
-            prop_assert!((point(long).stiffness() - point(unit).stiffness()).amax() < 1e-13);
-            prop_assert!((soft(long).stiffness() - soft(unit).stiffness()).amax() < 1e-7);
-        }
-    }
-
-    #[test]
-    fn the_shortest_normal_has_a_direction() {
-        for length in [5e-324, -5e-324, 1e-310, f64::MIN_POSITIVE, f64::MAX] {
-            let point = Contact::frictionless_point(3.0, Vector3::new(0.0, length, 0.0)).expect("a spring");
-            assert_eq!(point.stiffness()[(1, 1)], 3.0, "{length}");
-        }
-    }
-
-    #[test]
-    fn every_contact_transmits_the_directions_of_its_selection() {
-        let kx = Matrix3::new(3.0, 0.5, 0.1, 0.5, 2.0, 0.25, 0.1, 0.25, 1.0);
-        let hard = Contact::hard_finger(kx).expect("a spring");
-        assert_eq!(hard.stiffness().fixed_view::<3, 3>(0, 0), kx);
-        assert_eq!(hard.stiffness().fixed_view::<6, 3>(0, 3).amax(), 0.0);
-
-        let normal = Vector3::new(0.0, 3.0, 4.0);
-        let point = Contact::frictionless_point(2.0, normal).expect("a spring");
-        let n = normal / 5.0;
-        assert!((point.stiffness().fixed_view::<3, 3>(0, 0) - n * n.transpose() * 2.0).amax() < 1e-15);
-
-        let mut k = Matrix4::identity() * 3.0;
-        k[(3, 3)] = 20.0;
-        (k[(0, 3)], k[(3, 0)]) = (0.5, 0.5);
-        let soft = Contact::soft_finger(k, normal).expect("a spring");
-        let turned = nalgebra::Vector6::new(0.0, 0.0, 0.0, 0.1, 0.6, 0.8);
-        let wrench = soft.stiffness() * turned;
-        // The tip is rotated by 1 rad about the normal, and by 0.1 rad about x, which a soft finger does not transmit.
-        let expected = nalgebra::Vector6::new(0.5, 0.0, 0.0, 0.0, 12.0, 16.0);
-        assert!((wrench - expected).amax() < 1e-12, "{wrench}");
-        assert!((soft.largest_eigenvalue(1.0) - 20.0147).abs() < 1e-3);
-        assert!(soft.largest_eigenvalue(4.0) < 3.1);
-        let clamped = soft.clamped(6.0, 1.0);
-        assert!((clamped.largest_eigenvalue(1.0) - 6.0).abs() < 1e-12);
-        assert!((soft.clamped(6.0, 4.0).stiffness() - soft.stiffness()).amax() < 1e-12);
-    }
-
-    #[test]
-    fn a_stiffness_that_is_not_a_spring_is_refused() {
-        let skewed = Matrix3::new(3.0, 0.5, 0.0, 0.4, 2.0, 0.0, 0.0, 0.0, 1.0);
-        assert!(matches!(Contact::hard_finger(skewed), Err(ContactError::NotSymmetric { row: 0, column: 1, .. })));
-        assert!(matches!(Contact::frictionless_point(-1.0, Vector3::x()), Err(ContactError::Negative { .. })));
-        assert!(matches!(Contact::frictionless_point(1.0, Vector3::zeros()), Err(ContactError::NoNormal)));
-        assert!(matches!(Contact::frictionless_point(f64::NAN, Vector3::x()), Err(ContactError::NotFinite(_))));
-        let infinite = Vector3::new(0.0, f64::INFINITY, 0.0);
-        assert!(matches!(Contact::soft_finger(Matrix4::identity(), infinite), Err(ContactError::NotFinite(_))));
-        let overflowing = SMatrix::<f64, 1, 6>::repeat(1e200);
-        let refused = Contact::general(&SMatrix::<f64, 1, 1>::new(1.0), &overflowing);
-        assert!(matches!(refused, Err(ContactError::NotFinite(_))));
-        let huge = Contact::hard_finger(Matrix3::from_diagonal_element(f64::MAX)).expect("a spring");
-        assert!(huge.stiffness().iter().all(|entry| entry.is_finite()));
-        // A negative rotational stiffness is found although all translational stiffnesses are positive.
-        let k = Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 3.0, 3.0, -1.0));
-        assert!(matches!(Contact::soft_finger(k, Vector3::x()), Err(ContactError::Negative { .. })));
-    }
-}
+mod tests;
