@@ -39,6 +39,20 @@ fn a_slow_stream_of_set_points_becomes_smooth_motion() {
 }
 
 #[test]
+fn a_set_point_that_replaces_a_path_causes_no_jump_with_interpolation_either() {
+    let mut bench = Bench::with(|configuration| configuration.fingers[0].motion.interpolate_ms = Some(100.0));
+    bench.goes(TARGET);
+    let mut track = Track(Vec::new());
+    send(&bench, &[joints(1.0, [-0.3, 1.1, 0.8])]);
+    track.run(&mut bench, 500);
+    assert!(track.0[499].motion.rates.amax() > 0.5, "{:?}", track.0[499]);
+    bench.mailbox.send(|set_point| set_point.joints = TARGET).expect("not faulted");
+    track.run(&mut bench, 1500);
+    track.is_smooth([0.05, 10.0, 6000.0]);
+    assert!((track.0[1999].joints - TARGET).amax() < 1e-3, "{:?}", track.0[1999]);
+}
+
+#[test]
 fn an_expired_set_point_leaves_the_finger_where_it_is() {
     let mut bench = Bench::with(|configuration| configuration.fingers[0].motion.valid_ms = Some(300.0));
     // Nothing expires before a planner has sent anything.

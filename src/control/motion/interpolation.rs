@@ -30,6 +30,8 @@ pub struct Interpolation {
     time: f64,
     /// Smallest time between the starts of two steps, cycles.
     spacing: u32,
+    /// Limit of the joint rates, rad/s.
+    speed: f64,
     /// Limits a step to the distance that the speed limit of set points permits.
     slew: Slew,
 }
@@ -50,6 +52,9 @@ pub struct InterpolationState {
 #[derive(Clone, Copy, Debug, Default)]
 struct Step {
     way: Vector3<f64>,
+    /// Period of the planner when the step began, s. The step keeps it, so that a change of the period does not move
+    /// the set point.
+    time: f64,
     /// Time since the step began, s.
     age: f64,
 }
@@ -60,7 +65,7 @@ impl Interpolation {
     pub fn new(time: f64, speed: f64, rate: f64) -> Self {
         // Rounding up keeps the number of steps that overlap below `MOST_STEPS`.
         let spacing = (time * rate * SPACING).ceil().max(1.0);
-        Self { period: 1.0 / rate, time, spacing: spacing as u32, slew: Slew::new(speed, rate / spacing) }
+        Self { period: 1.0 / rate, time, spacing: spacing as u32, speed, slew: Slew::new(speed, rate / spacing) }
     }
 
     /// Advances by one cycle toward `target`, rad. Returns the joint angles, and their motion unless they rest.
@@ -69,38 +74,52 @@ impl Interpolation {
         if state.wait == 0 && state.admitted != *target && state.count < MOST_STEPS {
             let before = state.admitted;
             self.slew.advance(&mut state.admitted, target);
-            state.steps[state.count] = Step { way: state.admitted - before, age: 0.0 };
-            state.count += 1;
-            state.wait = self.spacing;
+            let share = self.share(state);
+            if share < 1.0 {
+                state.admitted = before + (state.admitted - before) * share;
+            }
+            if share > 0.0 {
+                state.steps[state.count] = Step { way: state.admitted - before, time: self.time, age: 0.0 };
+                state.count += 1;
+                state.wait = self.spacing;
+            }
         }
         if state.count == 0 {
             return (state.admitted, None);
         }
         let (mut joints, mut motion) = (state.base, Motion::default());
-        let mut ended = 0;
-        for step in &mut state.steps[..state.count] {
+        let mut kept = 0;
+        for index in 0..state.count {
+            let mut step = state.steps[index];
             step.age += self.period;
-            let part = step.age / self.time;
-            if part >= 3.0 {
-                ended += 1;
-            }
+            let part = step.age / step.time;
             let [place, rate, acceleration, jerk] = smooth_step(part);
             joints += step.way * place;
-            motion.rates += step.way * (rate / self.time);
-            motion.accelerations += step.way * (acceleration / self.time.powi(2));
-            motion.jerk += step.way * (jerk / self.time.powi(3));
+            motion.rates += step.way * (rate / step.time);
+            motion.accelerations += step.way * (acceleration / step.time.powi(2));
+            motion.jerk += step.way * (jerk / step.time.powi(3));
+            if part >= 3.0 {
+                state.base += step.way;
+            } else {
+                state.steps[kept] = step;
+                kept += 1;
+            }
         }
-        // Steps end in the order in which they began.
-        for step in &state.steps[..ended] {
-            state.base += step.way;
-        }
-        state.steps.copy_within(ended..state.count, 0);
-        state.count -= ended;
+        state.count = kept;
         if state.count == 0 {
             // Rounding errors of the sum must not accumulate.
             state.base = state.admitted;
         }
         (joints, Some(motion))
+    }
+
+    /// Returns the share of the speed limit that a new step may use, 0 to 1. It is below 1 only while steps with
+    /// another period of the planner run. The rest of the limit is for these steps.
+    fn share(&self, state: &InterpolationState) -> f64 {
+        let others = state.steps[..state.count].iter().filter(|step| step.time != self.time);
+        // The largest rate of a step is three quarters of its way in a period of the planner.
+        let fastest: f64 = others.map(|step| 0.75 * step.way.amax() / step.time).sum();
+        (1.0 - fastest / self.speed).max(0.0)
     }
 }
 
@@ -108,6 +127,13 @@ impl InterpolationState {
     /// Returns the state of a set point that rests at `joints`, rad.
     pub fn at_rest(joints: Vector3<f64>) -> Self {
         Self { base: joints, admitted: joints, ..Self::default() }
+    }
+
+    /// Returns the state of a set point that stops at `joints`, rad, because its path is replaced. The first step
+    /// begins a cycle later, so that the set point rests for one cycle. The controller then treats the way back to the
+    /// steps as a deviation. Otherwise it would take the difference of the rates for motion of the set point.
+    pub fn stopped(joints: Vector3<f64>) -> Self {
+        Self { wait: 2, ..Self::at_rest(joints) }
     }
 }
 
@@ -158,6 +184,27 @@ mod tests {
         let all = run(1500, |_| target);
         assert!(all.iter().all(|(_, motion)| motion.rates.amax() < 5.0 * (1.0 + 1e-9)));
         assert!((all[1499].0 - target).amax() < 1e-12 && all[1499].1 == Motion::default());
+    }
+
+    #[test]
+    fn a_change_of_the_period_neither_moves_the_set_point_nor_exceeds_the_speed_limit() {
+        for (period, new_period) in [(0.1, 0.01), (0.1, 0.05), (0.01, 1.0), (1.0, 0.01)] {
+            for distance in [0.1, 2.0] {
+                let mut interpolation = Interpolation::new(period, 5.0, RATE);
+                let mut state = InterpolationState::at_rest(Vector3::zeros());
+                let (mut last, target) = (0.0, Vector3::x() * distance);
+                for cycle in 0..6000 {
+                    if cycle == 20 {
+                        interpolation = Interpolation::new(new_period, 5.0, RATE);
+                    }
+                    let (joints, motion) = interpolation.advance(&mut state, &target);
+                    assert!((joints.x - last) * RATE < 5.0 * (1.0 + 1e-9), "{period} {new_period} {cycle}");
+                    assert!(joints.x >= last && motion.unwrap_or_default().rates.amax() < 5.0 * (1.0 + 1e-9));
+                    last = joints.x;
+                }
+                assert_eq!(last, distance, "{period} {new_period}");
+            }
+        }
     }
 
     proptest! {

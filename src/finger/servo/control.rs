@@ -112,7 +112,7 @@ impl FingerServo {
             Some(path) => motion.path.stiffness &= path.stiffness,
             None if motion.path.follower.is_some() => {
                 motion.path.follower = None;
-                motion.interpolation = InterpolationState::at_rest(held.joints);
+                motion.interpolation = InterpolationState::stopped(held.joints);
             }
             None => {}
         }
