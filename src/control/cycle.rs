@@ -1,6 +1,7 @@
 //! One servo cycle. It connects the boxes of Figure 9, or it uses state feedback, which replaces most of these boxes.
 
 mod construction;
+mod continuation;
 mod pretension;
 mod pulls;
 mod spring;
@@ -144,30 +145,6 @@ impl Controller {
             gravity: None,
             report,
         }
-    }
-
-    /// Runs one cycle that continues without a jump in torque from the state of `previous`, another controller of the
-    /// same finger. Both controllers have the same encoders and the same rate.
-    ///
-    /// The cycle starts from the command that `previous` would compute in this cycle, and not from the last command of
-    /// `previous`. A planner that adjusts the controller in every cycle therefore neither stops the feedback nor delays
-    /// it.
-    pub fn take_over(
-        &self,
-        previous: &Self,
-        state: &mut State,
-        feedback: Option<&Feedback>,
-        activity: &Activity,
-    ) -> (MotorCommand, Report) {
-        let mut before = *state;
-        previous.cycle(&mut before, feedback, activity);
-        state.goes_on_from = Some(before.pulls);
-        if let (Some(law), Some(old), Some(elastic)) =
-            (&self.state_feedback, &previous.state_feedback, &mut state.state_feedback)
-        {
-            law.take_over(old, elastic);
-        }
-        self.cycle(state, feedback, activity)
     }
 
     /// Sets the gravity that the next cycles compensate, m/s^2 in the finger's frame. This value is an input of every

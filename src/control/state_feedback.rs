@@ -152,6 +152,7 @@ impl StateFeedback {
     /// Continues from the state of another controller of the same finger.
     pub fn take_over(&self, previous: &Self, state: &mut StateFeedbackState) {
         let ratio = self.radius.component_div(&previous.radius);
+        state.acting.component_div_assign(&ratio);
         for tendon in 0..4 {
             let estimate = &mut state.estimates[tendon];
             self.observers[tendon].take_over(&previous.observers[tendon], estimate, ratio[tendon]);

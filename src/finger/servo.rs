@@ -48,6 +48,8 @@ pub struct FingerServo {
     feedback: Feedback,
     /// Whether the controller must restart from the feedback.
     restart: bool,
+    /// Beginning of the cycle before the last fault, ns.
+    faulted_at: u64,
     command: MotorCommand,
     mailbox: ServoEnd,
     timing: CycleTiming,
@@ -101,6 +103,8 @@ struct Limits {
     ramp: u32,
     /// Time for which a warning is kept.
     warning: u32,
+    /// Time for which a board may keep the torque of a finger that has faulted, ms.
+    hold_ms: f64,
 }
 
 impl Limits {
@@ -236,6 +240,7 @@ impl FingerServo {
         if self.under_control() {
             self.alarm.raise(fault.kind);
             self.events.write(Occurrence::fault(&fault));
+            self.faulted_at = self.report.last;
             self.enter(Stage::Faulted(fault));
         }
     }

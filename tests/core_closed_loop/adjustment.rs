@@ -26,6 +26,7 @@ const CHANGES: &[Change] = &[
     ("links", |finger| finger.geometry.links = [3.556, 5.080, 4.200], false),
     ("tendon stiffness", |finger| finger.tendon.stiffness = [280.0; 4], false),
     ("motor radius", |finger| finger.geometry.motor_radius = [0.0480; 4], true),
+    ("much larger motor radius", |finger| finger.geometry.motor_radius = [0.0600; 4], true),
 ];
 
 /// Largest change of a command from one cycle to the next, N at the tendon, of a pushed finger: at rest, during the

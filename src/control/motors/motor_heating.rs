@@ -16,8 +16,12 @@ pub(crate) struct MotorHeating {
     largest: Vector4<f64>,
     /// Pull that each motor may give permanently, N.
     continuous: Vector4<f64>,
+    /// Square of `continuous`, N^2.
+    continuous_heat: Vector4<f64>,
     /// Change of the heat in a cycle as a fraction of tau^2 - h.
     gain: f64,
+    /// T, s.
+    time: f64,
 }
 
 /// h, N^2, with the torque expressed as pull at the tendon.
@@ -28,7 +32,9 @@ impl MotorHeating {
     /// Constructs the model. `largest` is the limit of a cold motor, N at the tendon; `radius` is in cm.
     pub fn new(finger: &ConfiguredFinger, largest: Vector4<f64>, radius: &Vector4<f64>, rate: f64) -> Self {
         let continuous = Vector4::from(finger.motor.continuous_torque).component_div(radius).inf(&largest);
-        Self { largest, continuous, gain: -(-1.0 / (rate * finger.motor.thermal_time)).exp_m1() }
+        let time = finger.motor.thermal_time;
+        let continuous_heat = continuous.component_mul(&continuous);
+        Self { largest, continuous, continuous_heat, gain: -(-1.0 / (rate * time)).exp_m1(), time }
     }
 
     /// Advances the heat by one cycle with these pulls, N.
@@ -36,9 +42,14 @@ impl MotorHeating {
         heat.0 += (pulls.component_mul(pulls) - heat.0) * self.gain;
     }
 
+    /// Cools motors that have had no torque for `seconds`.
+    pub fn cool(&self, heat: &mut Heat, seconds: f64) {
+        heat.0 *= (-seconds / self.time).exp();
+    }
+
     /// Returns the heat of each motor as a fraction of its continuous heat. The fraction can exceed 1.
     pub fn part(&self, heat: &Heat) -> Vector4<f64> {
-        heat.0.component_div(&self.continuous.component_mul(&self.continuous))
+        heat.0.component_div(&self.continuous_heat)
     }
 
     /// Returns the largest pull that each motor may give now, N.
@@ -49,6 +60,19 @@ impl MotorHeating {
             let (largest, continuous) = (self.largest[motor], self.continuous[motor]);
             largest + (continuous - largest) * ((part[motor] - WARM) / (1.0 - WARM)).clamp(0.0, 1.0)
         })
+    }
+}
+
+impl Heat {
+    /// Converts the heat to another unit of the pulls, by which the pulls are multiplied by `ratio`.
+    pub fn scale(&mut self, ratio: &Vector4<f64>) {
+        self.0.component_mul_assign(&ratio.component_mul(ratio));
+    }
+
+    /// Returns the heat. A heat that is not finite follows a defect of the controller, and becomes zero, because the
+    /// finger could never recover from it.
+    pub fn if_finite(self) -> Self {
+        Self(self.0.map(|heat| if heat.is_finite() { heat } else { 0.0 }))
     }
 }
 

@@ -15,7 +15,7 @@ use crate::finger::supervision::Supervision;
 use crate::finger::touch::{Elements, TouchFetching};
 use crate::finger::{FingerReport, ReactionLimits, Recorder, StopSignal, stop_calls};
 use crate::model::FingerNumber;
-use crate::model::configuration::{Configuration, ConfiguredHand, Unusable};
+use crate::model::configuration::{Configuration, ConfiguredHand, EndState, Unusable};
 use crate::realtime::{CycleTiming, Producer};
 use nalgebra::{Matrix3, Vector3};
 
@@ -56,6 +56,10 @@ impl Limits {
             settled: cycles(TENSION_SETTLED * 1e3),
             ramp: cycles(hand.release_ramp_ms.into()),
             warning: cycles(WARNING_MS),
+            hold_ms: match hand.end_state {
+                EndState::Hold => hand.hold_time_ms.into(),
+                EndState::Release => 0.0,
+            },
         }
     }
 }
@@ -103,6 +107,7 @@ impl FingerServo {
             status: configured.status,
             feedback,
             restart: false,
+            faulted_at: 0,
             command: MotorCommand::default(),
             mailbox: servo,
             timing: CycleTiming::default(),

@@ -106,6 +106,10 @@ impl FingerServo {
         self.sampled_at = None;
         self.command = MotorCommand::default();
         self.restart = true;
+        // The motors have cooled since their torque ended. The servo notes the time of every cycle, also of a faulted
+        // finger. A keyframe is recorded before the first cycle, so a replay starts with the cooled motors too.
+        let off_ms = self.report.last.saturating_sub(self.faulted_at) as f64 * 1e-6 - self.limits.hold_ms;
+        self.adjustable.controller.cool(&mut self.state, off_ms.max(0.0) * 1e-3);
         self.link.answered();
         self.calibration = None;
         // An order that was given before the fault and was not taken is discarded. New data is kept. The controller

@@ -1,0 +1,47 @@
+//! Continues from an earlier state: with another controller, or anew after the motors were off or replies were lost.
+
+use super::{Controller, State};
+use crate::control::signals::{Activity, Feedback, MotorCommand, Report};
+
+impl Controller {
+    /// Runs one cycle that continues without a jump in torque from the state of `previous`, another controller of the
+    /// same finger. Both controllers have the same encoders and the same rate.
+    ///
+    /// The cycle starts from the command that `previous` would compute in this cycle, and not from the last command of
+    /// `previous`. A planner that adjusts the controller in every cycle therefore neither stops the feedback nor delays
+    /// it.
+    pub fn take_over(
+        &self,
+        previous: &Self,
+        state: &mut State,
+        feedback: Option<&Feedback>,
+        activity: &Activity,
+    ) -> (MotorCommand, Report) {
+        let mut before = *state;
+        previous.cycle(&mut before, feedback, activity);
+        // The state has pulls at the tendons. With another motor radius, another pull has the same motor torque.
+        let ratio = previous.radius.component_div(&self.radius);
+        state.goes_on_from = Some(before.pulls.component_mul(&ratio));
+        for pulls in [&mut state.pulls, &mut state.acting, &mut state.against_friction] {
+            pulls.component_mul_assign(&ratio);
+        }
+        state.heat.scale(&ratio);
+        if let (Some(law), Some(old), Some(elastic)) =
+            (&self.state_feedback, &previous.state_feedback, &mut state.state_feedback)
+        {
+            law.take_over(old, elastic);
+        }
+        self.cycle(state, feedback, activity)
+    }
+
+    /// Returns the state in which the finger starts anew from this feedback. Only the heat of the motors is kept,
+    /// because windings do not cool when a controller restarts.
+    pub fn start_anew(&self, state: &State, feedback: &Feedback) -> State {
+        State { heat: state.heat.if_finite(), ..self.start(feedback) }
+    }
+
+    /// Cools the motors of a finger whose motors have had no torque for a time, s.
+    pub fn cool(&self, state: &mut State, time: f64) {
+        self.heating.cool(&mut state.heat, time);
+    }
+}
