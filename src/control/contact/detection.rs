@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 /// Time constant with which the recent motion is forgotten, s. It exceeds the delay of the residual.
 const CALMING: f64 = 0.1;
 
-/// Duration of the first average of the error, s. No contact is reported before its end.
+/// Duration of the first average of the error, s, unless the learning time is shorter. No contact is reported before
+/// its end.
 const FIRST: f64 = 0.2;
 
 /// Joint rate at which the error of the torques is learned half as fast as at rest, rad/s. A motion adds errors of its
@@ -25,6 +26,8 @@ pub(super) struct Detection {
     mass_tolerance: f64,
     lost: f64,
     learning_time: f64,
+    /// Duration of the first average, s.
+    first: f64,
 }
 
 /// The state of the detection.
@@ -63,6 +66,7 @@ impl Detection {
             mass_tolerance: contact.mass_tolerance,
             lost: contact.lost,
             learning_time: contact.learning_time_s,
+            first: FIRST.min(contact.learning_time_s),
         }
     }
 
@@ -84,11 +88,34 @@ impl Detection {
         let bounds = (self.torque + torques.allowed + state.inertial * self.mass_tolerance) * part;
         let excess = torques.residual - state.error;
         let loaded = (excess.abs() - bounds).max() > 0.0;
-        state.touching = loaded && force.norm_squared() > least * least && state.time >= FIRST;
-        let motion = if state.time < FIRST { 0.0 } else { state.rate * (1.0 / SLOW) };
+        state.touching = loaded && force.norm_squared() > least * least && state.time >= self.first;
+        let motion = if state.time < self.first { 0.0 } else { state.rate * (1.0 / SLOW) };
         state.learning = if state.touching { 0.0 } else { 1.0 / (1.0 + motion * motion) };
         let learned = elapsed * state.learning;
         state.time = (state.time + learned).min(self.learning_time);
         state.error += excess * (learned / state.time);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_contact_is_detected_with_any_learning_time() {
+        for learning_time in [0.05, 0.1, 0.2, 5.0] {
+            let mut finger = ConfiguredFinger::default();
+            finger.contact.learning_time_s = learning_time;
+            let detection = Detection::new(&finger);
+            let (none, push) = (Vector3::zeros(), Vector3::new(0.0, 20.0, 0.0));
+            let mut state = DetectionState::default();
+            let mut decide = |residual: &Vector3<f64>| {
+                let torques = Torques { residual, inertial: &none, allowed: &none };
+                detection.decide(&mut state, &torques, &Vector3::new(0.0, 5.0, 0.0), &none, 1e-3);
+                state.touching
+            };
+            assert!((0..1000).all(|_| !decide(&none)), "{learning_time} s");
+            assert!((0..1000).all(|_| decide(&push)), "{learning_time} s");
+        }
     }
 }
