@@ -1,6 +1,7 @@
 //! Detects gauges at the end of their range, and tendons with too much tension.
 
 use super::alarm::{Alarm, Symptom, first_of};
+use super::gauge_ends::GaugeEnds;
 use super::sample::Sample;
 use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
@@ -21,6 +22,7 @@ const DURATION: f64 = 0.004;
 
 #[derive(Clone, Debug)]
 pub(super) struct GaugeRange {
+    ends: GaugeEnds,
     /// Tension from which a tendon can pull its gauge to the end of the range, N.
     pulled: f64,
     /// Largest tolerated tension, N.
@@ -42,6 +44,7 @@ pub(super) struct Memory {
 impl GaugeRange {
     pub fn new(finger: &ConfiguredFinger) -> Self {
         Self {
+            ends: GaugeEnds::new(finger),
             pulled: PULLED * finger.tendon.maximum,
             highest: OVERSHOOT * finger.tendon.maximum,
             lowest: -BELOW_ZERO * finger.tendon.minimum,
@@ -50,7 +53,7 @@ impl GaugeRange {
 
     pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
         for gauge in 0..4 {
-            let at_end = sample.feedback.gauge_counts[gauge] >= sample.full_scale;
+            let at_end = self.ends.at_highest(gauge, sample.feedback.gauge_counts[gauge], sample.full_scale);
             if !at_end {
                 memory.loaded[gauge] = sample.tensions[gauge] > self.pulled;
             }
@@ -65,5 +68,55 @@ impl GaugeRange {
         });
         let over = |tendon: usize| (memory.over[tendon] >= DURATION).then_some(sample.tensions[tendon]);
         out.or_else(|| first_of(Symptom::OverTension, Part::tendon, over))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::signals::{Feedback, Report};
+    use nalgebra::Vector4;
+
+    /// Watches a finger whose gauge 2 is falling, with this zero, for 10 ms in each of these tensions.
+    fn alarmed(zero: f64, tensions: &[f64]) -> Option<Symptom> {
+        let mut finger = ConfiguredFinger::default();
+        finger.gauge.newton_per_count[1] *= -1.0;
+        finger.gauge.zero[1] = zero;
+        let (monitor, mut memory, report) = (GaugeRange::new(&finger), Memory::default(), Report::default());
+        let periods = tensions.iter().flat_map(|tension| [*tension; 10]);
+        periods
+            .map(|tension| {
+                let scale = finger.gauge.newton_per_count[1];
+                let count = (tension / scale + zero).clamp(0.0, 4095.0) as u16;
+                let mut feedback = Feedback { gauge_counts: [400; 4], ..Feedback::default() };
+                feedback.gauge_counts[1] = count;
+                let mut shown = Vector4::repeat(10.0);
+                shown[1] = (f64::from(count) - zero) * scale;
+                let sample = Sample {
+                    feedback: &feedback,
+                    report: &report,
+                    tensions: shown,
+                    travel: Vector4::zeros(),
+                    turned: Vector4::zeros(),
+                    pulls: Vector4::zeros(),
+                    elapsed: 1e-3,
+                    full_scale: 4095,
+                };
+                monitor.watch(&mut memory, &sample)
+            })
+            .find_map(|alarm| alarm.map(|alarm| alarm.symptom))
+    }
+
+    #[test]
+    fn a_slack_tendon_does_not_make_a_falling_gauge_defective() {
+        assert_eq!(alarmed(4095.0, &[8.0, 0.0, 8.0]), None);
+    }
+
+    #[test]
+    fn a_falling_gauge_at_its_high_end_shows_too_much_tension() {
+        // The range of the gauge ends at 73 N, which is below the largest tolerated tension of 78 N.
+        assert_eq!(alarmed(3000.0, &[8.0, 50.0, 90.0]), Some(Symptom::OverTension));
+        // A gauge that jumps to its end is defective.
+        assert_eq!(alarmed(3000.0, &[8.0, 90.0]), Some(Symptom::GaugeOutOfRange));
     }
 }

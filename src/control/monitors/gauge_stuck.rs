@@ -3,6 +3,7 @@
 //! while others flicker.
 
 use super::alarm::{Alarm, Symptom, first_of};
+use super::gauge_ends::GaugeEnds;
 use super::sample::Sample;
 use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
@@ -71,6 +72,7 @@ const SILENT: u32 = 10;
 /// tendons keep theirs; see `tension_lost`.
 #[derive(Clone, Debug)]
 pub(super) struct GaugeStuck {
+    ends: GaugeEnds,
     /// Tension below which a tendon may hang slack, N. The gauge of such a tendon is not used to judge others: if the
     /// range of the gauge ends there, only half of its noise is visible.
     slack: f64,
@@ -96,8 +98,8 @@ pub(super) struct Memory {
     differences: [[i32; 2]; 4],
     /// Tensions of the last sample, N.
     tensions: Vector4<f64>,
-    /// Whether each gauge shows the lowest count because its tension fell or drifted to the end of the range. A dead
-    /// gauge often shows the lowest count too, but its tension was not low before.
+    /// Whether each gauge shows the count of its low end because its tension fell or drifted to the end of the range. A dead
+    /// gauge often shows this count too, but its tension was not low before.
     at_lowest: [bool; 4],
 }
 
@@ -137,17 +139,6 @@ impl Flicker {
 }
 
 impl Memory {
-    /// Returns the flicker. `full_scale` is the largest count of the gauges.
-    pub fn flickers(&self, full_scale: u16) -> Flicker {
-        let known = std::array::from_fn(|gauge| {
-            let reverses = self.reversals[gauge] > LEAST_REVERSALS || self.bends[gauge] > LEAST_BENDS;
-            let noisy = self.repeats[gauge] < MOST_REPEATS && reverses;
-            self.samples >= KNOWN && noisy
-        });
-        let saturated = |gauge: usize| self.last[gauge] >= full_scale || self.at_lowest[gauge];
-        Flicker { known, same: self.same, saturated: std::array::from_fn(saturated) }
-    }
-
     /// Notes the change of a gauge since the last sample, counts. Returns whether the second difference has changed its
     /// sign.
     fn bends_to_the_other_side(&mut self, gauge: usize, change: i32) -> bool {
@@ -159,7 +150,23 @@ impl Memory {
 
 impl GaugeStuck {
     pub fn new(finger: &ConfiguredFinger) -> Self {
-        Self { slack: SLACK * finger.tendon.minimum, offset: OFFSET * finger.tendon.minimum }
+        Self {
+            ends: GaugeEnds::new(finger),
+            slack: SLACK * finger.tendon.minimum,
+            offset: OFFSET * finger.tendon.minimum,
+        }
+    }
+
+    /// Returns the flicker. `full_scale` is the largest count of the gauges.
+    pub fn flickers(&self, memory: &Memory, full_scale: u16) -> Flicker {
+        let known = std::array::from_fn(|gauge| {
+            let reverses = memory.reversals[gauge] > LEAST_REVERSALS || memory.bends[gauge] > LEAST_BENDS;
+            let noisy = memory.repeats[gauge] < MOST_REPEATS && reverses;
+            memory.samples >= KNOWN && noisy
+        });
+        let saturated =
+            |gauge: usize| self.ends.at_highest(gauge, memory.last[gauge], full_scale) || memory.at_lowest[gauge];
+        Flicker { known, same: memory.same, saturated: std::array::from_fn(saturated) }
     }
 
     pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
@@ -191,10 +198,11 @@ impl GaugeStuck {
             }
             if memory.same[gauge] == 0 {
                 memory.rose[gauge] = rises(gauge);
-                memory.at_lowest[gauge] = counts[gauge] == 0 && before[gauge] < self.slack;
+                let lowest = self.ends.at_lowest(gauge, counts[gauge], sample.full_scale);
+                memory.at_lowest[gauge] = lowest && before[gauge] < self.slack;
             }
         }
-        let Flicker { known, saturated, .. } = memory.flickers(sample.full_scale);
+        let Flicker { known, saturated, .. } = self.flickers(memory, sample.full_scale);
         let alone = |gauge: usize| (0..4).all(|other| other == gauge || known[other]);
         first_of(Symptom::GaugeStuck, Part::gauge, |gauge| {
             // The gauge of a slack tendon may be at the end of its range, and then shows only half of its noise.

@@ -7,6 +7,7 @@
 mod agreement;
 mod alarm;
 mod encoder_jump;
+mod gauge_ends;
 mod gauge_range;
 mod gauge_stuck;
 mod joint_stop;

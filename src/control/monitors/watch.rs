@@ -108,7 +108,7 @@ impl Monitors {
         let stuck = self.gauge_stuck.watch(&mut watch.gauge_stuck, &sample);
         let jumped = self.encoder_jump.watch(&mut watch.encoder_jump, &sample);
         let range = self.gauge_range.watch(&mut watch.gauge_range, &sample);
-        let flickers = watch.gauge_stuck.flickers(full_scale);
+        let flickers = self.gauge_stuck.flickers(&watch.gauge_stuck, full_scale);
         self.agreement.compare(&mut watch.agreement, &sample);
         let missing = watch.agreement.missing();
         let lost = self.tension_lost.watch(&mut watch.tension_lost, &sample, &missing, &flickers);
