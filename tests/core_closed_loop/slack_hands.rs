@@ -30,6 +30,8 @@ struct Hand {
     pulley: f64,
     /// Gravity in the finger's frame, m/s^2.
     gravity: [f64; 3],
+    /// Whether the controller compensates gravity.
+    compensates: bool,
     /// Rate of the controller, Hz.
     rate: f64,
     /// Largest motion of a joint from the start to the end, rad.
@@ -48,11 +50,12 @@ const DEFAULT: Hand = Hand {
     conduit: 0.0,
     pulley: 0.0,
     gravity: [0.0; 3],
+    compensates: true,
     rate: 1000.0,
     limit: 0.01,
 };
 
-const HANDS: [Hand; 22] = [
+const HANDS: [Hand; 23] = [
     DEFAULT,
     Hand { name: "friction x3", coulomb: 3.0, viscous: 3.0, ..DEFAULT },
     Hand { name: "friction x0.3", coulomb: 0.3, viscous: 0.3, ..DEFAULT },
@@ -74,6 +77,7 @@ const HANDS: [Hand; 22] = [
     Hand { name: "cheap", hand: NamedHand::Cheap, limit: 0.015, ..DEFAULT },
     Hand { name: "cheap, 2 mm", hand: NamedHand::Cheap, slack: 0.2, limit: 0.015, ..DEFAULT },
     Hand { name: "hanging", gravity: [0.0, 0.0, 9.81], slack: 1.0, ..DEFAULT },
+    Hand { name: "hanging, not compensated", gravity: [0.0, 0.0, 9.81], compensates: false, slack: 1.0, ..DEFAULT },
     Hand { name: "falling", gravity: [6.0, 2.0, -7.0], slack: 1.0, ..DEFAULT },
 ];
 
@@ -109,7 +113,8 @@ fn finger_of(hand: &Hand, pose: &Vector3<f64>, seed: u64) -> ConfiguredFinger {
 
 fn take_up(hand: &Hand, pose: &Vector3<f64>, seed: u64, found: &mut Found) {
     let finger = finger_of(hand, pose, seed);
-    let belief = ConfiguredFinger::default();
+    let mut belief = ConfiguredFinger::default();
+    belief.controller.gravity_compensation = hand.compensates;
     let mut servo = Loop::in_gravity(&finger, &belief, &hand.gravity.into(), hand.rate);
     let mut random = Pcg64::seed_from_u64(seed);
     for motor in 0..4 {

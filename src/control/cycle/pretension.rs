@@ -5,7 +5,7 @@ use super::{Controller, Doing, State};
 use crate::control::take_up::progress::Slackness;
 use crate::control::take_up::tightening::{Joints, Tightened};
 use crate::control::tendons::tension_distribution::DistributedTensions;
-use nalgebra::{Vector3, Vector4};
+use nalgebra::Vector4;
 
 impl Controller {
     /// Runs one cycle of taking up slack. The motors hold the joints where they are.
@@ -17,7 +17,8 @@ impl Controller {
             _ => (self.slack.start(&now), true),
         };
         let limit = self.heating.limit(&state.heat);
-        let pulls = self.slack.step(&mut slack, &now, gravity != Vector3::zeros());
+        let weighs = self.gravity.weighs(&gravity, &state.gravity, &state.report.joints);
+        let pulls = self.slack.step(&mut slack, &now, weighs);
         self.command_pulls(state, &pulls, &limit, starts);
         let DistributedTensions { tensions, scale } = self.reachable(&limit).distribute(&gravity);
         open_loop(state, pulls);

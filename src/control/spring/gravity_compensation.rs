@@ -59,6 +59,12 @@ impl GravityCompensation {
     pub fn weight(&self, changed: &Option<Vector3<f64>>, joints: &Vector3<f64>) -> Vector3<f64> {
         self.weight.torques(changed.as_ref().unwrap_or(&self.initial), joints) * 100.0
     }
+
+    /// Returns whether the links have weight. `compensation` are the torques of [`GravityCompensation::torques`], N cm,
+    /// which are zero if the weight is not compensated.
+    pub fn weighs(&self, compensation: &Vector3<f64>, changed: &Option<Vector3<f64>>, joints: &Vector3<f64>) -> bool {
+        *compensation != Vector3::zeros() || (!self.wanted && self.weight(changed, joints) != Vector3::zeros())
+    }
 }
 
 #[cfg(test)]
@@ -81,5 +87,19 @@ mod tests {
         let turned = Vector3::new(9.81 * 0.1f64.sin(), -9.81 * 0.1f64.cos(), 0.0);
         compensation.approach(&mut gravity, &turned);
         assert_eq!(gravity, Some(turned));
+    }
+
+    #[test]
+    fn links_have_weight_whether_it_is_compensated_or_not() {
+        let joints = Vector3::new(0.1, 0.5, 0.8);
+        for compensated in [true, false] {
+            let mut finger = ConfiguredFinger::default();
+            finger.controller.gravity_compensation = compensated;
+            for gravity in [Vector3::zeros(), Vector3::new(0.0, 9.81, 0.0)] {
+                let compensation = GravityCompensation::new(&finger, &gravity, 1000.0);
+                let torques = compensation.torques(&None, &joints);
+                assert_eq!(compensation.weighs(&torques, &None, &joints), gravity.y > 0.0, "{compensated} {gravity}");
+            }
+        }
     }
 }
