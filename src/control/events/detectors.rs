@@ -5,7 +5,7 @@ use super::contact_edges::{ContactBefore, ContactEdges};
 use super::joint_limits::JointLimits;
 use super::observation::Observations;
 use super::slip::{SlipDetector, SlipState};
-use super::tension_bounds::TensionBounds;
+use super::tension_bounds::{Side, TensionBounds};
 use crate::control::signals::{Report, SetPoint};
 use crate::model::configuration::ConfiguredFinger;
 
@@ -23,8 +23,8 @@ pub struct Detectors {
 #[derive(Clone, Copy, Debug)]
 pub struct DetectorState {
     contact: ContactBefore,
-    /// Whether each tension is beyond a bound.
-    tensions: [bool; 4],
+    /// The bound that each tension is beyond.
+    tensions: [Option<Side>; 4],
     /// Whether each joint is at a limit.
     joints: [bool; 3],
     arrival: ArrivalState,
@@ -62,7 +62,7 @@ impl DetectorState {
     pub fn holding(set_point: SetPoint) -> Self {
         Self {
             contact: ContactBefore::default(),
-            tensions: [false; 4],
+            tensions: [None; 4],
             joints: [false; 3],
             arrival: ArrivalState::holding(set_point),
             slip: SlipState::default(),

@@ -21,30 +21,46 @@ pub(super) struct TensionBounds {
     below: Option<f64>,
 }
 
+/// The bound that a tension is beyond. A tendon that tears can go from one bound to the other between two samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Side {
+    Above,
+    Below,
+}
+
 impl TensionBounds {
     pub fn new(events: &ConfiguredEvents) -> Self {
         Self { above: events.tension_above, below: events.tension_below }
     }
 
-    /// `beyond` holds whether each tension is beyond a bound.
-    pub fn observe(&self, beyond: &mut [bool; 4], report: &Report, observations: &mut Observations) {
+    /// `beyond` holds the bound that each tension is beyond.
+    pub fn observe(&self, beyond: &mut [Option<Side>; 4], report: &Report, observations: &mut Observations) {
         for (tendon, beyond) in beyond.iter_mut().enumerate() {
             let tension = report.tensions[tendon];
-            match self.crossed(tension, false) {
-                Some(bound) if !*beyond => {
-                    *beyond = true;
+            match self.crossed(tension) {
+                Some((side, _)) if *beyond == Some(side) => {}
+                Some((side, bound)) => {
+                    *beyond = Some(side);
                     observations.add(ObservationKind::TensionBound, Part::tendon(tendon), [tension, bound, 0.0, 0.0]);
                 }
-                _ => *beyond = *beyond && self.crossed(tension, true).is_some(),
+                None => *beyond = beyond.filter(|&side| self.is_near(tension, side)),
             }
         }
     }
 
-    /// Returns the bound that the tension has crossed. With `eased`, the bounds are moved inward by the hysteresis.
-    fn crossed(&self, tension: f64, eased: bool) -> Option<f64> {
-        let ease = |bound: f64| if eased { (HYSTERESIS * bound).max(LEAST_HYSTERESIS) } else { 0.0 };
-        let above = self.above.filter(|bound| tension > bound - ease(*bound));
-        above.or(self.below.filter(|bound| tension < bound + ease(*bound)))
+    /// Returns the bound that the tension is beyond.
+    fn crossed(&self, tension: f64) -> Option<(Side, f64)> {
+        let above = self.above.filter(|&bound| tension > bound).map(|bound| (Side::Above, bound));
+        above.or(self.below.filter(|&bound| tension < bound).map(|bound| (Side::Below, bound)))
+    }
+
+    /// Returns whether the tension is beyond the bound moved inward by the hysteresis.
+    fn is_near(&self, tension: f64, side: Side) -> bool {
+        let hysteresis = |bound: f64| (HYSTERESIS * bound).max(LEAST_HYSTERESIS);
+        match side {
+            Side::Above => self.above.is_some_and(|bound| tension > bound - hysteresis(bound)),
+            Side::Below => self.below.is_some_and(|bound| tension < bound + hysteresis(bound)),
+        }
     }
 }
 
@@ -56,7 +72,7 @@ mod tests {
     #[test]
     fn each_crossing_is_observed_once() {
         let bounds = TensionBounds { above: Some(20.0), below: Some(4.0) };
-        let mut beyond = [false; 4];
+        let mut beyond = [None; 4];
         let mut observed = |tension: f64| {
             let report = Report { tensions: Vector4::new(10.0, 10.0, tension, 10.0), ..Report::default() };
             let mut observations = Observations::default();
@@ -75,6 +91,23 @@ mod tests {
         assert_eq!(observed(10.0), vec![]);
         assert_eq!(observed(3.9), crossing(3.9, 4.0));
         assert_eq!(observed(4.1), vec![]);
+        // The tendon is pulled and then tears.
+        assert_eq!(observed(25.0), crossing(25.0, 20.0));
+        assert_eq!(observed(1.0), crossing(1.0, 4.0));
+        assert_eq!(observed(21.0), crossing(21.0, 20.0));
+    }
+
+    #[test]
+    fn bounds_that_are_near_each_other_are_both_observed() {
+        let bounds = TensionBounds { above: Some(5.3), below: Some(5.2) };
+        let (mut beyond, mut seen) = ([None; 4], 0);
+        for tension in [5.4, 5.1, 5.4, 5.1] {
+            let report = Report { tensions: Vector4::repeat(tension), ..Report::default() };
+            let mut observations = Observations::default();
+            bounds.observe(&mut beyond, &report, &mut observations);
+            seen += observations.iter().count();
+        }
+        assert_eq!(seen, 16);
     }
 
     #[test]
@@ -83,7 +116,7 @@ mod tests {
         let mut observations = Observations::default();
         for tension in [-1e9, 0.0, 1e9] {
             let report = Report { tensions: Vector4::from_element(tension), ..Report::default() };
-            bounds.observe(&mut [false; 4], &report, &mut observations);
+            bounds.observe(&mut [None; 4], &report, &mut observations);
         }
         assert_eq!(observations.iter().count(), 0);
     }
