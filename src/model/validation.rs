@@ -5,6 +5,7 @@ mod events;
 mod monitors;
 mod motion;
 mod object;
+mod pretension;
 mod ranges;
 mod sharing;
 mod simulation;
@@ -140,6 +141,7 @@ impl ConfiguredFinger {
         self.check_limits()?;
         self.check_controller()?;
         self.check_mechanics()?;
+        self.check_pretension()?;
         self.monitors.check()?;
         self.events.check()?;
         self.touch.check()?;
@@ -191,20 +193,7 @@ impl ConfiguredFinger {
         each("motor.torque_constant", &self.motor.torque_constant, 1e-3, 1e4, "N cm/A")?;
         each("encoder.counts_per_revolution", &self.encoder.counts_per_revolution.map(f64::from), 4.0, 1e7, "")?;
         each("gauge.newton_per_count", &self.gauge.newton_per_count.map(f64::abs), 1e-6, 10.0, "N")?;
-        each("gauge.zero", &self.gauge.zero, -65_536.0, 65_536.0, "counts")?;
-        let pretension =
-            self.tendons().map(|tendons| tendons.pretension(self.tendon.minimum).component_mul(&tendons.radius));
-        for (tendon, torque) in pretension.iter().flat_map(|torques| torques.iter().enumerate()) {
-            if *torque >= self.motor.torque_limit[tendon] {
-                let reason = format!(
-                    "motor {} cannot hold the pretension of its tendon, because it needs {torque:.3} N cm: raise the \
-                     limit, or lower tendon.minimum",
-                    tendon + 1
-                );
-                return unusable("motor.torque_limit", reason);
-            }
-        }
-        Ok(())
+        each("gauge.zero", &self.gauge.zero, -65_536.0, 65_536.0, "counts")
     }
 
     fn check_limits(&self) -> Result<(), Unusable> {
