@@ -100,3 +100,35 @@ fn motors_are_a_reference_for_the_scale_of_the_gauges() {
         assert!((found.conduit[tendon] / 0.05 - 1.0).abs() < 0.15, "motor {tendon}: {found:?}");
     }
 }
+
+#[test]
+fn the_mean_of_unequal_configured_gains_is_kept() {
+    let mut belief = ConfiguredFinger::default();
+    belief.gauge.newton_per_count[0] *= 1.3;
+    let mut bench = Bench::new(&ConfiguredFinger::default(), &belief, 1000.0).open();
+    let found = identified(&mut bench);
+    let mut gains = belief.gauge.newton_per_count;
+    let before = gains.iter().sum::<f64>();
+    gains.iter_mut().zip(&found.gauge_gain).for_each(|(scale, gain)| *scale *= gain);
+    assert!((gains.iter().sum::<f64>() / before - 1.0).abs() < 1e-9, "{found:?}");
+    assert!((gains[0] / gains[1] - 1.0).abs() < 0.01, "{found:?}");
+}
+
+#[test]
+fn the_zeros_of_the_encoders_belong_to_the_scale_of_the_reference() {
+    let zeros = |gauge: f64, reference: GaugeReference| {
+        let mut truth = ConfiguredFinger::default();
+        truth.simulation.moment_arm_ratio.iter_mut().for_each(|joint| joint[0] = 1.05);
+        truth.simulation.gauge_gain_ratio = [gauge; 4];
+        let mut belief = ConfiguredFinger::default();
+        belief.gauge.reference = reference;
+        let mut bench = Bench::new(&truth, &belief, 1000.0).open();
+        identified(&mut bench).moment_arms.expect("other moment arms").encoder_zero
+    };
+    let right = zeros(1.0, GaugeReference::Gauges);
+    let found = zeros(1.0 / 1.2, GaugeReference::Motors);
+    println!("{right:?} {found:?}");
+    for (motor, (right, found)) in right.into_iter().zip(found).enumerate() {
+        assert!((right - found).abs() <= 4, "motor {motor}: {found} instead of {right}");
+    }
+}

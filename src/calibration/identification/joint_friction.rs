@@ -57,7 +57,7 @@ pub(super) struct JointFriction {
 /// What the tensions of a free finger show.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FreeFinger {
-    /// Factors for the tensions of the gauges. Their mean is 1.
+    /// Factors for the tensions of the gauges. The mean of the configured gains (N per count) is unchanged.
     pub gains: Vector4<f64>,
     /// Relative uncertainty of the gains: the largest difference between the gains from one direction of motion and the
     /// gains from all directions.
@@ -112,18 +112,22 @@ impl JointFriction {
             };
             level(true) - level(false)
         });
+        // Newton per count, relative to their mean. Factors that are weighted with them do not change the mean.
+        let weights = instruments.newton_per_count.abs();
+        let weights = weights / weights.mean();
         let relative = |rise: &Vector4<f64>| {
             let gains = instruments.pretension.component_div(rise);
-            gains / gains.mean()
+            gains / gains.component_mul(&weights).mean()
         };
         let gains = relative(&rises.iter().sum());
         // A single direction also determines all gains.
         let spread = rises.iter().map(|rise| (relative(rise).component_div(&gains)).add_scalar(-1.0).amax());
         let uncertainty = spread.fold(0.0, f64::max);
-        match gains.iter().position(|gain| !GAINS.contains(gain)) {
+        let compared = gains / gains.mean();
+        match compared.iter().position(|gain| !GAINS.contains(gain)) {
             Some(index) => {
                 let what = "the gain, relative to the other gauges,";
-                Err(Obstacle::Implausible { part: Part::gauge(index), what, value: 1.0 / gains[index] })
+                Err(Obstacle::Implausible { part: Part::gauge(index), what, value: 1.0 / compared[index] })
             }
             None => Ok((gains, uncertainty)),
         }

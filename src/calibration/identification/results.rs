@@ -29,7 +29,10 @@ impl Identification {
             let corrected = self.with_moment_arms(&arms, instruments)?;
             free = self.joint_friction.solve(&corrected)?;
             motors = self.motor_friction.solve(&free.gains)?;
-            let encoder_zero = self.encoder_zero(&arms, elasticity, instruments, &corrected.pretension);
+            // The elasticity is in the scale of the gauges, and the finger will have this pretension in the scale of the
+            // reference.
+            let pretension = corrected.pretension / self.scale(&motors);
+            let encoder_zero = self.encoder_zero(&arms, elasticity, instruments, &pretension);
             moment_arms = Some(IdentifiedArms { r: arms.r, encoder_zero });
         }
         // The stiffness of the tendons was found with the gauge gains of the first evaluation.
@@ -50,8 +53,16 @@ impl Identification {
         };
         Ok(match self.reference {
             GaugeReference::Gauges => found,
-            GaugeReference::Motors => found.scaled(motors.ratio.mean()),
+            GaugeReference::Motors => found.scaled(self.scale(&motors)),
         })
+    }
+
+    /// Returns the factor from the tensions that the gauges show to those of the configured reference.
+    fn scale(&self, motors: &MotorFrictionFound) -> f64 {
+        match self.reference {
+            GaugeReference::Gauges => 1.0,
+            GaugeReference::Motors => motors.ratio.mean(),
+        }
     }
 
     /// Returns the errors that the monitors must tolerate.
@@ -86,7 +97,7 @@ impl Identification {
     }
 
     /// Returns the `encoder.zero` that corrects the joint angles for the moment arms `arms` and for their pretension
-    /// `pretension`, N. The angles are then right at the stops, if the angles of the stops are known. Otherwise they
+    /// `pretension`, N in the scale of the gauges. The angles are then right at the stops, if the angles of the stops are known. Otherwise they
     /// are right in the pose in which the encoders were zeroed.
     fn encoder_zero(
         &self,
