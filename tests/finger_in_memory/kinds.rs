@@ -169,34 +169,3 @@ fn a_motor_above_its_continuous_torque_is_limited_and_then_stopped() {
     bench.cycles(2);
     assert!(bench.with_finger(|finger| finger.status().has(Status::ENDED)));
 }
-
-/// A recovery does not cool the motors. A pause before the recovery does.
-#[test]
-fn a_motor_stays_warm_over_a_recovery() {
-    let mut bench = Bench::with(|configuration| {
-        configuration.fingers[0].motor.continuous_torque = [0.8; 4];
-        configuration.fingers[0].motor.thermal_time = 4.0;
-    });
-    let push = |bench: &Bench, force: f64| {
-        bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(0.0, 0.0, force)));
-    };
-    let periods_to_warmth = |bench: &mut Bench| {
-        let begin = bench.report().losses.cycles;
-        push(bench, -2.5);
-        bench.warns(FaultKind::WarmMotor);
-        let periods = bench.report().losses.cycles - begin;
-        bench.faults(FaultKind::OverheatedMotor);
-        push(bench, 0.0);
-        periods
-    };
-    let cold = periods_to_warmth(&mut bench);
-    bench.repair();
-    bench.opens();
-    let warm = periods_to_warmth(&mut bench);
-    bench.cycles(40_000);
-    bench.repair();
-    bench.opens();
-    let cooled = periods_to_warmth(&mut bench);
-    println!("{cold}, {warm} and {cooled} periods");
-    assert!(2 * warm < cold && 4 * cooled > 3 * cold, "{cold}, {warm} and {cooled} periods");
-}

@@ -29,8 +29,7 @@ impl Identification {
             let corrected = self.with_moment_arms(&arms, instruments)?;
             free = self.joint_friction.solve(&corrected)?;
             motors = self.motor_friction.solve(&free.gains)?;
-            // The elasticity is in the scale of the gauges, and the finger will have this pretension in the scale of the
-            // reference.
+            // The elasticity is in the scale of the gauges. The pretension will be in the scale of the reference.
             let pretension = corrected.pretension / self.scale(&motors);
             let encoder_zero = self.encoder_zero(&arms, elasticity, instruments, &pretension);
             moment_arms = Some(IdentifiedArms { r: arms.r, encoder_zero });
@@ -97,8 +96,8 @@ impl Identification {
     }
 
     /// Returns the `encoder.zero` that corrects the joint angles for the moment arms `arms` and for their pretension
-    /// `pretension`, N in the scale of the gauges. The angles are then right at the stops, if the angles of the stops are known. Otherwise they
-    /// are right in the pose in which the encoders were zeroed.
+    /// `pretension`, N in the scale of the gauges. The angles are then right at the stops, if the angles of the stops
+    /// are known. Otherwise they are right in the pose in which the encoders were zeroed.
     fn encoder_zero(
         &self,
         arms: &MomentArmsFound,

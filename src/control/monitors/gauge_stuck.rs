@@ -98,8 +98,8 @@ pub(super) struct Memory {
     differences: [[i32; 2]; 4],
     /// Tensions of the last sample, N.
     tensions: Vector4<f64>,
-    /// Whether each gauge shows the count of its low end because its tension fell or drifted to the end of the range. A dead
-    /// gauge often shows this count too, but its tension was not low before.
+    /// Whether each gauge shows the count of its low end because its tension fell or drifted to the end of the range. A
+    /// dead gauge often shows this count too, but its tension was not low before.
     at_lowest: [bool; 4],
 }
 
