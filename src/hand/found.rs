@@ -6,7 +6,7 @@ use crate::hand::configuration_file::to_document;
 use crate::model::FingerNumber;
 use crate::model::configuration::Configuration;
 use std::collections::BTreeMap;
-use toml_edit::Item;
+use toml_edit::{Formatted, Item, Value};
 
 /// The keys that signs, zeros, friction and stiffness depend on. They say where the finger is connected, and how counts
 /// and torques are converted to angles and forces.
@@ -34,6 +34,9 @@ const HELD_BY_BOUND: &[&str] = &[
     "encoder.counts_per_revolution",
 ];
 
+/// Number of significant digits that are stored and compared. No calibration routine is accurate to so many digits.
+const DIGITS: usize = 6;
+
 /// The only key in these lists that is not in the finger's table.
 const RATE: &str = "hand.rate";
 
@@ -46,7 +49,8 @@ pub struct Found {
     values: Vec<FoundValue>,
     /// Keys and tables of keys that the values depend on.
     held_by: &'static [&'static str],
-    /// The values of the keys in `held_by` when the results were found.
+    /// The values of the keys in `held_by` when the results were found, rounded as in the file. The hand keeps all digits
+    /// of earlier results, and the file does not.
     holds_for: BTreeMap<String, String>,
 }
 
@@ -218,9 +222,25 @@ fn collect(key: &str, item: &Item, leaves: &mut BTreeMap<String, String>) {
     match item.as_table_like() {
         Some(table) => table.iter().for_each(|(name, item)| collect(&format!("{key}.{name}"), item, leaves)),
         None => {
-            leaves.insert(key.into(), item.to_string().trim().into());
+            leaves.insert(key.into(), item.as_value().map_or_else(String::new, shown));
         }
     }
+}
+
+/// Returns the text of a value whose numbers are rounded.
+fn shown(value: &Value) -> String {
+    match value {
+        Value::Float(number) => rounded(*number.value()).to_string(),
+        Value::Array(values) => format!("[{}]", values.iter().map(shown).collect::<Vec<_>>().join(", ")),
+        other => other.to_string().trim().into(),
+    }
+}
+
+/// Rounds to [`DIGITS`] significant digits.
+pub(super) fn rounded(value: f64) -> Value {
+    let digits = DIGITS - 1;
+    // The text of a finite number can be parsed.
+    Value::Float(Formatted::new(format!("{value:.digits$e}").parse().unwrap_or(value)))
 }
 
 #[cfg(test)]

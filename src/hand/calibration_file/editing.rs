@@ -1,10 +1,7 @@
 //! Changes single values in a TOML document, and keeps everything around these values.
 
-use crate::hand::found::{Numbers, with_signs};
-use toml_edit::{Array, Formatted, Item, Table, TableLike, Value};
-
-/// Number of significant digits that are written. No calibration routine is accurate to so many digits.
-const DIGITS: usize = 6;
+use crate::hand::found::{Numbers, rounded, with_signs};
+use toml_edit::{Array, Item, Table, TableLike, Value};
 
 /// The values to write, and whether they form an array. `present` contains the numbers that the key has in the file.
 pub(super) fn written(numbers: &Numbers, present: &[f64]) -> (Vec<Value>, bool) {
@@ -56,13 +53,6 @@ pub(super) fn set(section: &mut dyn TableLike, key: &str, values: Vec<Value>, ar
     }
 }
 
-/// Rounds to [`DIGITS`] significant digits.
-fn rounded(value: f64) -> Value {
-    let digits = DIGITS - 1;
-    // The text of a finite number can be parsed.
-    Value::Float(Formatted::new(format!("{value:.digits$e}").parse().unwrap_or(value)))
-}
-
 /// Whether the values are present already.
 pub(super) fn same(values: &[Value], present: &[f64]) -> bool {
     let values: Vec<&Value> = values.iter().flat_map(flat).collect();
@@ -77,7 +67,7 @@ fn flat(value: &Value) -> Vec<&Value> {
     }
 }
 
-/// Whether a value equals this number, or equals it after rounding to [`DIGITS`] significant digits.
+/// Whether a value equals this number, or equals it after rounding.
 fn is(value: &Value, number: f64) -> bool {
     match value {
         Value::Integer(whole) => *whole.value() as f64 == number,

@@ -88,6 +88,27 @@ fn moment_arms_are_stored_with_the_zeros_that_belong_to_them() {
     }
 }
 
+/// The hand keeps all digits of the moment arms and of the friction. The file has six of them.
+#[test]
+fn results_that_follow_stored_results_are_stored_too() {
+    let r = ConfiguredFinger::default().r() * 1.021_234_567_8;
+    let moment_arms = Some(IdentifiedArms { r, encoder_zero: [5; 4] });
+    let findings = Findings::Identified(Identified { moment_arms, ..friction([301.234_567_8; 4], 0.051_234_567_8) });
+    let mut present = Configuration::default();
+    findings.apply(&mut present.fingers[1]);
+    let text = stored(FILE_OF_TWO, &[Found::by_calibration(&findings, FingerNumber::TWO, &present)]);
+    let zeros = Zeros { encoder: [9; 4], gauge: [0.0; 4], joint_error: Vector3::zeros(), range_error: None };
+    let zeros = Found::by_calibration(&Findings::Zeros(zeros), FingerNumber::TWO, &present);
+    let text = stored(&text, &[zeros, Found::bound(7.5, FingerNumber::TWO, &present)]);
+    assert!(text.contains("zero = [9, 9, 9, 9]") && text.contains("bound = 7.5"), "{text}");
+    // Arms that somebody has changed by more than the rounding are still noticed.
+    present.fingers[1].geometry.r[0][0] *= 1.001;
+    let error = try_to_store(&text, &[Found::bound(7.5, FingerNumber::TWO, &present)]).expect_err("other arms");
+    assert!(error.to_string().contains("finger.2.geometry.r"), "{error}");
+}
+
+const FILE_OF_TWO: &str = "[finger.2]\nport = \"simulated\"\n";
+
 fn bound(finger: FingerNumber, bound: f64) -> Found {
     Found::bound(bound, finger, &Configuration::default())
 }
