@@ -153,6 +153,10 @@ impl Publisher {
                 ring.batch.add(&Outgoing::Cycle { finger, record }, &mut ring.writer);
             }
         }
+        // A servo writes a keyframe before the record of its cycle. That record comes with the next call.
+        for keyframe in keyframes {
+            self.publish(&Outgoing::Keyframe { finger, cycle: keyframe.cycle, state: &keyframe.state });
+        }
         outlet.clear();
     }
 

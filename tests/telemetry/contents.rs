@@ -4,13 +4,14 @@ use crate::support::{configuration, name, open, read_for, read_until, reader};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeSet;
 use std::time::Duration;
-use sun2xp::control::Controller;
+use sun2xp::control::{Controller, Feedback};
 use sun2xp::finger::events::EventKind;
-use sun2xp::finger::{ControllerSource, Fault, FaultKind, Stage};
+use sun2xp::finger::{ControllerSource, CycleRecord, Fault, FaultKind, Keyframe, Outlet, Stage};
 use sun2xp::hand::Hand;
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::ConfiguredObject;
-use sun2xp::telemetry::{Message, View};
+use sun2xp::realtime::CycleTiming;
+use sun2xp::telemetry::{Message, Publisher, Serving, View};
 
 #[test]
 fn the_description_names_hand_process_and_configuration() {
@@ -210,4 +211,48 @@ fn a_fault_while_a_reader_attaches_is_an_event() {
         });
         assert_eq!(kind, EventKind::Fault);
     }
+}
+
+/// A servo writes a keyframe before the record of its cycle, and both may be collected at different times.
+#[test]
+fn a_keyframe_that_is_collected_before_its_cycle_is_published() {
+    let name = name("keyframes");
+    let configuration = configuration(&name);
+    let finger = &configuration.fingers[0];
+    let controller = Controller::in_gravity(finger, &Vector3::zeros(), 1000.0).expect("a controller");
+    let feedback = Feedback { motor_counts: [0; 4], gauge_counts: [0; 4] };
+    let mut publisher = Publisher::open(configuration.clone(), vec![FingerNumber::ONE]).expect("published");
+    let mut reader = std::thread::scope(|scope| {
+        let attaching = scope.spawn(|| reader(&name));
+        while !matches!(publisher.serve(|| Ok(())), Serving::Readers { .. }) {
+            std::thread::yield_now();
+        }
+        attaching.join().expect("attached")
+    });
+    let record = |cycle: u64| CycleRecord {
+        cycle,
+        began: cycle,
+        stage: Stage::Running,
+        timing: CycleTiming::default(),
+        feedback: None,
+        status: 0,
+        control: None,
+    };
+    let mut outlet = Outlet { records: vec![record(1), record(2)], ..Outlet::default() };
+    outlet.keyframes.push(Keyframe { cycle: 3, state: controller.start(&feedback) });
+    publisher.publish_cycles(FingerNumber::ONE, &mut outlet);
+    outlet.records.extend([record(3), record(4)]);
+    publisher.publish_cycles(FingerNumber::ONE, &mut outlet);
+    publisher.end_batch();
+    let mut messages = Vec::new();
+    reader.read(Duration::from_secs(10), &mut messages).expect("messages");
+    let order: Vec<String> = messages
+        .iter()
+        .map(|message| match message {
+            Message::Cycle { record, .. } => format!("cycle {}", record.cycle),
+            Message::Keyframe { cycle, .. } => format!("keyframe {cycle}"),
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    assert_eq!(order, ["cycle 1", "cycle 2", "keyframe 3", "cycle 3", "cycle 4"]);
 }
