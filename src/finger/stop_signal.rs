@@ -23,13 +23,16 @@ pub fn stop_calls() -> u32 {
     CALLS.load(Ordering::SeqCst)
 }
 
-/// The numbers of requests to stop before a recovery began. The recovery answers these requests, and no later ones.
+/// The numbers of requests to stop and of faults before a recovery began. The recovery answers these, and no later
+/// ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StopCounts {
     /// Number of emergency stop calls ([`stop_calls`]).
     pub calls: u32,
     /// Number of requests to stop the finger ([`Mailbox::stops`](crate::finger::Mailbox::stops)).
     pub of_finger: u32,
+    /// Number of faults of the fingers that stop together ([`StopSignal::faults`]).
+    pub faults: u32,
 }
 
 /// One finger's view of the stop signals.
@@ -50,7 +53,7 @@ impl StopSignal {
 
     /// The requests to stop that were made before any motor moved.
     pub(super) fn answered(&self) -> StopCounts {
-        StopCounts { calls: self.calls_seen, of_finger: 0 }
+        StopCounts { calls: self.calls_seen, ..StopCounts::default() }
     }
 
     /// Adds the pages that the fingers share to `memory`.
@@ -77,9 +80,14 @@ impl StopSignal {
         }
     }
 
-    /// Clears the signals when the finger recovers: earlier calls and faults do not stop it again.
-    pub(super) fn forget(&mut self, calls_seen: u32) {
-        self.calls_seen = calls_seen;
-        self.faults_seen = self.together.as_ref().map_or(0, |faults| faults.load(Ordering::Acquire));
+    /// Returns the number of faults so far of the fingers that stop together; 0 if each finger stops alone.
+    pub fn faults(&self) -> u32 {
+        self.together.as_ref().map_or(0, |faults| faults.load(Ordering::Acquire))
+    }
+
+    /// Clears the signals when the finger recovers: the calls and faults up to these counts do not stop it again. A
+    /// finger that has faulted since the recovery began stops it.
+    pub(super) fn forget(&mut self, stops: &StopCounts) {
+        (self.calls_seen, self.faults_seen) = (stops.calls, stops.faults);
     }
 }

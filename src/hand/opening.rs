@@ -59,6 +59,8 @@ pub(super) struct Connected {
     pub repairs: Vec<PortRepair>,
     /// The events of all fingers.
     pub events: EventSource,
+    /// The signal that stops the fingers.
+    pub alarm: StopSignal,
 }
 
 /// A port with its fingers, and the number of the thread that will serve it.
@@ -152,7 +154,7 @@ pub(super) fn reach(
     reached.sort_by_key(|finger| finger.number);
     let logs = reached.iter().map(|finger| finger.events.clone()).collect();
     let events = EventSource::new(logs, readers, configuration.hand.period());
-    Ok(Connected { lines, reached, gate, repairs, events })
+    Ok(Connected { lines, reached, gate, repairs, events, alarm })
 }
 
 /// Returns the ports of these fingers, each port with its fingers. Fingers that the hand does not have are left out.

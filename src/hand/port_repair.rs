@@ -8,6 +8,7 @@ use crate::model::FingerNumber;
 use crate::model::configuration::FINGERS;
 use crate::realtime::now;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Time for a board to answer one attempt, ns. It is short, because the attempt is repeated.
 const ANSWER: u64 = 300_000_000;
@@ -27,6 +28,8 @@ pub(super) struct PortRepair {
     link: Option<Link<Connection>>,
     /// Whether the boards have answered and are the same as at open.
     pub checked: bool,
+    /// Place of the finger that was given to the servo last, beside others.
+    given: Option<usize>,
 }
 
 /// A board's properties at open.
@@ -49,7 +52,7 @@ impl PortRepair {
         boards: Vec<KnownBoard>,
         handover: LinkRepairEnd<Connection>,
     ) -> Self {
-        Self { path, baud, reconnect, boards, handover, released: false, link: None, checked: false }
+        Self { path, baud, reconnect, boards, handover, released: false, link: None, checked: false, given: None }
     }
 
     /// Takes the link if the servo has released it. Returns whether the servo has released it.
@@ -113,15 +116,40 @@ impl PortRepair {
 
     /// Shakes hands with the board at `place` while the servo keeps the link, because other fingers of the port run.
     /// Then makes that finger recover. `stops` has the numbers of requests to stop that were made before the recovery
-    /// began.
-    pub fn restore_beside_others(&mut self, place: usize, stops: StopCounts) -> Result<(), HandError> {
-        let Some(board) = self.boards.get(place) else { return Ok(()) };
+    /// began. `repairs` counts the repairs of the finger. Returns false if another finger still waits for its servo.
+    pub fn restore_beside_others(
+        &mut self,
+        place: usize,
+        stops: StopCounts,
+        repairs: &AtomicU32,
+    ) -> Result<bool, HandError> {
+        let Some(board) = self.boards.get(place) else { return Ok(false) };
         let configured = board.shake_hands(&mut self.handover.relay)?;
         let board = RestoredFinger { address: board.address, board: RestoredBoard { configured, stops } };
-        // The ring is full if the servo has released the link since the last handshake. The repair of the link then
-        // replaces both handshakes.
-        let _ = self.handover.restored.push(board);
-        Ok(())
+        Ok(self.give(place, board, repairs))
+    }
+
+    /// Gives a finger to the servo, and counts its repair. The repair is counted first, so that no finger has more
+    /// recoveries than repairs. Returns false if another finger still waits for its servo.
+    fn give(&mut self, place: usize, board: RestoredFinger, repairs: &AtomicU32) -> bool {
+        repairs.fetch_add(1, Ordering::Release);
+        let given = self.handover.restored.push(board).is_ok();
+        match given {
+            true => self.given = Some(place),
+            false => {
+                repairs.fetch_sub(1, Ordering::Release);
+            }
+        }
+        given
+    }
+
+    /// Takes back the count of a finger that was given to the servo, and that the servo has not taken. The servo has
+    /// released the link, and discards the finger. The repair of the link replaces its handshake. `repairs` has the
+    /// counts in the order of the boards.
+    pub fn discard_given(&mut self, repairs: &[AtomicU32; FINGERS]) {
+        if let Some(place) = self.given.take().filter(|_| !self.is_taken()) {
+            repairs[place].fetch_sub(1, Ordering::Release);
+        }
     }
 
     /// Returns whether the servo has taken the finger of [`PortRepair::restore_beside_others`].
@@ -158,6 +186,7 @@ impl KnownBoard {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::finger::link_handover;
     use crate::hand::identities::tests::identity;
     use crate::model::configuration::{ConfiguredFinger, ConfiguredHand};
 
@@ -171,5 +200,26 @@ mod tests {
         let error = board.check(&identity(6), Status::default()).expect_err("another board");
         let changed = |fault: Fault| fault.kind == FaultKind::IdentityChanged;
         assert!(matches!(error, HandError::Faulted { finger: FingerNumber::ONE, fault } if changed(fault)), "{error}");
+    }
+
+    /// A finger that the servo takes and that faults at once must not have more recoveries than repairs, so its repair
+    /// is counted before the servo gets it. A finger that the servo does not take has no repair.
+    #[test]
+    fn a_repair_is_counted_exactly_if_the_servo_can_take_the_finger() {
+        let (_servo, repair_end) = link_handover();
+        let mut repair = PortRepair::new(PathBuf::new(), 0, false, Vec::new(), repair_end);
+        let repairs = [const { AtomicU32::new(0) }; FINGERS];
+        let counts = || repairs.each_ref().map(|repairs| repairs.load(Ordering::Acquire));
+        let board = RestoredBoard { configured: Configured::default(), stops: StopCounts::default() };
+        let mut give = |place: usize| {
+            let address = place as u8 + 1;
+            (repair.give(place, RestoredFinger { address, board }, &repairs[place]), counts())
+        };
+        assert_eq!(give(1), (true, [0, 1, 0]));
+        assert_eq!(give(2), (false, [0, 1, 0]), "finger 2 still waits");
+        // The servo has released the link without taking finger 2.
+        repair.discard_given(&repairs);
+        repair.discard_given(&repairs);
+        assert_eq!(counts(), [0, 0, 0]);
     }
 }

@@ -1,5 +1,6 @@
 //! The ports of a hand, and the thread that reopens those that are gone.
 
+use crate::finger::StopSignal;
 use crate::hand::port_repair::PortRepair;
 use crate::model::FingerNumber;
 use crate::model::configuration::FINGERS;
@@ -28,16 +29,18 @@ pub(super) struct RepairablePort {
 /// All ports of a hand, and the thread that reopens those that are gone.
 pub(super) struct Recovery {
     pub ports: Vec<Arc<RepairablePort>>,
+    /// The signal that stops the fingers.
+    pub alarm: StopSignal,
     reconnecting: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Recovery {
-    pub fn new(repairs: Vec<PortRepair>) -> Self {
+    pub fn new(repairs: Vec<PortRepair>, alarm: StopSignal) -> Self {
         let port = |repair: PortRepair| {
             let fingers = repair.boards.iter().map(|board| board.finger).collect();
             Arc::new(RepairablePort { fingers, repairs: Default::default(), repair: Mutex::new(Some(repair)) })
         };
-        Self { ports: repairs.into_iter().map(port).collect(), reconnecting: None }
+        Self { ports: repairs.into_iter().map(port).collect(), alarm, reconnecting: None }
     }
 
     /// Starts the thread, if a port is configured to be reopened.

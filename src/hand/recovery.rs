@@ -65,7 +65,7 @@ impl Recovering {
             place: 0,
             port: port.clone(),
             recoveries: [0; FINGERS],
-            stops: [StopCounts { calls, of_finger: 0 }; FINGERS],
+            stops: [StopCounts { calls, ..StopCounts::default() }; FINGERS],
             beside_others: false,
         };
         for (place, &member) in port.fingers.iter().enumerate() {
@@ -82,6 +82,9 @@ impl Recovering {
             task.recoveries[place] = report.recoveries;
             task.beside_others |= !faulted;
         }
+        // The faulted fingers of the port have counted their faults. A finger that faults later stops this one again.
+        let faults = hand.recovery.alarm.faults();
+        task.stops.iter_mut().for_each(|stops| stops.faults = faults);
         Ok(Self { task: Some(task), begun })
     }
 
@@ -103,14 +106,18 @@ impl Recovering {
         let mut sent = false;
         loop {
             if let Some(repair) = &mut *port.repair.lock() {
-                if port.repairs[place].load(Ordering::Acquire) != recoveries[place] {
+                let released = repair.take_link();
+                if released {
+                    repair.discard_given(&port.repairs);
+                }
+                if !sent && port.repairs[place].load(Ordering::Acquire) != recoveries[place] {
                     // Another caller has recovered the finger. Perhaps the servo has not taken the link back yet.
                     return Ok(());
                 }
                 if repair.servo_ended() {
                     return Err(RecoveryError::ServoEnded(finger).into());
                 }
-                if repair.take_link() {
+                if released {
                     let configured = repair.restore()?;
                     // The repairs are counted before the servo gets the link, so that no finger has more recoveries
                     // than repairs.
@@ -121,15 +128,14 @@ impl Recovering {
                     return Ok(());
                 }
                 if sent && repair.is_taken() {
-                    port.repairs[place].fetch_add(1, Ordering::Release);
                     return Ok(());
                 }
                 if let Some(refusal) = refusal.take() {
                     return Err(refusal);
                 }
                 if beside_others && !sent {
-                    match repair.restore_beside_others(place, stops[place]) {
-                        Ok(()) => sent = true,
+                    match repair.restore_beside_others(place, stops[place], &port.repairs[place]) {
+                        Ok(given) => sent = given,
                         Err(error) => refusal = Some(error),
                     }
                 }
@@ -149,10 +155,10 @@ impl Recovering {
     /// Returns an error if such a finger faults again, or if its servo does not take it back.
     pub fn poll(&self, hand: &Hand) -> Result<bool, HandError> {
         let mut done = true;
-        let Some(Task { port, recoveries, .. }) = &self.task else { return Ok(true) };
+        let Some(Task { port, recoveries, place: own, .. }) = &self.task else { return Ok(true) };
         for (place, &finger) in port.fingers.iter().enumerate() {
             let before = recoveries[place];
-            if port.repairs[place].load(Ordering::Acquire) == before {
+            if place != *own && port.repairs[place].load(Ordering::Acquire) == before {
                 continue; // Another finger of the port, which was not repaired.
             }
             let report = hand.dispatcher.last_report(finger)?;

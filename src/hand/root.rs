@@ -115,9 +115,9 @@ impl Hand {
         let simulated = SimulatedHand::start(&configuration, opened)?;
         let tested = configuration.hand.self_test && !limp;
         let connected = reach(&configuration, opened, &simulated, &mut hardware, limp || tested)?;
-        let Connected { lines, reached, gate, repairs, events } = connected;
+        let Connected { lines, reached, gate, repairs, events, alarm } = connected;
         check_goes_on(goes_on)?;
-        let recovery = Recovery::new(repairs);
+        let recovery = Recovery::new(repairs, alarm);
         let dispatcher = Dispatcher::new(reached, configuration.hand.fingers, gate);
         let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOP_CONFIRMATION;
         let configuration = RwLock::new(configuration);

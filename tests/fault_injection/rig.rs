@@ -279,7 +279,7 @@ impl Bench {
         let deadline = self.now() + 300 * MILLISECOND;
         let (identity, configured) = link.shake_hands(1, &self.terms, deadline).expect("the board answers again");
         assert_eq!(identity, self.served.identity);
-        let stops = StopCounts { calls: stop_calls(), of_finger: 0 };
+        let stops = StopCounts { calls: stop_calls(), ..StopCounts::default() };
         let restored = RestoredBoard { configured, stops };
         let repaired = RepairedLink { link, boards: [Some(restored), None, None] };
         assert!(self.served.repair_end.repaired.push(repaired).is_ok());

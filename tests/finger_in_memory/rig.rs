@@ -217,7 +217,7 @@ impl Bench {
         let terms = Terms::new(&self.configuration.hand, &self.configuration.fingers[0]);
         let deadline = Transport::now(&self.world) + 1000 * MILLISECOND;
         let (_, configured) = link.shake_hands(1, &terms, deadline).expect("the board answers");
-        let stops = StopCounts { calls: stop_calls(), of_finger: self.mailbox.stops() };
+        let stops = StopCounts { calls: stop_calls(), of_finger: self.mailbox.stops(), ..StopCounts::default() };
         let restored = RestoredBoard { configured, stops };
         let repaired = RepairedLink { link, boards: [Some(restored), None, None] };
         assert!(self.repair_end.repaired.push(repaired).is_ok());

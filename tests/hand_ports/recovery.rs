@@ -103,6 +103,27 @@ fn fingers_that_stop_together_recover_one_by_one() {
 }
 
 #[test]
+fn a_finger_that_faults_during_the_recovery_of_another_stops_it() {
+    let _turn = turn();
+    let boards = three_boards();
+    let mut configuration = on_boards(&boards);
+    configuration.hand.on_fault = OnFault::Hand;
+    let hand = open(configuration);
+    hand.stop(2).expect("finger 2");
+    (1..=3)
+        .for_each(|finger| assert!(matches!(faults(&hand, finger), FaultKind::Companion | FaultKind::FingerStopCall)));
+    recovers(&hand, 1);
+    let recovering = Recovering::begin(&hand, 2).expect("begun");
+    hand.stop(1).expect("finger 1");
+    assert_eq!(faults(&hand, 1), FaultKind::FingerStopCall);
+    recovering.reconnect().unwrap_or_else(|error| panic!("{error}"));
+    wait_until("stopped", || recovering.poll(&hand).is_err());
+    assert_eq!(fault(&hand, 2), Some(FaultKind::Companion));
+    (1..=3).for_each(|finger| recovers(&hand, finger));
+    close(hand);
+}
+
+#[test]
 fn a_board_that_lost_its_power_recovers_on_the_same_port() {
     let _turn = turn();
     let (board, hand) = one_port();

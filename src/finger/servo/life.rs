@@ -99,7 +99,7 @@ impl FingerServo {
     /// is later than the requests in `restored` stops the finger again.
     pub(in crate::finger) fn recover(&mut self, restored: &RestoredBoard) {
         let RestoredBoard { configured, stops } = restored;
-        self.alarm.forget(stops.calls);
+        self.alarm.forget(stops);
         self.mailbox.forget_stops(*stops);
         self.feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         self.status = configured.status;
