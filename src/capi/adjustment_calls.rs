@@ -18,11 +18,12 @@ use std::ffi::{CStr, c_char, c_int};
 /// The change lasts until sun2xp_close: the file is not written. A new controller.law applies from the next
 /// sun2xp_send_position on. These keys cannot change while the hand is open: port, board, baud,
 /// reconnect, address, thread, core, priority, base, turn_degrees, encoder, motor.sign,
-/// motor.torque_limit, motor.torque_constant, stiffness.initial and simulation.
+/// motor.torque_limit, motor.torque_constant, stiffness.initial, touch and simulation.
 ///
 /// A configured stiffness.bound was chosen for the configured controller.scheme. If the lines in keys
 /// change controller.scheme but do not set stiffness.bound, the smaller of the configured bound and the
-/// default bound applies.
+/// default bound applies. If a path changes Kx when the bound is lowered, the Kx of the end of the path
+/// takes effect at once.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -14,8 +14,8 @@ use crate::model::configuration::{ConfiguredFinger, ConfiguredStiffness, Unusabl
 use nalgebra::Matrix6;
 use toml_edit::{Document, Item, Table};
 
-/// Dotted keys, and tables of keys, that take effect only at open. They concern the port, the thread, the board and the
-/// simulated finger, or they define the units of the servo's state.
+/// Dotted keys, and tables of keys, that take effect only at open. They concern the port, the thread, the board, the
+/// tactile elements and the simulated finger, or they define the units of the servo's state.
 const PERMANENT: &[&str] = &[
     "port",
     "board",
@@ -32,6 +32,7 @@ const PERMANENT: &[&str] = &[
     "motor.torque_limit",
     "motor.torque_constant",
     "stiffness.initial",
+    "touch",
     "simulation",
 ];
 
@@ -41,7 +42,8 @@ impl Hand {
     /// in torque. Other keys keep their values. `controller.law` applies to later set points.
     ///
     /// A configured `stiffness.bound` was found for one controller. If `keys` changes `controller.scheme` but does not
-    /// contain `stiffness.bound`, the smaller of the configured bound and the default bound is used.
+    /// contain `stiffness.bound`, the smaller of the configured bound and the default bound is used. If a path changes
+    /// Kx when the bound is lowered, the Kx of the end of the path takes effect at once.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a key cannot be
@@ -200,6 +202,7 @@ mod tests {
             "encoder.zero = [0, 0, 0, 0]",
             "motor = { sign = [1, 1, 1, 1] }",
             "core = 1",
+            "touch.elements = []",
             "tendon.minimum = 6\nsimulation.seed = 3",
             "[stiffness]\nbound = 5\ninitial = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
         ] {
