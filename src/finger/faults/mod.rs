@@ -15,4 +15,5 @@ pub use action::Action;
 pub use description::{Description, PartKind, Quantity, Severity};
 pub use fault::Fault;
 pub use table::FaultKind;
+pub(super) use warnings::RecentWarnings;
 pub use warnings::Warnings;
