@@ -47,6 +47,9 @@ pub struct BlackBox {
     /// Number of the controller that the servo will use when a calibration begins. The source of this controller is
     /// kept although no record names the controller yet.
     awaited: Option<u32>,
+    /// The servo holds this controller or a newer one. It resumes this controller after a calibration that is longer
+    /// than the kept records, so the source is kept although no record may name it.
+    held: u32,
     /// Whether a fault arrived that [`BlackBox::faulted`] has not reported yet.
     faulted: bool,
     /// Copies of what arrives, while telemetry has a reader.
@@ -76,6 +79,7 @@ impl BlackBox {
             hand: hand.clone(),
             controllers: vec![ControllerSource { number: 0, gravity: configuration.gravity(number), finger }],
             awaited: None,
+            held: 0,
             faulted: false,
             outlet: None,
             unpublished: 0,
@@ -97,6 +101,7 @@ impl BlackBox {
         let named: BTreeSet<u32> = controls.flat_map(|control| [control.controller, control.previous]).collect();
         let number = self.next_number();
         let awaited = self.awaited;
+        self.held = taken;
         let unpublished = self.first_unpublished();
         let kept = |number: u32| number >= taken.min(unpublished) || named.contains(&number) || awaited == Some(number);
         self.controllers.retain(|controller| kept(controller.number));
@@ -162,7 +167,7 @@ impl BlackBox {
         self.records.drain(..too_old);
         let controls = self.records.iter().filter_map(|record| record.control.as_ref());
         let needed = controls.map(|control| control.controller.min(control.previous)).min();
-        if let Some(needed) = needed.map(|needed| needed.min(self.first_unpublished())) {
+        if let Some(needed) = needed.map(|needed| needed.min(self.first_unpublished()).min(self.held)) {
             let awaited = self.awaited;
             self.controllers.retain(|controller| controller.number >= needed || awaited == Some(controller.number));
         }
