@@ -1334,7 +1334,8 @@ int sun2xp_limits(sun2xp_hand *hand, int finger, struct sun2xp_limits *limits);
  */
 struct sun2xp_touch {
     size_t size;                            /* sizeof (struct sun2xp_touch), set before the call. */
-    int valid;                              /* 1: the board has reported this element and could read it. */
+    int valid;                              /* 1: the board has reported this element since its last reset, and could
+                                               read it. */
     int pressed;                            /* 1 if something presses the element, otherwise 0. */
     unsigned int count;                     /* The raw count of the element. */
     double force;                           /* Force on the element, N. */
@@ -1468,11 +1469,12 @@ int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
  The change lasts until sun2xp_close: the file is not written. A new controller.law applies from the next
  sun2xp_send_position on. These keys cannot change while the hand is open: port, board, baud,
  reconnect, address, thread, core, priority, base, turn_degrees, encoder, motor.sign,
- motor.torque_limit, motor.torque_constant, stiffness.initial and simulation.
+ motor.torque_limit, motor.torque_constant, stiffness.initial, touch and simulation.
 
  A configured stiffness.bound was chosen for the configured controller.scheme. If the lines in keys
  change controller.scheme but do not set stiffness.bound, the smaller of the configured bound and the
- default bound applies.
+ default bound applies. If a path changes Kx when the bound is lowered, the Kx of the end of the path
+ takes effect at once.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1904,7 +1906,7 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
               joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
               gives the remedy. The finger is then limp. Exception: if it moved while it was read, or if
               its counts were not valid, the calibration had not changed anything yet, and the finger is
-              in its former state. If another thread has recovered the finger from a fault during the
+              in its former state: a spring holds its set point, and a path has ended. If another thread has recovered the finger from a fault during the
               calibration, the finger holds its pose, with its former zeros
    ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
    EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until

@@ -92,6 +92,13 @@ impl Pads {
         true
     }
 
+    /// Forgets all events and contacts, as a loss of power does. The numbers of the events begin at 1 again.
+    pub fn reset(&mut self) {
+        self.queue.clear();
+        (self.number, self.lost) = (0, 0);
+        self.pads.iter_mut().for_each(|pad| (pad.pressed, pad.reported, pad.slipped_at) = (false, 0.0, None));
+    }
+
     /// Makes every element readable.
     pub fn repair(&mut self) {
         self.pads.iter_mut().for_each(|pad| pad.broken = false);

@@ -1,10 +1,11 @@
 //! Zeroing a finger at a pose: while its sensors are read, the finger is held as before. If the zeroing is refused, the
 //! finger remains the same spring.
 
+use crate::motion::{joints, send};
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;
 use sun2xp::calibration::{Calibration, Findings, Obstacle, Task, Verdict};
-use sun2xp::finger::{Adjustable, CalibrationRun, Order, Stage};
+use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Stage};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, Scheme, ZeroingMethod};
 
@@ -27,9 +28,13 @@ fn standing(scheme: Scheme) -> Bench {
 }
 
 fn order(bench: &Bench, scheme: Scheme) {
+    order_task(bench, scheme, Task::Zero);
+}
+
+fn order_task(bench: &Bench, scheme: Scheme, task: Task) {
     let mut configuration = configuration(scheme);
     let rate = configuration.hand.rate;
-    let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], rate).expect("usable");
+    let calibration = Calibration::new(task, &configuration.fingers[0], rate).expect("usable");
     configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], rate);
     let mut adjustable = Adjustable::new(&configuration, FingerNumber::ONE).expect("usable");
     adjustable.number = 1;
@@ -107,4 +112,52 @@ fn an_adjustment_during_a_calibration_is_in_force_after_its_refusal() {
     let report = bench.report();
     assert_eq!((report.stage, report.controller), (Stage::Running, 2));
     assert!((report.cycle.joints - TARGET).amax() < 0.03, "{report:?}");
+}
+
+/// The routine finds the finger in motion, and refuses. The finger holds the set point of that moment.
+#[test]
+fn a_path_ends_where_a_calibration_began() {
+    for interpolate_ms in [None, Some(100.0)] {
+        let mut interpolated = configuration(Scheme::StateFeedback);
+        interpolated.fingers[0].motion.interpolate_ms = interpolate_ms;
+        let mut bench = Bench::with(|is| *is = interpolated);
+        bench.goes(TARGET);
+        send(&bench, &[joints(1.0, [0.5, 0.9, 1.4])]);
+        bench.cycles(500);
+        let begun = bench.report().set_point.joints;
+        assert!((begun - TARGET).amax() > 0.1, "the finger must be on its way: {begun}");
+        order(&bench, Scheme::StateFeedback);
+        bench.cycles(1);
+        assert_eq!(bench.report().set_point.motion, None, "the motion must not be fed forward");
+        let refused = verdict(&mut bench);
+        assert!(matches!(refused, Verdict::Refused(Obstacle::Moved { .. })), "{refused:?}");
+        bench.cycles(1000);
+        let report = bench.report();
+        assert_eq!((report.stage, report.set_point.joints), (Stage::Running, begun), "{interpolate_ms:?}");
+    }
+}
+
+/// After a calibration that is longer than the black box, the servo resumes a controller that no kept record names.
+#[test]
+fn the_black_box_keeps_the_controller_that_is_resumed() {
+    let mut bench = standing(Scheme::StateFeedback);
+    bench.black_box.collect();
+    let finger = configuration(Scheme::StateFeedback).fingers[0].clone();
+    let gravity = configuration(Scheme::StateFeedback).gravity(FingerNumber::ONE);
+    let controlled = Calibration::controlled(&finger, 1000.0);
+    bench.black_box.announce_calibration(controlled, gravity, bench.report().controller);
+    order_task(&bench, Scheme::StateFeedback, Task::Identify);
+    for _ in 0..30 {
+        bench.cycles(100);
+        bench.black_box.collect();
+    }
+    assert_eq!(bench.stage(), Stage::Calibrating);
+    bench.mailbox.stop();
+    bench.faults(FaultKind::FingerStopCall);
+    bench.repair();
+    bench.opens();
+    bench.cycles(100);
+    bench.black_box.collect();
+    let replayed = bench.black_box.recording().expect("a recording").replay().unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(replayed.different, 0, "{:?}", replayed.first);
 }

@@ -2,16 +2,17 @@
 //!
 //! SUN2XP_CYCLES sets the number of cycles.
 
-use crate::motion::{configuration, joints, send_if_possible};
+use crate::motion::{configuration, joints, plan, send_if_possible};
 use crate::rig::Bench;
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::control::{AdmissibleDamping, spatial};
 use sun2xp::finger::events::EventKind;
-use sun2xp::finger::{Condition, Reaction, Reflex, Replaced, Stage, Validity};
-use sun2xp::model::Contact;
+use sun2xp::finger::{Adjustable, Condition, FaultKind, Reaction, Reflex, Replaced, Stage, Validity};
+use sun2xp::hand::PathPose;
 use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::model::{Contact, FingerNumber};
 
 /// Number of cycles of an ordinary run.
 const CYCLES: usize = 200_000;
@@ -147,4 +148,53 @@ fn nothing_random_leads_beyond_a_limit() {
     assert_eq!(bench.stage(), Stage::Running);
     println!("{cycles} cycles, {fired} reactions, {paths} paths");
     assert!(fired > cycles / 500 && paths > cycles / 20_000, "{fired} reactions, {paths} paths");
+}
+
+/// Lowers the bound of Kx of a finger that runs, N/cm. Returns its configuration.
+fn lower_bound(bench: &Bench, bound: f64) -> ConfiguredFinger {
+    let mut lowered = configuration();
+    lowered.fingers[0].stiffness.bound = Some(bound);
+    let mut adjustable = Adjustable::new(&lowered, FingerNumber::ONE).expect("usable");
+    adjustable.number = 1;
+    bench.mailbox.adjust(adjustable).expect("not faulted");
+    lowered.fingers[0].clone()
+}
+
+#[test]
+fn the_initial_stiffness_is_within_a_bound_that_was_lowered() {
+    let mut bench = Bench::new();
+    let finger = lower_bound(&bench, 1.0);
+    bench.mailbox.stop();
+    bench.faults(FaultKind::FingerStopCall);
+    bench.repair();
+    bench.opens();
+    check(&bench, &finger, 0);
+}
+
+#[test]
+fn a_path_does_not_stiffen_the_finger_beyond_a_bound_that_was_lowered() {
+    let mut bench = Bench::new();
+    let report = bench.report();
+    let kx = |kx: f64| Some((Matrix3::identity() * kx).into());
+    let [stiff, soft] = [(0.5, 5.0), (1.0, 1.0)];
+    let poses = [stiff, soft].map(|(time, largest)| PathPose {
+        stiffness: kx(largest),
+        ..joints(time, (report.set_point.joints.add_scalar(0.1 * time)).into())
+    });
+    let plan = plan(&report.reference, &poses);
+    let end = |set_point: &mut sun2xp::control::SetPoint| {
+        (set_point.joints, set_point.stiffness) = (plan.end(), spatial(&Matrix3::identity()));
+        Ok::<(), ()>(())
+    };
+    let begins = (report.springs, report.reference.period, Validity::default());
+    assert!(matches!(bench.mailbox.send_path(begins, &plan.table(), end), Ok(Ok(Some(_)))));
+    bench.cycles(450);
+    assert!(bench.report().set_point.stiffness[(0, 0)] > 4.0);
+    let finger = lower_bound(&bench, 2.0);
+    for cycle in 0..800 {
+        bench.cycles(1);
+        check(&bench, &finger, cycle);
+    }
+    assert_eq!(bench.report().set_point.joints, plan.end());
+    assert_eq!(bench.report().set_point.stiffness, spatial(&Matrix3::identity()));
 }

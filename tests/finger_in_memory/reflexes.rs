@@ -129,6 +129,28 @@ fn a_rule_sleeps_while_the_finger_is_no_spring() {
     assert!(fired(&mut bench).is_empty());
 }
 
+/// Skipped periods are not lost replies.
+#[test]
+fn only_a_lost_reply_is_a_lost_link() {
+    let mut bench = Bench::new();
+    let one = bench.reflexes.install(rule(Condition::LinkLost(0.001), Reaction::Hold));
+    let always = bench.reflexes.install(rule(Condition::LinkLost(0.0), Reaction::Hold));
+    let three = bench.reflexes.install(rule(Condition::LinkLost(0.003), Reaction::Hold));
+    bench.cycles(50);
+    let before = bench.report().losses;
+    bench.with_cable(|cable| cable.advance_to(cable.now() + 5_300_000));
+    bench.cycles(50);
+    let losses = bench.report().losses;
+    assert!(losses.skipped_periods > before.skipped_periods + 2, "{losses:?}");
+    assert_eq!((losses.lost_replies, fired(&mut bench)), (before.lost_replies, Vec::new()));
+    bench.with_cable(|cable| cable.inject(sun2xp::simulated::LineFault::Drop, 1.0, u64::MAX, 1));
+    // One rule reacts in each cycle.
+    bench.cycles(2);
+    assert_eq!(fired(&mut bench), [one, always].map(|number| number.expect("a place")));
+    bench.cycles(1);
+    assert_eq!(fired(&mut bench), [three.expect("a place")]);
+}
+
 /// Contacts at any time between two Commands: the event belongs to the next sample, and the Command after it has
 /// changed, so no contact waits longer than two periods.
 #[test]

@@ -7,10 +7,11 @@ use sun2xp::board::protocol::{Frame, Message, WireFrame};
 use sun2xp::board::{PortError, Terms, Transport};
 use sun2xp::finger::events::EventReader;
 use sun2xp::finger::{
-    BlackBox, Elements, Fault, FaultKind, FingerReport, LinkRepairEnd, Mailbox, Reflexes, RepairedLink, RestoredBoard,
-    Servo, Stage, StopCounts, stop_calls,
+    BlackBox, Elements, Fault, FaultKind, FingerReport, GroupGate, LinkRepairEnd, Mailbox, Reflexes, RepairedLink,
+    RestoredBoard, Servo, Stage, StopCounts, stop_calls,
 };
 use sun2xp::model::configuration::Configuration;
+use sun2xp::realtime::{Clock, Schedule};
 use sun2xp::simulated::{SimulatedCable, SimulatedFinger};
 
 pub const MILLISECOND: u64 = 1_000_000;
@@ -70,6 +71,7 @@ pub struct Bench {
     pub reflexes: Reflexes,
     pub black_box: BlackBox,
     pub events: EventReader,
+    pub gate: GroupGate,
     repair_end: LinkRepairEnd<World<Line>>,
     /// The configuration of the board.
     configuration: Configuration,
@@ -98,9 +100,12 @@ impl Bench {
         let mut belief = configuration.clone();
         believed(&mut belief);
         let world = World::new(&configuration, Line::default());
+        let gate = GroupGate::new();
+        let schedule = Schedule::new(Clock::now(&world) + MILLISECOND, MILLISECOND);
         let ServedFinger { servo, mailbox, repair_end, touch, reflexes, events, black_box, .. } =
-            ServedFinger::believing(&world, &configuration, &belief);
-        Self { world, servo, mailbox, black_box, touch, reflexes, events: events.reader(), repair_end, configuration }
+            ServedFinger::in_thread(&world, &configuration, &belief, schedule, |finger| finger.in_groups(gate.clone()));
+        let events = events.reader();
+        Self { world, servo, mailbox, black_box, touch, reflexes, events, gate, repair_end, configuration }
     }
 
     pub fn report(&self) -> FingerReport {

@@ -1,14 +1,16 @@
 //! The set point that a finger holds after opening, after a fault and after a calibration: its own, until the planner
 //! sends another.
 
+use crate::motion::{joints, send};
 use crate::rig::{Bench, TARGET};
 use nalgebra::{Matrix3, Vector3};
 use sun2xp::calibration::{Calibration, Task, Verdict};
+use sun2xp::control::events::Arrival;
 use sun2xp::control::{SetPoint, spatial};
-use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Recording, Stage};
+use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Recording, Replaced, Stage, Validity};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, ZeroingMethod};
-use sun2xp::simulated::Defect;
+use sun2xp::simulated::{Defect, LineFault};
 
 /// Sends a softer Kx, as SendKx does.
 fn soften(bench: &Bench) {
@@ -153,4 +155,47 @@ fn a_replay_of_joint_springs_is_exact() {
     let recording = Recording::read(&file[..], "the file").unwrap_or_else(|error| panic!("{error}"));
     let replayed = recording.replay().unwrap_or_else(|error| panic!("{error}"));
     assert!(replayed.different == 0 && replayed.cycles >= 1200, "{replayed:?}");
+}
+
+/// A planner that waits for the arrival reads the number of its set point and the arrival in one report.
+#[test]
+fn a_motion_that_begins_without_a_reply_has_not_arrived() {
+    for interpolate_ms in [None, Some(100.0)] {
+        let mut bench = Bench::with(|is| is.fingers[0].motion.interpolate_ms = interpolate_ms);
+        bench.goes(TARGET);
+        bench.cycles(500);
+        assert!(bench.report().arrival.arrived);
+        let far = TARGET + Vector3::new(0.3, 0.3, 0.3);
+        match interpolate_ms {
+            None => send(&bench, &[joints(1.0, far.into())]),
+            Some(_) => bench.mailbox.send(|set_point| set_point.joints = far).expect("not faulted"),
+        }
+        bench.with_cable(|cable| cable.inject(LineFault::Drop, 1.0, u64::MAX, 1));
+        bench.cycles(1);
+        let (in_force, report) = bench.mailbox.newest_in_force();
+        assert_eq!((in_force, report.arrival), (true, Arrival::default()), "{interpolate_ms:?}");
+    }
+}
+
+/// The gate of a hand does not remember a group for hours.
+#[test]
+fn a_group_from_before_a_fault_does_not_hold_later_set_points() {
+    let mut bench = Bench::new();
+    let change = |set_point: &mut SetPoint| {
+        set_point.joints = TARGET;
+        Ok::<(), ()>(())
+    };
+    let grouped = bench.mailbox.prepare((Replaced::Place, Validity::default()), change).expect("not faulted");
+    bench.gate.send([Some(grouped.expect("admitted")), None, None]);
+    bench.mailbox.stop();
+    bench.faults(FaultKind::FingerStopCall);
+    // The other fingers go on with their groups.
+    for _ in 0..(1 << 23) + 64 {
+        bench.gate.send([const { None }; 3]);
+    }
+    bench.repair();
+    bench.opens();
+    bench.mailbox.send(|set_point| set_point.joints = TARGET).expect("not faulted");
+    bench.cycles(2);
+    assert_eq!(bench.report().set_point.joints, TARGET);
 }

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use std::time::Duration;
 use sun2xp::control::SetPoint;
-use sun2xp::finger::{FaultKind, Reference, Replaced, Stage, Validity};
+use sun2xp::finger::{Condition, FaultKind, Reaction, Reference, Reflex, Replaced, Stage, Validity};
 use sun2xp::model::InverseKinematics;
 use sun2xp::model::configuration::ExpiryReaction;
 
@@ -211,4 +211,25 @@ fn a_finger_without_a_command_can_stop_after_a_time_too() {
     bench.cycles(299);
     assert_eq!((bench.stage(), bench.report().springs), (Stage::Running, springs));
     bench.faults(FaultKind::SetPointExpired);
+}
+
+/// Set points that are discarded during an inhibition have numbers that later set points get again.
+#[test]
+fn a_renewal_of_a_discarded_set_point_does_not_shorten_a_later_one() {
+    let mut bench = Bench::new();
+    bench.goes(TARGET);
+    let (condition, reaction) = (Condition::JointAbove { joint: 2, angle: 0.5 }, Reaction::Hold);
+    let reflex = Reflex { condition, reaction, priority: 0, refractory: 0.0, inhibition: 0.05 };
+    bench.reflexes.install(reflex).expect("a place");
+    bench.cycles(2);
+    let send = |bench: &Bench, validity| {
+        bench.mailbox.try_send((Replaced::Place, validity), to_target).expect("not faulted").expect("admitted");
+    };
+    send(&bench, validity(100, 10_000));
+    bench.mailbox.keep_valid(validity(100, 10_000)).expect("not faulted");
+    bench.cycles(200);
+    send(&bench, validity(5000, 10_000));
+    bench.cycles(1000);
+    assert!(!bench.report().expired);
+    assert_eq!(bench.report().set_point.joints, TARGET);
 }

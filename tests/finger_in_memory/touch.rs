@@ -3,6 +3,7 @@
 use crate::rig::{Bench, MILLISECOND};
 use nalgebra::Vector3;
 use sun2xp::board::Transport;
+use sun2xp::finger::FaultKind;
 use sun2xp::finger::events::{Event, EventKind};
 use sun2xp::model::configuration::{Configuration, TouchElement};
 use sun2xp::simulated::{Defect, LineFault};
@@ -144,4 +145,56 @@ fn a_finger_without_elements_sends_no_requests() {
     bench.cycles(3);
     assert!(touches(&mut bench).is_empty());
     assert_eq!((bench.touch.unknown(), bench.touch.count()), (0, 0));
+}
+
+/// Resets the board of a finger whose first element is pressed. The contact ends before the board runs again, and begins
+/// again while the finger is faulted.
+fn resets(bench: &mut Bench) {
+    push(bench, [0.0; 3]);
+    bench.with_finger(|finger| finger.reset());
+    bench.faults(FaultKind::BoardReset);
+    push(bench, [0.0, 0.0, -0.3]);
+    bench.repair();
+    bench.opens();
+}
+
+/// A board that was reset numbers its events from 1 again, and has lost none.
+#[test]
+fn a_reset_of_the_board_loses_no_touch() {
+    let mut bench = Bench::with(two_elements);
+    bench.cycles(100);
+    touches(&mut bench);
+    push(&bench, [0.0, 0.0, -0.3]);
+    bench.cycles(3);
+    assert_eq!(touches(&mut bench).len(), 1);
+    // The contact after the reset has the number of the one before it.
+    resets(&mut bench);
+    let kinds: Vec<EventKind> = touches(&mut bench).iter().map(|event| event.kind).collect();
+    assert_eq!(kinds, [EventKind::TouchMade]);
+}
+
+#[test]
+fn events_that_were_lost_before_a_reset_of_the_board_count_once() {
+    let mut bench = Bench::with(two_elements);
+    bench.cycles(100);
+    for touch in 0..61 {
+        push(&bench, [0.0, 0.0, if touch % 2 == 0 { -0.3 } else { 0.0 }]);
+        bench.with_cable(|cable| cable.advance_to(cable.now() + 100_000));
+    }
+    bench.cycles(100);
+    let lost = bench.touch.lost();
+    assert!(lost >= 44, "{lost}");
+    resets(&mut bench);
+    assert_eq!(bench.touch.lost(), lost);
+}
+
+/// The board takes the force at its start for a force of zero, so it never reports the end of that contact.
+#[test]
+fn a_reset_of_the_board_makes_its_readings_invalid() {
+    let mut bench = Bench::with(two_elements);
+    push(&bench, [-0.5, 0.0, 0.0]);
+    bench.cycles(3);
+    assert!(bench.touch.reading(1).expect("an element").pressed);
+    resets(&mut bench);
+    assert_eq!(bench.touch.reading(1), Some(Default::default()));
 }

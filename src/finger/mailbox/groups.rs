@@ -68,6 +68,15 @@ impl ServoEnd {
         self.gate = gate;
     }
 
+    /// Discards all groups that wait. The servo does this when the finger recovers, because the groups are of an earlier
+    /// spring phase. The gate does not remember a group for hours, so an old group would never take effect, and the
+    /// later ones would wait for it.
+    pub fn discard_groups(&mut self) {
+        while let Some(discarded) = self.next_group.take().or_else(|| self.grouped.pop()) {
+            self.in_effect = discarded.group;
+        }
+    }
+
     /// Returns the set point of the newest group that takes effect in this period, if one does. `now` returns the
     /// number of the present period, which is later than `period` if the servo is late.
     pub fn new_group(&mut self, period: u64, now: impl Fn() -> u64) -> Option<SentSetPoint> {

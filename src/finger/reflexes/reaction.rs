@@ -9,6 +9,9 @@ use nalgebra::{Matrix3, Matrix6, Vector3};
 /// Force below which the spring of a tip has no direction in which it presses, N.
 const NO_DIRECTION: f64 = 0.05;
 
+/// A stiffness at the bound that was sent as `float` may be beyond the bound by this fraction.
+const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
+
 /// The limits of a finger, which no reaction exceeds.
 #[derive(Clone, Debug)]
 pub struct ReactionLimits {
@@ -16,12 +19,36 @@ pub struct ReactionLimits {
     /// Lower and upper joint limits, rad.
     joints: (Vector3<f64>, Vector3<f64>),
     damping: AdmissibleDamping,
+    /// Bound on the largest eigenvalue of Kx, N/cm.
+    bound: f64,
 }
 
 impl ReactionLimits {
     /// Constructs the limits of a finger at a rate, Hz.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Self {
-        Self { links: finger.links(), joints: finger.joint_limits(), damping: AdmissibleDamping::new(finger, rate) }
+        Self {
+            links: finger.links(),
+            joints: finger.joint_limits(),
+            damping: AdmissibleDamping::new(finger, rate),
+            bound: finger.stiffness_bound(rate),
+        }
+    }
+
+    /// Returns whether a stiffness that is within the bound of `other` may be beyond this bound.
+    pub(in crate::finger) fn softer_than(&self, other: &Self) -> bool {
+        self.bound < other.bound
+    }
+
+    /// Returns the stiffness, or the nearest one within the bound. The bound may have been lowered since a planner's
+    /// stiffness was checked.
+    pub(in crate::finger) fn stiffness(&self, stiffness: &Matrix6<f64>) -> Matrix6<f64> {
+        // This conversion succeeds, because the stiffness was admitted.
+        match Contact::general(stiffness, &Matrix6::identity()) {
+            Ok(contact) if contact.largest_eigenvalue(self.links.0[2]) > self.bound * (1.0 + ROUNDING) => {
+                *contact.clamped(self.bound, self.links.0[2]).stiffness()
+            }
+            _ => *stiffness,
+        }
     }
 
     /// Returns the set point after a reaction. Returns none if the reaction changes no set point. `report` is the
@@ -43,7 +70,7 @@ impl ReactionLimits {
             Reaction::Stop => None,
             Reaction::Hold => Some(SetPoint { joints: self.within(&report.joints), ..still }),
             Reaction::Soften(kx) => {
-                Some(SetPoint { stiffness: spatial(&kx), damping: 1.0, joint_spring: None, ..rest })
+                Some(SetPoint { stiffness: self.stiffness(&spatial(&kx)), damping: 1.0, joint_spring: None, ..rest })
             }
             Reaction::Retract(joints) => Some(SetPoint { joints: self.within(&joints), ..still }),
             Reaction::Grip { direction, by, most } => {
@@ -134,7 +161,8 @@ mod tests {
         #[test]
         fn no_reaction_leaves_the_limits(
             joints in prop::array::uniform3(-4.0..4.0f64), is in prop::array::uniform3(-4.0..4.0f64),
-            kx in 0.0..6.0f64, by in 0.0..50.0f64, ratio in 0.0..9.0f64, reaction in 0..4,
+            kx in 0.0..6.0f64, by in 0.0..50.0f64, ratio in 0.0..9.0f64, reaction in 0..5,
+            soft in 0.0..12.0f64,
         ) {
             let limits = limits();
             let followed = follows(limits.within(&joints.into()), kx);
@@ -142,11 +170,13 @@ mod tests {
             let reaction = match reaction {
                 0 => Reaction::Hold,
                 1 => Reaction::Retract(joints.into()),
+                3 => Reaction::Soften(Matrix3::identity() * soft),
                 2 => Reaction::Grip { direction: is.into(), by, most: 100.0 },
                 _ => Reaction::Damp(ratio),
             };
             if let Some(next) = limits.react(&reaction, &report, &followed) {
                 prop_assert_eq!(limits.within(&next.joints), next.joints);
+                prop_assert!(next.stiffness[(0, 0)] <= limits.bound * (1.0 + ROUNDING));
                 let (least, most) = limits.damping.range(kx);
                 prop_assert!((least..=most).contains(&next.damping) || next.damping == 1.0);
             }

@@ -16,7 +16,7 @@ pub(in crate::finger) struct Facts<'a> {
     pub period: f64,
     /// The report of the last cycle.
     pub report: &'a Report,
-    /// Time since the last reply, s.
+    /// Time since the last reply, s; 0 in a cycle with a reply.
     pub link_lost: f64,
     /// Time since the last set point of the planner, s.
     pub planner_silent: f64,
@@ -133,7 +133,7 @@ fn holds(condition: &Condition, state: &mut RuleState, facts: &Facts, occurred: 
         Condition::TensionBelow(bound) => report.tensions.min() < bound,
         Condition::JointAbove { joint, angle } => report.joints[joint] > angle,
         Condition::JointBelow { joint, angle } => report.joints[joint] < angle,
-        Condition::LinkLost(time) => facts.link_lost >= time,
+        Condition::LinkLost(time) => facts.link_lost > 0.0 && facts.link_lost >= time,
         Condition::PlannerSilent(time) => facts.planner_silent >= time,
     }
 }

@@ -4,6 +4,7 @@ use super::FingerServo;
 use super::calibration::{Before, Calibrating};
 use crate::board::protocol::Status;
 use crate::calibration::{Sample, Verdict};
+use crate::control::Activity;
 use crate::finger::Stage;
 use crate::finger::{Adjustable, CalibrationRun};
 
@@ -12,7 +13,18 @@ impl FingerServo {
         let before = Before { stage: self.report.stage, adjustable: self.adjustable.clone() };
         self.calibration = Some(Calibrating { run, before: Some(before) });
         self.report.calibration = None;
+        self.end_motion();
         self.enter(Stage::Calibrating);
+    }
+
+    /// Ends a path or an interpolation of a finger that is a spring. A calibration does not continue the motion, so
+    /// neither its commands nor the set point afterwards may contain a part of it.
+    fn end_motion(&mut self) {
+        if self.report.stage == Stage::Running {
+            self.report.set_point.motion = None;
+            self.motion.rest(self.report.set_point.joints);
+            self.activity = Activity::Follow(self.report.set_point);
+        }
     }
 
     /// Runs one step of the calibration, if there is one, and sets the finger's activity. If the servo begins to
@@ -48,7 +60,10 @@ impl FingerServo {
         // Set points that planners sent meanwhile had no effect. The next change of a set point must not start from one
         // of them. A new spring phase makes it start from the set point that the servo holds.
         self.report.springs += u32::from(before.stage == Stage::Running);
+        self.motion.renewal = None;
         self.enter(before.stage);
+        // A path that was sent together with the order to calibrate has not begun.
+        self.end_motion();
         (before.adjustable.number != self.adjustable.number).then_some(before.adjustable)
     }
 }

@@ -15,7 +15,7 @@ impl FingerServo {
         let previous = self.take_commands();
         let previous = self.calibrate().or(previous);
         self.move_set_point();
-        self.react();
+        self.react(skipped);
         let input = ControlInput {
             anew_from: std::mem::take(&mut self.restart).then_some(self.feedback),
             activity: self.activity,
@@ -50,6 +50,9 @@ impl FingerServo {
         // has an order without the data of this order.
         let new = self.mailbox.new_adjustable();
         let mut previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
+        if previous.as_ref().is_some_and(|before| self.adjustable.reactions.softer_than(&before.reactions)) {
+            self.end_stiffness_of_path();
+        }
         if self.calibration.is_some() {
             // A calibration computes with its own data.
             previous = None;
@@ -126,7 +129,13 @@ impl FingerServo {
         } else {
             motion.interpolation = InterpolationState::at_rest(set_point.joints);
         }
+        let moves = motion.path.follower.is_some() || motion.target != set_point.joints;
         self.follow(set_point, sent.number);
+        if moves {
+            // The motion has not begun. Without a reply the detectors do not run, and a planner that waits for the
+            // arrival would see that of the set point before.
+            self.report.arrival = Arrival::default();
+        }
         self.begin_validity(sent);
     }
 

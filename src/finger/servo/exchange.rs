@@ -47,10 +47,13 @@ impl FingerServo {
     }
 
     /// Takes the answer to a TactileRequest. Returns whether the answer was awaited. Events that happened before the
-    /// finger was a spring are not reported, because they may be older than this hand.
+    /// finger was a spring are not reported, because they may be older than this hand. The answer is ignored if the
+    /// finger has faulted in this period: a board that was reset counts its events from 1 again.
     pub fn take_touch(&mut self, sequence: u8, event: &TactileEvent) -> bool {
         let awaited = self.touch.awaits(sequence);
-        if awaited
+        if awaited && !self.under_control() {
+            self.touch.ignore();
+        } else if awaited
             && let Some(occurrence) = self.touch.take(event)
             && self.report.springs > 0
         {

@@ -52,7 +52,8 @@ impl FingerServo {
                     }
                     let joints = self.report.cycle.joints;
                     self.report.springs += 1;
-                    self.follow(SetPoint { joints, ..self.initial }, self.report.set_point_number);
+                    let stiffness = self.adjustable.reactions.stiffness(&self.initial.stiffness);
+                    self.follow(SetPoint { joints, stiffness, ..self.initial }, self.report.set_point_number);
                     self.motion.begin(joints);
                     self.report.expired_phase = None;
                     self.report.expired = false;
@@ -101,8 +102,11 @@ impl FingerServo {
         let RestoredBoard { configured, stops } = restored;
         self.alarm.forget(stops);
         self.mailbox.forget_stops(*stops);
+        self.mailbox.discard_groups();
         self.feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         self.status = configured.status;
+        let reset = matches!(self.report.stage, Stage::Faulted(fault) if fault.kind == FaultKind::BoardReset);
+        self.touch.recover(reset);
         self.sampled_at = None;
         self.command = MotorCommand::default();
         self.restart = true;

@@ -3,7 +3,7 @@
 use super::FingerServo;
 use super::set_point_motion::{Expiry, NEVER};
 use crate::control::motion::{InterpolationState, PathTable};
-use crate::control::{Activity, SetPoint};
+use crate::control::{Activity, SetPoint, spatial};
 use crate::finger::events::{EventKind, Occurrence};
 use crate::finger::motion_settings::{AfterExpiry, MotionSettings};
 use crate::finger::sent::SentSetPoint;
@@ -91,6 +91,17 @@ impl FingerServo {
             let age_ms = (period - expiry.sent) as f64 * self.limits.period_ms;
             let ends = period >= expiry.ends;
             self.expire(age_ms, ends);
+        }
+    }
+
+    /// Ends the change of the stiffness along a path, because the bound of Kx was lowered. The Kx of the path's end takes
+    /// effect at once. It was checked against the new bound. The values on the way to it were not.
+    pub(super) fn end_stiffness_of_path(&mut self) {
+        if self.motion.path.follower.is_some()
+            && std::mem::take(&mut self.motion.path.stiffness)
+            && let Some(last) = self.mailbox.path().table().stiffness.last()
+        {
+            self.report.set_point.stiffness = self.adjustable.reactions.stiffness(&spatial(&last.kx));
         }
     }
 

@@ -24,8 +24,9 @@ impl FingerServo {
         self.reflexes.server.iter_mut().for_each(|server| server.note(kinds));
     }
 
-    /// Evaluates the rules of a finger that is a spring, and carries out the reaction of one that has fired.
-    pub(super) fn react(&mut self) {
+    /// Evaluates the rules of a finger that is a spring, and carries out the reaction of one that has fired. `skipped` is
+    /// the number of periods that will be skipped after this cycle.
+    pub(super) fn react(&mut self, skipped: u64) {
         let period = self.motion.next_period;
         // Tactile events of this cycle have arrived before this point.
         self.note_events();
@@ -37,19 +38,33 @@ impl FingerServo {
         if self.reflexes.inhibited_until.is_some_and(|until| period >= until) {
             self.reflexes.inhibited_until = None;
             // Later changes start from the set point that is held, and not from one that was not followed.
-            self.report.springs += 1;
+            self.begin_phase();
         }
         let seconds = self.limits.period();
         let facts = Facts {
             cycle: period,
             period: seconds,
             report: &self.report.cycle,
-            link_lost: self.sample_age as f64 * seconds,
+            link_lost: self.periods_without_reply(skipped) as f64 * seconds,
             planner_silent: period.saturating_sub(self.reflexes.last_set_point) as f64 * seconds,
         };
         if let Some(fired) = self.reflexes.server.as_mut().and_then(|server| server.run(&facts)) {
             self.carry_out_reaction(&fired);
         }
+    }
+
+    /// Returns the number of periods since the last reply that have passed, 0 in a cycle with a reply. `skipped` is the
+    /// number of periods that will be skipped after this cycle.
+    fn periods_without_reply(&self, skipped: u64) -> u64 {
+        // `sample_age` already counts this cycle's period and the skipped ones.
+        if self.answered { 0 } else { self.sample_age - 1 - skipped }
+    }
+
+    /// Begins a spring phase that continues with the set point in force. The numbers of set points that were sent in the
+    /// phase before are given again, so a renewal of one of them must not renew its successor.
+    fn begin_phase(&mut self) {
+        self.report.springs += 1;
+        self.motion.renewal = None;
     }
 
     fn carry_out_reaction(&mut self, fired: &Fired) {
@@ -67,7 +82,7 @@ impl FingerServo {
             self.follow(next, self.report.set_point_number);
             self.motion.rest(next.joints);
             // Later changes of planners start from this set point.
-            self.report.springs += 1;
+            self.begin_phase();
         }
         if inhibited_until > self.motion.next_period {
             self.reflexes.inhibited_until = Some(inhibited_until);

@@ -10,8 +10,8 @@ use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct TouchReading {
-    /// Whether the board has reported this element since open, and could read it then. Otherwise the other fields are
-    /// 0.
+    /// Whether the board has reported this element since open and since its last reset, and could read it then.
+    /// Otherwise the other fields are 0.
     pub valid: bool,
     /// Whether something presses the element.
     pub pressed: bool,
@@ -108,6 +108,11 @@ impl Elements {
     /// Returns the number of events of elements that are not configured.
     pub fn unknown(&self) -> u64 {
         self.0.unknown.load(Ordering::Acquire)
+    }
+
+    /// Makes all readings invalid.
+    pub(super) fn forget_readings(&self) {
+        self.0.elements.iter().for_each(|element| element.reading.store(0, Ordering::Release));
     }
 
     /// Counts events that the board has lost.

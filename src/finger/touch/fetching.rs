@@ -40,6 +40,17 @@ impl TouchFetching {
         Self { elements, enabled, permitted: false, asked: None, received: 0, lost: None, unanswered: 0, pause: 0 }
     }
 
+    /// Resumes after a fault. The board may have been reset, so it may have begun to count its events again. A number of
+    /// an earlier event could then delete events that were not received. If the board was not reset, one event may come
+    /// twice. `reset` says whether the fault was a reset: then the board has forgotten its readings too.
+    pub fn recover(&mut self, reset: bool) {
+        (self.asked, self.received, self.unanswered, self.pause) = (None, 0, 0, 0);
+        if reset {
+            self.lost = Some(0);
+            self.elements.forget_readings();
+        }
+    }
+
     /// Returns the elements, which planners read.
     pub fn elements(&self) -> &Elements {
         &self.elements
@@ -79,6 +90,11 @@ impl TouchFetching {
     /// request is dropped: this period's request fetches the same event.
     pub fn awaits(&self, sequence: u8) -> bool {
         self.asked == Some(sequence)
+    }
+
+    /// Ignores the answer to this period's request. A later request fetches the same event again.
+    pub fn ignore(&mut self) {
+        self.asked = None;
     }
 
     /// Takes the answer to this period's request. Returns what has happened, if an element has changed.
