@@ -105,8 +105,12 @@ fn fingers_that_stop_together_recover_one_by_one() {
 #[test]
 fn a_finger_that_faults_during_the_recovery_of_another_stops_it() {
     let _turn = turn();
-    let boards = three_boards();
-    let mut configuration = on_boards(&boards);
+    let [one, others] = [&[FingerNumber::ONE][..], &[FingerNumber::TWO, FingerNumber::THREE]].map(|fingers| {
+        let board = SimulatedBoard::new(&Configuration::default(), fingers).expect("a board");
+        SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a port")
+    });
+    let mut configuration = on_one_port(&others.path().to_string_lossy(), 2_000_000);
+    (configuration.fingers[0].port, configuration.fingers[0].thread) = (one.path().to_string_lossy().into(), 2);
     configuration.hand.on_fault = OnFault::Hand;
     let hand = open(configuration);
     hand.stop(2).expect("finger 2");
