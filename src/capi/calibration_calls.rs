@@ -45,8 +45,9 @@ use std::ffi::c_int;
 ///              joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
 ///              gives the remedy. The finger is then limp. Exception: if it moved while it was read, or if
 ///              its counts were not valid, the calibration had not changed anything yet, and the finger is
-///              in its former state: a spring holds its set point, and a path has ended. If another thread has recovered the finger from a fault during the
-///              calibration, the finger holds its pose, with its former zeros
+///              in its former state: a spring holds its set point, and a path has ended. If another thread
+///              has recovered the finger from a fault during the calibration, the finger holds its pose,
+///              with its former zeros
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
 ///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
 ///              sun2xp_close

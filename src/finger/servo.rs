@@ -21,7 +21,6 @@ use crate::calibration::Verdict;
 use crate::control::{Activity, Feedback, MotorCommand, SetPoint, State};
 use crate::finger::Adjustable;
 use crate::finger::events::Occurrence;
-use crate::finger::faults::RecentWarnings;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::ServoEnd;
 use crate::finger::supervision::Supervision;
@@ -75,7 +74,6 @@ pub struct FingerServo {
     link: LinkWatch,
     motion: SetPointMotion,
     supervision: Supervision,
-    recent_warnings: RecentWarnings,
     alarm: StopSignal,
     /// The board's clock at the last measurement, us modulo 65 536; none before the first measurement.
     sampled_at: Option<u16>,
@@ -273,7 +271,7 @@ impl FingerServo {
             _ => None,
         };
         let warning = failed.or(self.supervision.warning());
-        let new = self.report.warnings.note(&mut self.recent_warnings, warning, self.limits.warning);
+        let new = self.report.warnings.note(&mut self.supervision.recent_warnings, warning, self.limits.warning);
         if let Some(warning) = warning.filter(|_| new) {
             self.events.write(Occurrence::warning(&warning));
         }

@@ -3,6 +3,7 @@
 use crate::board::protocol::Status;
 use crate::control::monitors::{LineQuality, Watch};
 use crate::control::{Controller, Feedback, State};
+use crate::finger::faults::RecentWarnings;
 use crate::finger::{Fault, FaultKind};
 
 /// Window over which losses and overruns cause warnings, s.
@@ -36,6 +37,7 @@ pub(super) struct Supervision {
     clipped: bool,
     /// Warning of this period.
     warning: Option<Fault>,
+    pub recent_warnings: RecentWarnings,
 }
 
 impl Supervision {
@@ -53,6 +55,7 @@ impl Supervision {
             damaged_frames: 0,
             clipped: false,
             warning: None,
+            recent_warnings: RecentWarnings::default(),
         }
     }
 

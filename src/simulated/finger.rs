@@ -171,8 +171,8 @@ impl SimulatedFinger {
         &mut self.sensors
     }
 
-    /// Resets the finger as a loss of power does: it forgets its terms, stored faults and tactile events, and the motors
-    /// are off. The encoders are absolute and keep their zeros.
+    /// Resets the finger as a loss of power does: it forgets its terms, stored faults and tactile events, and the
+    /// motors are off. The encoders are absolute and keep their zeros.
     pub fn reset(&mut self) {
         self.state = State::Idle;
         self.torques = [0; 4];

@@ -68,9 +68,9 @@ impl ServoEnd {
         self.gate = gate;
     }
 
-    /// Discards all groups that wait. The servo does this when the finger recovers, because the groups are of an earlier
-    /// spring phase. The gate does not remember a group for hours, so an old group would never take effect, and the
-    /// later ones would wait for it.
+    /// Discards all groups that wait. The servo does this when the finger recovers, because the groups are of an
+    /// earlier spring phase. The gate does not remember a group for hours, so an old group would never take effect, and
+    /// the later ones would wait for it.
     pub fn discard_groups(&mut self) {
         while let Some(discarded) = self.next_group.take().or_else(|| self.grouped.pop()) {
             self.in_effect = discarded.group;

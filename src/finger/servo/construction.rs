@@ -8,7 +8,6 @@ use crate::board::protocol::{Configured, Identity};
 use crate::control::events::Detectors;
 use crate::control::{Activity, Controller, Feedback, MotorCommand, SetPoint};
 use crate::finger::Adjustable;
-use crate::finger::faults::RecentWarnings;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::{Mailbox, mailbox};
 use crate::finger::motion_settings::MotionSettings;
@@ -127,7 +126,6 @@ impl FingerServo {
             answered: true,
             last_answer: 0,
             supervision: Supervision::new(hand.rate, link.most(), identity.gauge_bits),
-            recent_warnings: RecentWarnings::default(),
             link,
             motion: SetPointMotion::new(),
             alarm: StopSignal::new(false, stop_calls()),

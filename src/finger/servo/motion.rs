@@ -94,8 +94,8 @@ impl FingerServo {
         }
     }
 
-    /// Ends the change of the stiffness along a path, because the bound of Kx was lowered. The Kx of the path's end takes
-    /// effect at once. It was checked against the new bound. The values on the way to it were not.
+    /// Ends the change of the stiffness along a path, because the bound of Kx was lowered. The Kx of the path's end
+    /// takes effect at once. It was checked against the new bound. The values on the way to it were not.
     pub(super) fn end_stiffness_of_path(&mut self) {
         if self.motion.path.follower.is_some()
             && std::mem::take(&mut self.motion.path.stiffness)

@@ -24,8 +24,8 @@ impl FingerServo {
         self.reflexes.server.iter_mut().for_each(|server| server.note(kinds));
     }
 
-    /// Evaluates the rules of a finger that is a spring, and carries out the reaction of one that has fired. `skipped` is
-    /// the number of periods that will be skipped after this cycle.
+    /// Evaluates the rules of a finger that is a spring, and carries out the reaction of one that has fired. `skipped`
+    /// is the number of periods that will be skipped after this cycle.
     pub(super) fn react(&mut self, skipped: u64) {
         let period = self.motion.next_period;
         // Tactile events of this cycle have arrived before this point.
@@ -60,8 +60,8 @@ impl FingerServo {
         if self.answered { 0 } else { self.sample_age - 1 - skipped }
     }
 
-    /// Begins a spring phase that continues with the set point in force. The numbers of set points that were sent in the
-    /// phase before are given again, so a renewal of one of them must not renew its successor.
+    /// Begins a spring phase that continues with the set point in force. The numbers of set points that were sent in
+    /// the phase before are given again, so a renewal of one of them must not renew its successor.
     fn begin_phase(&mut self) {
         self.report.springs += 1;
         self.motion.renewal = None;

@@ -40,9 +40,9 @@ impl TouchFetching {
         Self { elements, enabled, permitted: false, asked: None, received: 0, lost: None, unanswered: 0, pause: 0 }
     }
 
-    /// Resumes after a fault. The board may have been reset, so it may have begun to count its events again. A number of
-    /// an earlier event could then delete events that were not received. If the board was not reset, one event may come
-    /// twice. `reset` says whether the fault was a reset: then the board has forgotten its readings too.
+    /// Resumes after a fault. The board may have been reset, so it may have begun to count its events again. The number
+    /// of an earlier event could then delete events that were not received. If the board was not reset, one event may
+    /// come twice. `reset` says whether the fault was a reset: then the board has forgotten its readings too.
     pub fn recover(&mut self, reset: bool) {
         (self.asked, self.received, self.unanswered, self.pause) = (None, 0, 0, 0);
         if reset {
