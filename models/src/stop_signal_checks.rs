@@ -1,8 +1,13 @@
 //! Checks of `src/finger/stop_signal.rs`.
 
 use super::FaultKind;
-use super::stop_signal::{StopSignal, stop_all, stop_calls};
+use super::stop_signal::{StopCounts, StopSignal, stop_all, stop_calls};
 use loom::thread;
+
+/// Returns the calls and faults that a recovery answers if it begins now.
+fn answered(signal: &StopSignal) -> StopCounts {
+    StopCounts { calls: stop_calls(), of_finger: 0, faults: signal.faults() }
+}
 
 /// A recovery ignores the stop calls before its request, and no later one. Returns the pending fault just after the
 /// recovery, and the pending fault after the later stop call.
@@ -10,9 +15,9 @@ pub fn a_stop_call_during_a_recovery_is_not_lost() -> (Option<FaultKind>, Option
     let mut signal = StopSignal::new(false, stop_calls());
     stop_all();
     assert_eq!(signal.pending(), Some(FaultKind::EmergencyStopCall));
-    let requested = stop_calls();
+    let requested = answered(&signal);
     let caller = thread::spawn(stop_all);
-    signal.forget(requested);
+    signal.forget(&requested);
     let at_once = signal.pending();
     caller.join().expect("no panic");
     assert_eq!(signal.pending(), Some(FaultKind::EmergencyStopCall), "the later call is lost");
@@ -34,9 +39,9 @@ pub fn a_fault_stops_the_companion_once() {
     }
     let first = faulting.join().expect("no panic");
     assert_eq!(second.pending(), Some(FaultKind::Companion), "the fault is lost");
-    second.forget(stop_calls());
+    second.forget(&answered(&second));
     assert_eq!(second.pending(), None);
     let mut first = first;
-    first.forget(stop_calls());
+    first.forget(&answered(&first));
     assert_eq!(first.pending(), None, "the companion's signal has returned");
 }
