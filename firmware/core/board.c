@@ -71,8 +71,8 @@ static void answer(struct board *board, const struct frame *request, uint32_t ar
 void board_poll(struct board *board)
 {
     uint8_t bytes[64];
-    uint32_t arrived_at = 0;
-    size_t taken;
+    size_t taken = 0;
+    uint32_t now = hal_microseconds(), arrived_at = now;
     /* Takes at most 32 runs of bytes: a line that never falls silent must not keep the watchdogs from running. */
     for (int runs = 0; runs < 32 && (taken = hal_receive(board->line, bytes, sizeof bytes, &arrived_at)) > 0; runs++) {
         for (size_t i = 0; i < taken; i++) {
@@ -83,7 +83,11 @@ void board_poll(struct board *board)
                 board->fingers[n].damaged = true;
         }
     }
-    uint32_t now = hal_microseconds();
+    /* A time-out must not overtake a Command that arrived before it and waits in the buffer. If no input is left,
+       everything that arrived before the beginning has been taken. Otherwise, only what arrived before the last frame
+       has certainly been taken. */
+    if (taken > 0 || (int32_t)(arrived_at - now) > 0)
+        now = arrived_at;
     for (size_t n = 0; n < board->count; n++)
         finger_tick(&board->fingers[n], now);
 }

@@ -32,7 +32,10 @@ size_t hal_receive(unsigned line, uint8_t *bytes, size_t room, uint32_t *arrived
         if (bytes[taken++] == 0)
             break;
     }
-    *arrived_at = fake.now - fake.delay;
+    if (taken == 0)
+        fake.now += fake.gap;
+    else if (bytes[taken - 1] == 0)
+        *arrived_at = fake.now - fake.delay;
     return taken;
 }
 

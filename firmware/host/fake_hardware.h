@@ -10,6 +10,7 @@ enum { FAKE_FINGERS = 2 };
 struct fake_hardware {
     uint32_t now;   /* us. */
     uint32_t delay; /* Time that the bytes have been waiting when the board reads them, us. */
+    uint32_t gap;   /* Time that passes while the board finds that there is no input, us. */
     const uint8_t *input;
     size_t input_length;
     uint8_t output[4096];

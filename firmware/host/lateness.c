@@ -76,6 +76,16 @@ int main(void)
         command();
         expect(finger.state == FINGER_ENDED && fake.currents[0][0] == 0, "a Command that came too late was obeyed");
 
+        /* The Command arrives in time, just after the board has found no input. */
+        enable(beginnings[i]);
+        fake.now += 19990;
+        fake.gap = 20;
+        board_poll(&board);
+        fake.gap = 0;
+        fake.delay = 15;
+        command();
+        expect(finger.state == FINGER_ENABLED, "the watchdog overtook a Command that came in time");
+
         /* An interrupt may read the timer slightly later than the main loop did. */
         enable(beginnings[i]);
         fake.delay = 0u - 50u;
