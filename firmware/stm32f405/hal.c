@@ -7,13 +7,15 @@
 #include "pins.h"
 #include "registers.h"
 
-/* How old the last sample may become before sensors_poll takes another one, us. */
+/* How old the sample that was read last may become before sensors_poll reads another one, us. */
 enum { REFRESH = 10000 };
 
 /* How old a sample may be when the core asks for it, us. */
 enum { USABLE = 50 };
 
 static uint32_t sampled_at;
+/* When the sample was taken that was read last. A line that only carries noise begins samples that nobody reads. */
+static uint32_t read_at;
 /* Whether nobody has read the last sample. */
 static bool unread;
 static bool crystal;
@@ -50,6 +52,7 @@ void hal_sample(unsigned finger, struct sensors *sensors)
     if (!unread || hal_microseconds() - sampled_at > USABLE)
         sample();
     unread = false;
+    read_at = sampled_at;
     encoders_read(sensors->encoders);
     gauges_read(sensors->gauges);
 }
@@ -57,7 +60,7 @@ void hal_sample(unsigned finger, struct sensors *sensors)
 void sensors_poll(void)
 {
     struct sensors ignored;
-    if (hal_microseconds() - sampled_at > REFRESH)
+    if (hal_microseconds() - read_at > REFRESH)
         hal_sample(0, &ignored);
 }
 

@@ -37,6 +37,7 @@ enum { PWR_CR_VOS = 1 << 14 };
 struct gpio {
     volatile uint32_t MODER, OTYPER, OSPEEDR, PUPDR, IDR, ODR, BSRR, LCKR, AFR[2];
 };
+enum { GPIO_OSPEEDR_MEDIUM = 1 };                                                  /* 8.4.3 */
 #define GPIOA ((struct gpio *)0x40020000u)
 #define GPIOB ((struct gpio *)0x40020400u)
 #define GPIOC ((struct gpio *)0x40020800u)

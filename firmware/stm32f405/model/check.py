@@ -61,6 +61,7 @@ def drives_every_pin_that_the_table_names():
             assert (mode(port, pin), function(port, pin)) == (2, wanted), (hex(port), pin)
     for port, pins in {reg.GPIOB: (12, 1, 15), reg.GPIOC: (0, 1, 2, 3, 4, 12)}.items():
         assert all(mode(port, pin) == 1 for pin in pins)
+    assert registers.values[reg.GPIOB + 8] >> 2 * 13 & 3 >= 1, "the clock of the converter needs a faster output"
 
 
 def says_its_own_number():
@@ -80,6 +81,17 @@ def reports_its_sensors():
     board.run_for(15000)
     counts = struct.unpack_from("<4i", board.ask(configure(watchdog_ms=1000)), 34)
     assert counts == (-2, 70000, 5, -1), counts
+
+
+def counts_while_the_line_carries_noise():
+    board = configured()
+    # Every delimiter begins a sample. 16 bits of TIM3 wrap several times.
+    for turned in range(0, 80001, 5000):
+        board.registers.values[reg.TIM3 + 0x24] = turned & 0xFFFF
+        board.send(bytes(1), 1_000_000)
+        board.run_for(5000)
+    counts = struct.unpack_from("<4i", board.ask(configure(watchdog_ms=1000)), 34)
+    assert counts[2] == 80000, counts
 
 
 def drives_the_motors():
@@ -179,6 +191,7 @@ CHECKS = [
     drives_every_pin_that_the_table_names,
     says_its_own_number,
     reports_its_sensors,
+    counts_while_the_line_carries_noise,
     drives_the_motors,
     stops_when_nobody_commands,
     stops_by_every_fault,
