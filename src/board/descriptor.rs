@@ -7,6 +7,7 @@
 
 use std::io;
 use std::os::fd::{AsRawFd, FromRawFd, IntoRawFd, OwnedFd, RawFd};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// The lowest number for our descriptors. It is above the numbers that daemons close, and above those that a program
 /// with a usual number of open files uses.
@@ -26,10 +27,19 @@ const F_GETSIG: libc::c_int = 11;
 /// pseudo-terminals share those of /dev/ptmx, and reading them takes twice as long.
 const MARK: libc::c_int = libc::SIGPWR;
 
+/// How many files of this library have had each descriptor number. The mark says only that a file belongs to this
+/// library. If other code closes a descriptor, its number may be given to another file that is opened here.
+static GENERATIONS: [AtomicU32; NUMBERED] = [const { AtomicU32::new(0) }; NUMBERED];
+
+/// Number of the descriptor numbers that are distinguished by their generation. The numbers are the lowest free ones,
+/// so only a process with thousands of open files has higher ones.
+const NUMBERED: usize = 4096;
+
 /// An open descriptor that is checked before each use.
 #[derive(Debug)]
 pub(crate) struct Descriptor {
     number: RawFd,
+    generation: u32,
 }
 
 impl Descriptor {
@@ -43,11 +53,15 @@ impl Descriptor {
         // SAFETY: the call has just created the descriptor, and no other code knows it.
         let low = unsafe { OwnedFd::from_raw_fd(result) };
         // SAFETY: the descriptor is open, and the command takes an integer.
-        check(unsafe { libc::fcntl(low.as_raw_fd(), F_SETSIG, MARK) })?;
-        // SAFETY: as above.
         let high = unsafe { libc::fcntl(low.as_raw_fd(), libc::F_DUPFD_CLOEXEC, lowest()) };
         // If no high number is free, the low one stays in use.
-        Ok(Self { number: if high < 0 { low.into_raw_fd() } else { high } })
+        // SAFETY: the call has just created the descriptor, and no other code knows it.
+        let file = if high < 0 { low } else { unsafe { OwnedFd::from_raw_fd(high) } };
+        // The file gets its mark last: before that, an earlier owner of the number does not take it for its own.
+        let generation = next_generation(file.as_raw_fd());
+        // SAFETY: the descriptor is open, and the command takes an integer.
+        check(unsafe { libc::fcntl(file.as_raw_fd(), F_SETSIG, MARK) })?;
+        Ok(Self { number: file.into_raw_fd(), generation })
     }
 
     /// Returns the number. Use it only directly after [`Descriptor::is_own`] returned true.
@@ -58,7 +72,8 @@ impl Descriptor {
     /// Returns whether the number still refers to the file that was opened here.
     pub fn is_own(&self) -> bool {
         // SAFETY: the command takes no pointer and changes nothing. Any number is permitted.
-        unsafe { libc::fcntl(self.number, F_GETSIG) == MARK }
+        let marked = unsafe { libc::fcntl(self.number, F_GETSIG) == MARK };
+        marked && generations(self.number).is_none_or(|all| all.load(Ordering::SeqCst) == self.generation)
     }
 
     /// Returns the last error of this descriptor, or EBADF if other code has closed it.
@@ -75,6 +90,16 @@ impl Drop for Descriptor {
             unsafe { libc::close(self.number) };
         }
     }
+}
+
+/// Returns the number of files that have had this descriptor number, if it is counted.
+fn generations(number: RawFd) -> Option<&'static AtomicU32> {
+    GENERATIONS.get(usize::try_from(number).ok()?)
+}
+
+/// Counts a file with this descriptor number, and returns the count.
+fn next_generation(number: RawFd) -> u32 {
+    generations(number).map_or(0, |all| all.fetch_add(1, Ordering::SeqCst).wrapping_add(1))
 }
 
 /// Returns the lowest number for our descriptors.
@@ -115,7 +140,7 @@ mod tests {
         const ALONE: RawFd = 900;
         // SAFETY: the descriptor is open, and nothing else uses the number.
         assert_eq!(unsafe { libc::dup2(open().number(), ALONE) }, ALONE);
-        let descriptor = Descriptor { number: ALONE };
+        let descriptor = Descriptor { number: ALONE, generation: next_generation(ALONE) };
         assert!(descriptor.is_own());
         // SAFETY: `descriptor` checks the number before it uses it.
         unsafe { libc::close(ALONE) };
@@ -129,6 +154,20 @@ mod tests {
         drop(descriptor);
         // SAFETY: the number is that of the duplicate, which is still open.
         assert_eq!(unsafe { libc::close(ALONE) }, 0);
+    }
+
+    #[test]
+    fn a_closed_descriptor_does_not_match_or_close_another_file_of_the_library_with_its_number() {
+        let first = open();
+        // SAFETY: `first` checks the number before it uses it.
+        unsafe { libc::close(first.number()) };
+        // Other tests open files too, so the number may be given to one of those.
+        let mut others: Vec<Descriptor> = (0..100).map(|_| open()).collect();
+        let Some(second) = others.iter().position(|other| other.number() == first.number()) else { return };
+        let second = others.swap_remove(second);
+        assert!(!first.is_own() && second.is_own());
+        drop(first);
+        assert!(second.is_own(), "the second file was closed");
     }
 
     #[test]
