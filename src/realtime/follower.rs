@@ -14,6 +14,9 @@ const DAMPING: f64 = 1.0;
 /// difference is not caused by the clocks.
 const MOST: f64 = 5e-3;
 
+/// A change of the other clock by more than this number of periods beyond the largest drift is a jump of the clock.
+const JUMP: f64 = 2.0;
+
 /// Adjusts the period so that its length, measured with the other clock, is the nominal length. The other clock counts
 /// microseconds modulo 65 536 and is read at most once per period.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +45,8 @@ impl Follower {
     /// be called once per cycle. `reading` is the count of the other clock in this cycle, or none if no reply contained
     /// a count. `periods` is the number of periods until the next cycle: 1, or more if some are skipped.
     ///
-    /// The counter wraps. A reading is therefore assumed to be within 32 ms of the expected count.
+    /// The counter wraps. A reading is therefore assumed to be within 32 ms of the expected count. If the other clock
+    /// jumps, for example because the board has restarted, the phase and the rate of the loop stay as they are.
     pub fn correction(&mut self, reading: Option<u16>, periods: u64) -> i64 {
         let bound = MOST * self.period;
         let mut wanted = 0.0;
@@ -53,7 +57,9 @@ impl Follower {
                 (expected + i64::from(counts)) * NS_A_COUNT - (self.periods as f64 * self.period).round() as i64;
             let elapsed = self.periods as f64 * self.period * 1e-9;
             (self.last, self.periods) = (reading, 0);
-            let phase = self.phase.map_or(0, |before| before + gained);
+            // A jump is a restart of the board or a very late command, and not a difference of the rates.
+            let jump = gained.abs() as f64 > MOST * elapsed * 1e9 + JUMP * self.period;
+            let phase = self.phase.map_or(0, |before| if jump { before } else { before + gained });
             self.phase = Some(phase);
             let phase = phase as f64;
             self.rate = (self.rate + NATURAL * NATURAL * elapsed * phase * self.period * 1e-9).clamp(-bound, bound);
@@ -106,6 +112,15 @@ mod tests {
         // The loop has settled, and one command per second is 1 ms late. This raises the mean lateness by 1 us, so
         // a loop that followed the mean would also move the beginnings by 1 us.
         assert!((mean - 1e6).abs() < 10.0 && off < 2000.0, "{mean} {off}");
+    }
+
+    #[test]
+    fn a_clock_that_jumps_does_not_change_the_period() {
+        for jump in [20_000_000, 60_000_000] {
+            let late = |cycle| Some(20_000 + if cycle < 18_500 { 0 } else { jump });
+            let (mean, off) = run(100e-6, 20, 0.0, late);
+            assert!((mean - 1e6).abs() < 10.0 && off < 2000.0, "{jump} ns: {mean} {off}");
+        }
     }
 
     #[test]
