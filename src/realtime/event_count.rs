@@ -57,6 +57,7 @@ mod tests {
     use super::*;
     use std::sync::atomic::AtomicU64;
     use std::thread;
+    use std::time::Duration;
 
     #[test]
     fn every_waiting_thread_sees_every_change() {
@@ -85,6 +86,40 @@ mod tests {
             }
             readers.into_iter().for_each(|reader| reader.join().expect("no panic"));
         });
+    }
+
+    /// A thread that is not woken sees a change only when its longest sleep ends.
+    #[test]
+    fn sleeping_threads_are_woken() {
+        const ROUNDS: u64 = 300;
+        let (events, changes) = (EventCount::default(), AtomicU64::new(0));
+        let seen = [const { AtomicU64::new(0) }; 3];
+        let follow = |own: &AtomicU64| {
+            while own.load(Ordering::Relaxed) < ROUNDS {
+                let prepared = events.prepare();
+                let present = changes.load(Ordering::Relaxed);
+                if own.swap(present, Ordering::Relaxed) == present {
+                    events.wait(prepared, u64::MAX);
+                }
+            }
+        };
+        let slow = thread::scope(|scope| {
+            seen.iter().for_each(|own| drop(scope.spawn(|| follow(own))));
+            let mut slow = 0;
+            for number in 1..=ROUNDS {
+                // Most threads sleep after this time.
+                thread::sleep(Duration::from_millis(1));
+                changes.store(if slow < ROUNDS / 2 { number } else { ROUNDS }, Ordering::Relaxed);
+                let began = now();
+                events.notify();
+                while seen.iter().any(|own| own.load(Ordering::Relaxed) < number) {
+                    thread::sleep(Duration::from_micros(50));
+                }
+                slow += u64::from(now() - began > LONGEST_SLEEP / 2);
+            }
+            slow
+        });
+        assert!(slow < ROUNDS / 2, "in {slow} of {ROUNDS} rounds a thread was not woken");
     }
 
     #[test]
