@@ -23,7 +23,7 @@ pub enum LineFault {
 }
 
 /// The last byte of every frame.
-const DELIMITER: u8 = 0;
+pub(super) const DELIMITER: u8 = 0;
 
 /// A fault that occurs at random for a limited time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,7 +123,7 @@ impl SimulatedLine {
                     let bit = self.random.next_u32() as usize % (8 * bytes.len().max(1));
                     bytes.iter_mut().skip(bit / 8).take(1).for_each(|byte| *byte ^= 1 << (bit % 8));
                 }
-                LineFault::Delay(time) => due = due.max(now + time),
+                LineFault::Delay(time) => due = due.max(now.saturating_add(time)),
                 LineFault::Duplicate => copies *= 2,
                 LineFault::Reorder => hold = self.held.is_none(),
             }
@@ -201,6 +201,13 @@ mod tests {
         let corrupt = with(LineFault::Corrupt);
         assert!((0..2).all(|place| (corrupt[place].1 ^ place as u8).count_ones() == 1), "{corrupt:?}");
         assert_eq!(bytes(&corrupt)[2..], [2, 3]);
+    }
+
+    #[test]
+    fn a_delay_without_end_delivers_nothing() {
+        let mut line = SimulatedLine::new();
+        line.inject(LineFault::Delay(u64::MAX), 1.0, u64::MAX, 1);
+        assert_eq!(out(&mut line, 4), []);
     }
 
     #[test]
