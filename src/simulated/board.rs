@@ -10,6 +10,7 @@ use crate::model::TendonsError;
 use crate::model::configuration::Configuration;
 use crate::plant::PLANT_STEP_SECONDS;
 use crate::simulated::finger::SimulatedFinger;
+use crate::simulated::line::DELIMITER;
 use crate::simulated::scene::Scene;
 use thiserror::Error;
 
@@ -113,16 +114,16 @@ impl SimulatedBoard {
     }
 
     /// Receives bytes at `now`, ns, and passes each complete answer to `send`.
-    pub fn receive(&mut self, now: u64, mut bytes: &[u8], send: &mut dyn FnMut(&[u8])) {
+    pub fn receive(&mut self, now: u64, bytes: &[u8], send: &mut dyn FnMut(&[u8])) {
         self.advance(now);
         // The physics advances in whole steps, so its time may be a fraction of a step behind.
         let now = self.time.unwrap_or(now);
-        loop {
+        // One frame at a time: the answer to a frame reports the damage before it.
+        for mut piece in bytes.split_inclusive(|&byte| byte == DELIMITER) {
             let damaged = self.decoder.counters().damaged;
-            let Some(packet) = self.decoder.next(&mut bytes) else { break };
-            if let Some(answer) = answer(&mut self.fingers, now, &packet, damaged) {
-                send(WireFrame::new(&answer).as_bytes());
-            }
+            let answer =
+                self.decoder.next(&mut piece).and_then(|packet| answer(&mut self.fingers, now, &packet, damaged));
+            answer.iter().for_each(|answer| send(WireFrame::new(answer).as_bytes()));
         }
     }
 }

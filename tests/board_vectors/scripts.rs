@@ -214,6 +214,9 @@ fn damage() -> Vec<Conversation> {
             Step::Send(vec![8, 0x31, 7, 3, 0, 0xA4, 4, 0x52, 0], None),
             stop(ENDED),
             command([0; 4], ENDED | Status::DAMAGED_INPUT),
+            // Damage and a Command that arrive together.
+            after(&[3, 0x31, 7, 0], command([0; 4], ENDED | Status::DAMAGED_INPUT)),
+            command([0; 4], ENDED),
             // Undamaged frames that the board ignores: for another finger, an answer, delimiters.
             Step::Send(sealed(&[0x42, 1]), None),
             Step::Send(sealed(&[0xC1, 1, 0, 0]), None),

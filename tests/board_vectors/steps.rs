@@ -81,3 +81,11 @@ pub fn disabled(torques: [i16; 4], status: Status) -> Step {
 pub fn hello(lowest_version: u8, highest_version: u8, answer: Answer) -> Step {
     sent(Frame::Hello(Hello { lowest_version, highest_version }), answer)
 }
+
+/// Sends `bytes` before those of `step`, in the same piece.
+pub fn after(bytes: &[u8], step: Step) -> Step {
+    match step {
+        Step::Send(sent, answer) => Step::Send([bytes, &sent].concat(), answer),
+        other => other,
+    }
+}
