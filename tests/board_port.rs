@@ -1,8 +1,9 @@
 //! The serial port and the simulated board over a real pseudo-terminal, in real time.
 
+use std::ffi::CStr;
 use std::io::{Read, Write};
-use std::os::fd::AsRawFd;
-use std::path::Path;
+use std::os::fd::{AsRawFd, FromRawFd, OwnedFd};
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::*;
 use sun2xp::board::*;
@@ -124,6 +125,40 @@ fn exclusive(path: &Path) -> bool {
     // SAFETY: the descriptor is open, and the request writes one int.
     assert_eq!(unsafe { libc::ioctl(file.as_raw_fd(), libc::TIOCGEXCL, &mut exclusive) }, 0);
     exclusive != 0
+}
+
+/// Returns the controlling end of a new pseudo-terminal, and the path of the other end.
+fn pseudo_terminal() -> (OwnedFd, PathBuf) {
+    // SAFETY: takes no pointers.
+    let control = unsafe { libc::posix_openpt(libc::O_RDWR | libc::O_NOCTTY | libc::O_CLOEXEC) };
+    assert!(control >= 0, "a pseudo-terminal");
+    let mut name = [0; 64];
+    // SAFETY: the descriptor is open, and `name` has the size that the call gets.
+    unsafe {
+        assert_eq!((libc::grantpt(control), libc::unlockpt(control)), (0, 0));
+        assert_eq!(libc::ptsname_r(control, name.as_mut_ptr(), name.len()), 0);
+        let path = CStr::from_ptr(name.as_ptr()).to_str().expect("a path");
+        (OwnedFd::from_raw_fd(control), PathBuf::from(path))
+    }
+}
+
+/// Only root gets as far as the lock of a port that is marked for exclusive use.
+#[test]
+fn a_refused_open_leaves_the_port_to_its_user() {
+    let (control, path) = pseudo_terminal();
+    let mut port = Port::open(&path, 1_000_000).unwrap();
+    assert_eq!(port.write(b"command").unwrap(), 7);
+    assert_eq!(Port::open(&path, 1_000_000).unwrap_err().errno(), libc::EBUSY);
+    assert!(exclusive(&path), "the mark of the first user was removed");
+    let mut poll = libc::pollfd { fd: control.as_raw_fd(), events: libc::POLLIN, revents: 0 };
+    // SAFETY: the pointer refers to one pollfd.
+    assert_eq!(unsafe { libc::poll(&mut poll, 1, 10_000) }, 1, "what the first user has sent was discarded");
+    let mut received = [0; 8];
+    let mut control = std::fs::File::from(control);
+    assert_eq!(control.read(&mut received).unwrap(), 7);
+    assert_eq!(&received[..7], b"command");
+    drop(port);
+    assert!(!exclusive(&path));
 }
 
 #[test]

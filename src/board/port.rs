@@ -29,6 +29,8 @@ pub struct Port {
     ready_at: u64,
     /// The process that opened the port. A forked child inherits this value and the open file.
     process: u32,
+    /// Whether this value has the lock. Without it, another program uses the port.
+    locked: bool,
 }
 
 impl Port {
@@ -140,7 +142,7 @@ impl Transport for Port {
 
 impl Drop for Port {
     fn drop(&mut self) {
-        if self.process == std::process::id() && self.descriptor.is_own() {
+        if self.locked && self.process == std::process::id() && self.descriptor.is_own() {
             // Closing a UART waits up to 30 s for bytes that cannot leave. These bytes are discarded, because all
             // requests that matter have been answered before. The mark of exclusive use is removed, because it would
             // otherwise remain while another process has the port open. The lock is released, because it would

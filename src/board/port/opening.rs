@@ -15,7 +15,8 @@ impl Port {
     /// Returns an error if `path` is not a serial port, if this user may not open it, or if another program has it
     /// open. Returns an error if the driver does not support `baud` or refuses another setting.
     pub fn open(path: &Path, baud: u32) -> Result<Self, PortError> {
-        let port = Self { descriptor: open(path)?, path: path.to_owned(), ready_at: 0, process: std::process::id() };
+        let (descriptor, path_buffer, process) = (open(path)?, path.to_owned(), std::process::id());
+        let mut port = Self { descriptor, path: path_buffer, ready_at: 0, process, locked: false };
         port.lock()?;
         let set_up = |source| PortError::SetUp { path: path.to_owned(), source };
         let offered = port.configure(baud).map_err(set_up)?;
@@ -30,17 +31,19 @@ impl Port {
     }
 
     /// Keeps other programs out with TIOCEXCL and flock. TIOCEXCL does not stop a program that runs as root. flock also
-    /// stops such a program, if that program locks the port itself.
-    fn lock(&self) -> Result<(), PortError> {
+    /// stops such a program, if that program locks the port itself. flock comes first, because TIOCEXCL also succeeds
+    /// at a port that another program has, and the mark is that of the port.
+    fn lock(&mut self) -> Result<(), PortError> {
         let failed = |source| PortError::at_opening(&self.path, source);
         // SAFETY: the descriptor is open; neither call takes a pointer.
-        check(unsafe { libc::ioctl(self.descriptor.number(), libc::TIOCEXCL) }).map_err(failed)?;
-        // SAFETY: as above.
         match check(unsafe { libc::flock(self.descriptor.number(), libc::LOCK_EX | libc::LOCK_NB) }) {
-            Ok(_) => Ok(()),
-            Err(error) if error.kind() == io::ErrorKind::WouldBlock => Err(PortError::Busy(self.path.clone())),
-            Err(error) => Err(failed(error)),
+            Ok(_) => self.locked = true,
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => return Err(PortError::Busy(self.path.clone())),
+            Err(error) => return Err(failed(error)),
         }
+        // SAFETY: as above.
+        check(unsafe { libc::ioctl(self.descriptor.number(), libc::TIOCEXCL) }).map_err(failed)?;
+        Ok(())
     }
 
     /// Sets raw mode, eight data bits, no parity, one stop bit, no flow control. Returns the rate that the driver
