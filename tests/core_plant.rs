@@ -110,6 +110,19 @@ fn agrees_with_an_independent_integration_of_lagranges_equations() {
     }
 }
 
+/// The step is too long for links that are so light, so the numbers grow without bound.
+#[test]
+fn a_simulation_that_diverges_does_not_panic() {
+    let mut finger = ConfiguredFinger::default();
+    finger.simulation.masses = [1e-6; 4];
+    finger.simulation.rotor_inertia = [1e-8; 4];
+    finger.simulation.stiction_ratio = 1.5;
+    let mut plant = Plant::new(&finger, Vector3::new(0.0, 0.0, -9.81)).unwrap();
+    plant.release_brake();
+    (0..10_000).for_each(|_| plant.step(torque_for([10.0; 4])));
+    assert!(!plant.joints().iter().chain(&plant.motor_angles()).all(|angle| angle.is_finite()), "{plant:?}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig {
         cases: ProptestConfig::default().cases / 8,

@@ -23,7 +23,9 @@ pub(super) fn stop_by_friction(
         for joint in 0..3 {
             let compliance: f64 = inverse_inertia[(joint, joint)];
             let wanted: f64 = impulse[joint] - rates[joint] / compliance;
-            let change: f64 = wanted.clamp(-bound[joint], bound[joint]) - impulse[joint];
+            // The bound is NaN if the simulation has diverged, and f64::clamp would panic then.
+            let most: f64 = bound[joint].max(0.0);
+            let change: f64 = wanted.clamp(-most, most) - impulse[joint];
             impulse[joint] += change;
             rates += inverse_inertia.column(joint) * change;
             largest = largest.max((change * compliance).abs());

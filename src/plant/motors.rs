@@ -69,7 +69,8 @@ impl Motors {
             let friction = friction * self.stribeck.factor(speeds[motor]);
             // Friction can reduce the speed to zero, but cannot reverse it. A rotor at rest stays at rest until the
             // torque exceeds the friction.
-            let loss = h / self.inertia[motor] * friction;
+            // The friction is NaN if the simulation has diverged, and f64::clamp would panic then.
+            let loss = (h / self.inertia[motor] * friction).max(0.0);
             speed - speed.clamp(-loss, loss)
         })
     }
