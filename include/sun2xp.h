@@ -560,15 +560,19 @@ struct sun2xp_io {
    stop      in the servo thread or at a recovery. After an error, the library calls it again. Every
              start that has succeeded is followed by a stop.
 
- Calls for one finger never overlap. exchange and stop must not allocate memory, wait for locks, write
- files or call the library. The behaviour is undefined if one of the functions does not return: longjmp,
- pthread_exit, exceptions.
+ Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a servo
+ thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery, may overlap
+ with the exchange of another finger. These fingers have the same command->deadline in a cycle, and a later
+ one in the next cycle. A finger that is faulted or stopped gets no exchange.
+
+ exchange and stop must not allocate memory, wait for locks, write files or call the library. The behaviour
+ is undefined if one of the functions does not return: longjmp, pthread_exit, exceptions.
 
  The program must provide a watchdog outside this process, such as that of its drives: if no exchange
  comes for terms->watchdog, the hardware must enter the end state by itself, even if this process hangs
  or has died.
 
- A tension may be from -8192 to 57342 steps. A tension that is NaN or outside this range faults the
+ A tension may be from -8191 to 57342 steps. A tension that is NaN or outside this range faults the
  finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by 32768 counts between two exchanges.
 
  Returns 0, or a negative number with

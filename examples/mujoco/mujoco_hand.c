@@ -20,7 +20,7 @@
 #include <unistd.h>
 #include "sun2xp.h"
 
-/* One servo thread serves all fingers, in the order of their numbers. */
+/* One servo thread serves all fingers, one after the other. */
 #define CONFIGURATION \
     "[hand]\nreal_time = \"ignore\"\nend_state = \"release\"\n[finger]\nport = \"simulated\"\nthread = 1\n"
 
@@ -38,10 +38,17 @@ struct memory {
     struct finger_memory fingers[3];
 };
 
+/* The step of the present cycle, for all fingers. Only the servo thread uses it. */
+struct step {
+    double deadline;                    /* of the commands of the cycle */
+    int owed;                           /* whether the simulation has not made the last requested step */
+    int result;
+};
+
 struct finger {
     struct memory *memory;
+    struct step *step;
     int number;                         /* 0 to 2 */
-    unsigned long last;                 /* number of the last command */
 };
 
 static void nap(void)
@@ -76,30 +83,44 @@ static int start(void *user, const struct sun2xp_io_terms *terms, struct sun2xp_
     struct finger *finger = user;
 
     (void)terms;
-    finger->last = 0;
     read_sample(finger, first);
     return 0;
 }
 
-/* The exchange of finger 1 advances the simulation by one period, with the torques of the last cycle. All fingers are
-   sampled at the end of that period. The torques of this cycle act in the next period. */
-static int exchange(void *user, const struct sun2xp_io_command *command, struct sun2xp_io_sample *sample)
+/* Advances the simulation by one period. After a time-out it waits for the same step again. */
+static int advance(struct step *step, struct memory *memory)
 {
-    struct finger *finger = user;
-    struct memory *memory = finger->memory;
     double deadline = seconds() + PATIENCE;
 
-    if (finger->number == 0 && command->number != finger->last)
+    if (!step->owed)
         atomic_fetch_add(&memory->requested, 1);
-    finger->last = command->number;
+    step->owed = 1;
     while (atomic_load(&memory->done) != atomic_load(&memory->requested)) {
         if (seconds() > deadline)
             return ETIMEDOUT;
         nap();
     }
-    read_sample(finger, sample);
-    memcpy(memory->fingers[finger->number].torques, command->torques, sizeof command->torques);
+    step->owed = 0;
     return 0;
+}
+
+/* The first exchange of a cycle advances the simulation, with the torques of the last cycle. It is the one with a new
+   deadline, and not always that of finger 1, because a faulted finger gets no exchange. All fingers are sampled at the
+   end of that period. The torques of this cycle act in the next period. */
+static int exchange(void *user, const struct sun2xp_io_command *command, struct sun2xp_io_sample *sample)
+{
+    struct finger *finger = user;
+    struct step *step = finger->step;
+
+    if (command->deadline != step->deadline) {
+        step->deadline = command->deadline;
+        step->result = advance(step, finger->memory);
+    }
+    if (step->result == 0) {
+        read_sample(finger, sample);
+        memcpy(finger->memory->fingers[finger->number].torques, command->torques, sizeof command->torques);
+    }
+    return step->result;
 }
 
 static int stop(void *user)
@@ -161,6 +182,7 @@ static int move(sun2xp_hand *hand, const struct memory *memory)
 int main(int count, char **arguments)
 {
     struct memory *memory = count > 1 ? map(arguments[1]) : NULL;
+    struct step step = {0, 0, 0};
     struct finger fingers[3];
     struct sun2xp_io io[3];
     sun2xp_hand *hand;
@@ -173,6 +195,7 @@ int main(int count, char **arguments)
     memset(io, 0, sizeof io);
     for (i = 0; i < 3; i++) {
         fingers[i].memory = memory;
+        fingers[i].step = &step;
         fingers[i].number = i;
         io[i].size = sizeof io[i];
         io[i].finger = i + 1;

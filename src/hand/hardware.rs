@@ -1,9 +1,9 @@
 //! The hardware that the program provides for some fingers, and the connections to the hardware of all fingers.
 
-use crate::board::{Connection, HandIo, IoBoard, Link, Port, TensionScale, ZERO_COUNT};
+use crate::board::{Connection, FingerIo, HandIo, IoBoard, IoProperties, Link, Port, TensionScale, ZERO_COUNT};
 use crate::hand::HandError;
 use crate::hand::notice::print_notice;
-use crate::model::configuration::{Configuration, ConfiguredGauge, IO_PORT, Unusable};
+use crate::model::configuration::{Configuration, ConfiguredGauge, FINGERS, IO_PORT, Unusable};
 use crate::model::{FingerNumber, Fingers, Section, ShownPath, UnusableConfiguration};
 use std::path::Path;
 
@@ -14,13 +14,20 @@ const LARGEST_RATIO: f64 = 2.0;
 /// Largest distance of a gauge's calibrated zero from zero tension, counts.
 const LARGEST_ZERO: f64 = 8000.0;
 
+/// The hardware of a finger, and what the library knows about it. The hardware is asked only once, so that every part
+/// of the library uses the same properties.
+struct Provided {
+    io: Box<dyn FingerIo>,
+    properties: IoProperties,
+}
+
 /// The hardware of fingers 1, 2 and 3.
 #[derive(Default)]
-pub(super) struct Hardware(HandIo);
+pub(super) struct Hardware([Option<Provided>; FINGERS]);
 
 impl Hardware {
     pub fn new(io: HandIo) -> Self {
-        Self(io)
+        Self(io.map(|io| io.map(|io| Provided { properties: io.properties(), io })))
     }
 
     /// Returns the fingers whose hardware the program provides.
@@ -37,11 +44,11 @@ impl Hardware {
             if !opened.contains(number) || !configuration.hand.fingers.contains(number) {
                 return Err(HandError::NotOpened(number));
             }
-            let Some(io) = &self.0[number.index()] else { continue };
+            let Some(provided) = &self.0[number.index()] else { continue };
             let finger = &mut configuration.fingers[number.index()];
             finger.port = format!("{IO_PORT}{number}");
             finger.board = None;
-            fit(&mut finger.gauge, io.properties().tension_unit)
+            fit(&mut finger.gauge, provided.properties.tension_unit)
                 .map_err(|unusable| UnusableConfiguration { section: Section::Finger(number), unusable })?;
         }
         Ok(())
@@ -57,9 +64,11 @@ impl Hardware {
         finger: FingerNumber,
         path: &Path,
     ) -> Result<Link<Connection>, HandError> {
-        let io = self.0[finger.index()].take();
+        let provided = self.0[finger.index()].take();
         // The step of the tensions was checked before.
-        if let Some(board) = io.and_then(|io| IoBoard::new(configuration, finger, io)) {
+        if let Some(board) =
+            provided.and_then(|Provided { io, properties }| IoBoard::new(configuration, finger, io, properties))
+        {
             return Ok(Link::new(board.into()));
         }
         let port = Port::open(path, configuration.fingers[finger.index()].baud);

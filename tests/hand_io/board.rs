@@ -3,7 +3,7 @@
 use super::plant_io::{PlantIo, Switches, starts_and_stops};
 use sun2xp::board::protocol::{Command, Configured, Identity, Status};
 use sun2xp::board::{IoBoard, Link, LinkError, OutgoingCommand, PortError, Received, Terms};
-use sun2xp::io::IoFaults;
+use sun2xp::io::{FingerIo, IoFaults};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, EndState};
 use sun2xp::realtime::now;
@@ -18,7 +18,9 @@ impl Rig {
     fn new(configuration: &Configuration) -> Self {
         let io = PlantIo::new(configuration, FingerNumber::TWO, false);
         let switches = io.switches.clone();
-        let board = IoBoard::new(configuration, FingerNumber::TWO, Box::new(io)).expect("a step of the tensions");
+        let properties = io.properties();
+        let board = IoBoard::new(configuration, FingerNumber::TWO, Box::new(io), properties);
+        let board = board.expect("a step of the tensions");
         Self { link: Link::new(board), switches, sequence: 0 }
     }
 

@@ -2,6 +2,7 @@
 
 mod board;
 mod hand;
+mod one_thread;
 mod plant_io;
 #[path = "../common/settling.rs"]
 mod settling;

@@ -13,7 +13,8 @@ use std::ops::{BitOr, BitOrAssign};
 /// The library calls [`start`](Self::start), then [`exchange`](Self::exchange) once a cycle, then
 /// [`stop`](Self::stop). Every start that succeeds is followed by a stop that succeeds, or by stops that fail. A
 /// recovery stops the hardware if necessary and starts it again. No two calls for a finger overlap, but they may come
-/// from different threads.
+/// from different threads. Calls for different fingers may overlap. If the fingers share a servo thread, their
+/// exchanges do not overlap, but a start, or the stop of a recovery, may overlap with the exchange of another finger.
 ///
 /// The hardware has the watchdog: if no exchange comes for [`IoTerms::watchdog_ms`], it must enter the end state by
 /// itself, because a program that hangs or dies makes no more calls.
@@ -54,7 +55,7 @@ pub type HandIo = [Option<Box<dyn FingerIo>>; FINGERS];
 /// `..Default::default()`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IoProperties {
-    /// Step in which the library stores tensions, N. A tension may be from -8192 to 57 342 steps.
+    /// Step in which the library stores tensions, N. A tension may be from -8191 to 57 342 steps.
     pub tension_unit: f64,
     /// Shortest watchdog time of the hardware, ms.
     pub shortest_watchdog_ms: u16,
@@ -104,7 +105,9 @@ pub struct IoCommand {
     pub enable: bool,
     /// Torques of motors 1 to 4, N cm. A positive torque has the direction that `motor.sign` gives.
     pub torques: Vector4<f64>,
-    /// Time by which the exchange should return, ns of CLOCK_MONOTONIC.
+    /// Time by which the exchange should return, ns of CLOCK_MONOTONIC. All fingers of a servo thread get the same
+    /// deadline in a cycle, and a later one in the next cycle. So the first exchange of a cycle is the one with a new
+    /// deadline.
     pub deadline: u64,
 }
 

@@ -52,8 +52,12 @@ pub(super) struct Hardware {
 
 impl Hardware {
     /// Returns `None` if the step of the tensions is not a positive number.
-    pub fn new(configuration: &Configuration, finger: FingerNumber, io: Box<dyn FingerIo>) -> Option<Self> {
-        let properties = io.properties();
+    pub fn new(
+        configuration: &Configuration,
+        finger: FingerNumber,
+        io: Box<dyn FingerIo>,
+        properties: IoProperties,
+    ) -> Option<Self> {
         Some(Self {
             scale: TensionScale::new(properties.tension_unit)?,
             identity: identity(configuration, finger, &properties),

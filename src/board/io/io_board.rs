@@ -4,7 +4,7 @@
 //! board. A Command is kept until the servo awaits its Reply. The exchange happens then, so its time is the stage
 //! *wire* of the cycle. An exchange that fails has no Reply.
 
-use super::finger_io::FingerIo;
+use super::finger_io::{FingerIo, IoProperties};
 use super::hardware::Hardware;
 use crate::board::port_error::PortError;
 use crate::board::protocol::{
@@ -46,10 +46,16 @@ impl fmt::Debug for IoBoard {
 }
 
 impl IoBoard {
-    /// Creates the board of a finger. Returns `None` if the step of the tensions is not a positive number.
-    pub fn new(configuration: &Configuration, finger: FingerNumber, io: Box<dyn FingerIo>) -> Option<Self> {
+    /// Creates the board of a finger, whose hardware has these `properties`. Returns `None` if the step of the tensions
+    /// is not a positive number.
+    pub fn new(
+        configuration: &Configuration,
+        finger: FingerNumber,
+        io: Box<dyn FingerIo>,
+        properties: IoProperties,
+    ) -> Option<Self> {
         Some(Self {
-            hardware: Hardware::new(configuration, finger, io)?,
+            hardware: Hardware::new(configuration, finger, io, properties)?,
             address: configuration.address(finger),
             decoder: Decoder::default(),
             pending: None,

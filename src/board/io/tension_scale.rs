@@ -46,6 +46,18 @@ mod tests {
     }
 
     #[test]
+    fn the_pages_give_the_range() {
+        let scale = TensionScale::new(1.0).expect("a step");
+        let (lowest, highest) = (-8191.0, 57_342.0);
+        assert_eq!((scale.count(lowest), scale.count(highest)), (Some(1), Some(u16::MAX - 1)));
+        assert_eq!((scale.count(lowest - 1.0), scale.count(highest + 1.0)), (None, None));
+        let manual = include_str!("../../capi/io_calls.rs");
+        assert!(manual.contains("-8191 to 57342 steps"), "the C manual");
+        let pages = [include_str!("finger_io.rs"), include_str!("../../../docs/other-hardware.md")];
+        assert!(pages.iter().all(|page| page.contains("-8191 to 57 342 steps")));
+    }
+
+    #[test]
     fn a_step_is_a_positive_number() {
         for step in [0.0, -0.005, f64::NAN, f64::INFINITY] {
             assert_eq!(TensionScale::new(step), None, "{step}");
