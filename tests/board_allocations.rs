@@ -65,7 +65,7 @@ impl FingerIo for Failing {
 fn a_cycle_with_hardware_of_the_program_allocates_nothing() {
     let mut configuration = Configuration::default();
     configuration.hand.watchdog_ms = 500;
-    let board = IoBoard::new(&configuration, FingerNumber::ONE, Box::new(Failing)).unwrap();
+    let board = IoBoard::new(&configuration, FingerNumber::ONE, Box::new(Failing), Default::default()).unwrap();
     let mut link = Link::new(Connection::from(board));
     let terms = Terms::new(&configuration.hand, &ConfiguredFinger::default());
     link.shake_hands(1, &terms, now() + 2000 * MS).unwrap();
