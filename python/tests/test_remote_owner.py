@@ -1,7 +1,9 @@
 """What the client of `sun2xp.remote` sends and reports, without a network and without time."""
 
+import threading
 import time
 import types
+import warnings
 
 import numpy
 import pytest
@@ -9,7 +11,7 @@ from remote_scripted import BEGIN, HOME, MS, Scripted, S, holds
 
 import sun2xp
 import sun2xp.remote
-from sun2xp.remote import _messages, _receiver
+from sun2xp.remote import _messages, _owner, _receiver
 
 KX = numpy.eye(3)
 PATH = ([1.0], [HOME])
@@ -237,3 +239,51 @@ def test_what_waits_for_a_refused_path_is_sent(server, hand):
     server.refuse(server.targets[-1][0])
     server.target()
     assert server.command()[:3] == (2, 0, 1)
+
+
+@pytest.mark.parametrize("finger", [1.0, numpy.float64(1), "1"])
+def test_a_finger_whose_number_is_no_integer_is_refused(server, hand, finger):
+    for call in (lambda: hand.send_position(finger, HOME), lambda: hand.send_path(finger, *PATH)):
+        with pytest.raises(sun2xp.Refused, match="there is no finger"):
+            call()
+    with pytest.raises(sun2xp.Refused):
+        hand.wait([finger], timeout=0)
+    assert server.target() == []
+    hand.send_position(numpy.int64(1), HOME)
+    server.apply()
+    assert holds(hand, numpy.int64(1))
+
+
+def test_a_wait_for_a_finger_without_a_command_uses_the_records_of_the_epoch(server, hand):
+    server.records["bits"] = EVERYTHING
+    hand.acquire()
+    assert not holds(hand, 2) and not holds(hand, 2, "arrived")
+    server.state()
+    assert holds(hand, 2) and holds(hand, 2, "arrived")
+    hand.send_position(1, HOME)
+    assert not holds(hand, [1, 2], "arrived")
+    server.apply()
+    assert holds(hand, [1, 2], "arrived")
+    server.records["bits"][1] = 0
+    server.state()
+    assert holds(hand, 2) and not holds(hand, 2, "settled")
+
+
+def test_a_target_that_cannot_be_sent_does_not_stop_those_of_other_hands():
+    class Failing:
+        def publish(self, sent):
+            raise OSError("no line")
+
+    class Counting:
+        sent = threading.Event()
+
+        def publish(self, sent):
+            self.sent.set()
+
+    sender = _owner.Sender()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        sender.add(Failing())
+        sender.add(Counting())
+        assert Counting.sent.wait(10)
+        sender.close()

@@ -181,7 +181,7 @@ class RemoteHand(Reading):
         if fingers is None:
             with self._network.sender.lock:
                 fingers = self._owner.commanded()
-        wanted = [fingers] if isinstance(fingers, int) else list(fingers)
+        wanted = list(fingers) if isinstance(fingers, Iterable) else [fingers]
         self._check(*wanted)
         deadline = None if timeout is None else time.monotonic() + timeout
         while True:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+import warnings
 from typing import Callable, Dict, Iterable, List, Optional, Tuple
 
 from .._errors import Closed, ErrorNumber, Refused
@@ -36,6 +37,8 @@ class Owner:
         self._command = 0
         #: What is sent to the fingers that this client has commanded in this epoch.
         self._slots: Dict[int, Slot] = {}
+        #: Bits of the newest record of each finger in this epoch.
+        self._bits: Dict[int, int] = {}
         self._refusals: Dict[int, str] = {}
 
     @property
@@ -48,7 +51,7 @@ class Owner:
         self._epoch, self._validity = answer.epoch, answer.catch_ms
         self._number, self._since, self._sequence = answer.number, answer.time, 0
         self._restarts = self._receiver.restarts
-        self._slots, self._refusals = {}, {}
+        self._slots, self._bits, self._refusals = {}, {}, {}
 
     def end(self) -> None:
         """Ends the epoch: nothing more is sent."""
@@ -64,10 +67,11 @@ class Owner:
         if state.owner != self._number:
             self._epoch = 0
             return
-        for finger, slot in self._slots.items():
-            records = state.records[state.records["finger"] == finger]
-            if len(records) > 0:
-                slot.heard(int(records["command"][-1]), int(records["bits"][-1]))
+        for record in state.records:
+            finger, bits = int(record["finger"]), int(record["bits"])
+            self._bits[finger] = bits
+            if finger in self._slots:
+                self._slots[finger].heard(int(record["command"]), bits)
 
     def refused(self, answer: Answer) -> None:
         """Processes the refusal of a Target: drops those of its set points that no State has confirmed."""
@@ -82,10 +86,12 @@ class Owner:
         return sorted(self._slots)
 
     def holds(self, finger: int, bits: int) -> bool:
-        """Returns whether something was sent to a finger in this epoch, the server has applied or refused all of it,
-        and the newest record has these bits."""
+        """Returns whether the server has applied or refused everything that was sent to a finger in this epoch, and the
+        newest record of this epoch has these bits."""
         slot = self._slots.get(finger)
-        return slot is not None and slot.holds(bits)
+        if slot is None:
+            return finger in self._bits and self._bits[finger] & bits == bits
+        return slot.holds(bits)
 
     def check(self, fingers: Iterable[int]) -> None:
         """Checks that this client commands these fingers, and that none of its commands was refused.
@@ -184,6 +190,13 @@ class Sender:
             with self.lock:
                 sent = time.monotonic_ns()
                 for owner in self._owners:
-                    owner.publish(sent)
+                    self._repeat(owner, sent)
             # After a pause of this thread, one Target follows at once. The other missed Targets are not sent.
             due = max(due + PERIOD, time.monotonic())
+
+    @staticmethod
+    def _repeat(owner: Owner, sent: int) -> None:
+        try:
+            owner.publish(sent)
+        except Exception as error:  # The Targets of the other hands must go on.
+            warnings.warn(f"a Target cannot be sent, so its hand stops: {error}", RuntimeWarning, stacklevel=2)

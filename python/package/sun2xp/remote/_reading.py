@@ -104,7 +104,8 @@ class Reading:
         if self._closed:
             raise Closed("the hand is closed", number=ErrorNumber.NO_HAND)
         for finger in fingers:
-            if finger not in self._status.fingers:
+            # A float equals the number of a finger, but the messages need an integer.
+            if not hasattr(finger, "__index__") or finger not in self._status.fingers:
                 text = f"there is no finger {finger!r}. The hand {self.name} has the fingers {self.fingers}."
                 raise Refused(text, number=ErrorNumber.ARGUMENT)
 
