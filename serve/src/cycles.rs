@@ -60,10 +60,7 @@ impl Cycles {
                 (newest.arrived, newest.settled) = (arrived, settled);
             }
         }
-        let most = MOST_RECORDS.min(taken.records.len());
-        let dropped = taken.records.len() - most;
-        taken.missing += dropped as u64;
-        taken.records.drain(..dropped);
+        taken.missing += keep_newest(&mut taken.records, MOST_RECORDS) as u64;
         taken
     }
 
@@ -154,6 +151,26 @@ impl Cycles {
     }
 }
 
+/// Drops the oldest records until there are at most `most`. The finger with the most records loses its oldest one
+/// first, so that every finger keeps its newest. Returns the number of records that were dropped.
+fn keep_newest(records: &mut Vec<Record>, most: usize) -> usize {
+    let mut counts = [0_usize; FINGERS];
+    records.iter().for_each(|record| counts[record.finger.index()] += 1);
+    let mut dropped = [0_usize; FINGERS];
+    for _ in most..records.len() {
+        let longest = (0..FINGERS).max_by_key(|&finger| counts[finger] - dropped[finger]).unwrap_or(0);
+        dropped[longest] += 1;
+    }
+    let mut left = dropped;
+    records.retain(|record| {
+        let left = &mut left[record.finger.index()];
+        let keeps = *left == 0;
+        *left = left.saturating_sub(1);
+        keeps
+    });
+    dropped.iter().sum()
+}
+
 /// The stage as it is sent.
 #[must_use]
 pub fn stage(stage: &Stage) -> SentStage {
@@ -165,5 +182,49 @@ pub fn stage(stage: &Stage) -> SentStage {
         Stage::Closing => SentStage::Closing,
         Stage::Faulted(fault) => SentStage::Faulted(fault.kind.number().into()),
         _ => SentStage::Closed,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(finger: usize, cycle: u64) -> Record {
+        let (finger, stage, none) = (Finger::ALL[finger], SentStage::Running, [0.0; 3]);
+        let (touching, caught, arrived, settled) = (false, false, false, false);
+        let (joints, set_point, tip, force, tensions) = (none, None, none, none, [0.0; 4]);
+        let (command, begin) = (0, 0);
+        Record {
+            finger,
+            stage,
+            command,
+            cycle,
+            begin,
+            touching,
+            caught,
+            arrived,
+            settled,
+            joints,
+            set_point,
+            tip,
+            force,
+            tensions,
+        }
+    }
+
+    /// States that come late have more cycles than fit.
+    #[test]
+    fn every_finger_keeps_its_newest_cycles() {
+        let of = |finger, count| (0..count).map(move |cycle| record(finger, cycle));
+        let mut records: Vec<Record> = of(0, 200).chain(of(1, 200)).chain(of(2, 20)).collect();
+        assert_eq!(keep_newest(&mut records, 300), 120);
+        let kept = |finger: usize| {
+            let of_finger = records.iter().filter(|record| record.finger.index() == finger);
+            of_finger.map(|record| record.cycle).collect::<Vec<_>>()
+        };
+        assert_eq!(kept(0), (60..200).collect::<Vec<_>>());
+        assert_eq!(kept(1), (60..200).collect::<Vec<_>>());
+        assert_eq!(kept(2), (0..20).collect::<Vec<_>>());
+        assert_eq!(keep_newest(&mut records, 300), 0);
     }
 }

@@ -11,7 +11,7 @@ use crate::silence::{MILLISECOND, Silence};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use sun2xp::control::events::Arrival;
-use sun2xp::{Hand, HandError};
+use sun2xp::{Fault, FaultKind, Hand, HandError};
 use sun2xp_remote_protocol::{Answer, ClientName, Code, Counts, DecodeError, FINGERS, Target};
 
 /// If an ownership ends because its owner is silent, the desk stops the fingers that still move after this time, ns.
@@ -33,7 +33,11 @@ pub struct Desk {
     caught: bool,
     /// The time at which fingers that still move are stopped, ns.
     stop_at: Option<u64>,
+    stops: Stops,
 }
+
+/// How often each finger was stopped.
+pub type Stops = [u32; FINGERS];
 
 impl Desk {
     /// Constructs the desk of this hand. `start` is the time at which the server started, ns.
@@ -50,6 +54,7 @@ impl Desk {
             clients: BTreeSet::new(),
             caught: false,
             stop_at: None,
+            stops: Stops::default(),
         }
     }
 
@@ -139,14 +144,16 @@ impl Desk {
         Some(*silence)
     }
 
-    /// Makes a client the owner, with this epoch. The time limit for the owner's silence begins with [`Desk::begin`].
+    /// Makes a client the owner at `now`, ns, with this epoch. Paths of the previous owner end. The time limit for the
+    /// owner's silence begins with [`Desk::begin`].
     ///
     /// # Errors
     /// Returns the name of the other owner. Then nothing has changed.
-    pub fn acquire(&mut self, client: &ClientName, take_over: bool, epoch: u64) -> Result<u64, ClientName> {
+    pub fn acquire(&mut self, client: &ClientName, take_over: bool, epoch: u64, now: u64) -> Result<u64, ClientName> {
         let number = self.ownership.acquire(client, take_over, epoch)?.number;
         (self.acceptance, self.silence, self.stop_at) = (Acceptance::default(), None, None);
         self.fingers.forget_commands();
+        self.fingers.end_paths(&self.silence_from(now));
         Ok(number)
     }
 
@@ -188,11 +195,35 @@ impl Desk {
     ///
     /// # Errors
     /// Returns an error if the hand does not have the finger. Then nothing has stopped.
-    pub fn stop(&self, finger: Option<i32>) -> Result<(), HandError> {
-        match finger {
-            Some(finger) => self.hand.stop(finger),
-            None => self.fingers.numbers().try_for_each(|number| self.hand.stop(number)),
+    pub fn stop(&mut self, finger: Option<i32>) -> Result<(), HandError> {
+        let all: Vec<i32> = finger.map_or_else(|| self.fingers.numbers().collect(), |finger| vec![finger]);
+        for number in all {
+            self.hand.stop(number)?;
+            self.stops[number as usize - 1] += 1;
         }
+        Ok(())
+    }
+
+    /// Returns how often each finger was stopped so far. The end of an ownership stops every finger.
+    #[must_use]
+    pub fn stops(&self) -> Stops {
+        self.stops
+    }
+
+    /// Stops the fingers again that were stopped after `before` was read. A recovery that begins after such a stop
+    /// would undo it.
+    ///
+    /// # Errors
+    /// Returns an error if it has stopped a finger.
+    pub fn stop_again(&mut self, before: &Stops) -> Result<(), HandError> {
+        let mut stopped = Ok(());
+        for finger in self.hand.fingers().members() {
+            if self.stops[finger.index()] != before[finger.index()] {
+                self.hand.stop(finger.get())?;
+                stopped = Err(HandError::Faulted { finger, fault: Fault::new(FaultKind::FingerStopCall) });
+            }
+        }
+        stopped
     }
 
     /// Advances set points, and ends the ownership of an owner that has been silent for too long. It is called about

@@ -14,8 +14,13 @@ pub enum Destination {
     Joints(Vector3<f64>),
     /// With the tip at its position for these joint angles, rad.
     Tip(Vector3<f64>),
-    /// On a path that ends at these joint angles, rad.
-    Path(Vector3<f64>),
+    /// On a path.
+    Path {
+        /// The joint angles at the end of the path, rad.
+        end: Vector3<f64>,
+        /// The time at which the path ends, ns. If the servo skips periods, the path ends later.
+        until: u64,
+    },
 }
 
 /// What the owner wants of one finger, in its epoch.
@@ -73,7 +78,7 @@ impl Goal {
     pub fn is_reached(&self, joints: &Vector3<f64>, tolerance: f64) -> bool {
         match self.destination {
             Destination::None => true,
-            Destination::Joints(end) | Destination::Tip(end) | Destination::Path(end) => {
+            Destination::Joints(end) | Destination::Tip(end) | Destination::Path { end, .. } => {
                 (joints - end).amax() <= tolerance
             }
         }

@@ -2,7 +2,7 @@
 //! thread of its own, because the threads of zenoh must not wait.
 
 use crate::access::permission;
-use crate::desk::code_of;
+use crate::desk::{Stops, code_of};
 use crate::epoch::new_epoch;
 use crate::output::complain;
 use crate::settings::Permission;
@@ -61,11 +61,14 @@ pub trait Reply: Send + 'static {
 
 fn carry_out(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: impl Reply) {
     let (request, time) = (*request, now());
-    let owned = shared.desk.lock().admits(&client, request.epoch);
+    let (owned, stops) = {
+        let desk = shared.desk.lock();
+        (desk.admits(&client, request.epoch), desk.stops())
+    };
     match request.action {
         Action::Acquire => return acquire(shared, &request, client, reply),
         Action::Stop => {
-            let desk = shared.desk.lock();
+            let mut desk = shared.desk.lock();
             let stopped = desk.stop(request.finger.map(number));
             let answer = result(&desk.answer(Code::Done, String::new(), request.epoch, time), stopped);
             drop(desk);
@@ -95,7 +98,7 @@ fn carry_out(shared: &Arc<Shared>, request: &Request, client: ClientName, reply:
         let done = match (request.action, request.finger) {
             (Action::Calibrate, Some(finger)) => calibrated(&shared.hand, finger, Hand::zero),
             (Action::Identify, Some(finger)) => calibrated(&shared.hand, finger, Hand::identify),
-            (_, finger) => recover(&shared.hand, finger),
+            (_, finger) => recover(shared, finger, &stops),
         };
         result(&shared.desk.lock().answer(Code::Done, String::new(), request.epoch, now()), done)
     });
@@ -113,7 +116,10 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
     if request.recover && shared.busy.swap(true, Ordering::AcqRel) {
         return reply.send(&in_progress(shared, 0));
     }
-    let acquired = shared.desk.lock().acquire(&client, request.take_over, epoch);
+    let (acquired, stops) = {
+        let mut desk = shared.desk.lock();
+        (desk.acquire(&client, request.take_over, epoch, now()), desk.stops())
+    };
     let number = match acquired {
         Ok(number) => number,
         Err(other) => {
@@ -144,7 +150,7 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
         return reply.send(&begin(shared, Ok(())));
     }
     let started = run(shared, reply, move |shared| {
-        let recovered = recover(&shared.hand, None);
+        let recovered = recover(shared, None, &stops);
         begin(shared, recovered)
     });
     if !started {
@@ -192,8 +198,16 @@ fn in_progress(shared: &Shared, epoch: u64) -> Answer {
     shared.desk.lock().answer(Code::InProgress, text, epoch, now())
 }
 
+/// Recovers this finger, or every finger if `finger` is none. `stops` was read when the request was admitted. A finger
+/// that was stopped since stays stopped, also if the recovery began after the stop.
+fn recover(shared: &Shared, finger: Option<Finger>, stops: &Stops) -> Result<(), HandError> {
+    let recovered = recover_fingers(&shared.hand, finger);
+    let stopped = shared.desk.lock().stop_again(stops);
+    recovered.and(stopped)
+}
+
 /// Recovers this finger, or every finger at the same time if `finger` is none. A recovery can take seconds.
-fn recover(hand: &Hand, finger: Option<Finger>) -> Result<(), HandError> {
+fn recover_fingers(hand: &Hand, finger: Option<Finger>) -> Result<(), HandError> {
     if let Some(finger) = finger {
         return hand.recover(number(finger));
     }

@@ -8,14 +8,46 @@ use sun2xp::finger::FingerReport;
 use sun2xp::motion::Pose;
 use sun2xp::nalgebra::Vector3;
 
+/// A set point that moves by less than this, rad, is not sent.
+const SMALLEST_STEP: f64 = 1e-4;
+
+/// A place to which a set point may be sent.
+#[derive(Clone, Copy)]
+pub(super) struct LedPlace {
+    /// The place as it is sent.
+    pub pose: Pose,
+    /// The joint angles at this place, rad.
+    joints: Vector3<f64>,
+}
+
+impl LedPlace {
+    /// Whether a set point with these joint angles, rad, is almost there.
+    pub fn is_near(&self, set_point: &Vector3<f64>) -> bool {
+        (self.joints - set_point).amax() < SMALLEST_STEP
+    }
+}
+
 impl Fingers {
-    /// Returns the pose on the way to the destination that the lead admits, and whether it is the destination.
+    /// Returns the goal of a finger whose Kx is about to be sent. If the owner has not commanded the place of the
+    /// finger, the new Kx pulls it to the set point in force, which may be far ahead of it. Then this set point becomes
+    /// the destination, so that the lead bounds the force.
+    pub(super) fn pulled(&self, number: i32, goal: Goal, report: &FingerReport) -> Result<Goal, HandError> {
+        if goal.destination != Destination::None {
+            return Ok(goal);
+        }
+        let mut pulled = goal;
+        (pulled.destination, pulled.whole) = (Destination::Joints(report.set_point.joints), false);
+        let (_, whole) = self.led(number, &pulled, report)?;
+        Ok(if whole { goal } else { pulled })
+    }
+
+    /// Returns the place on the way to the destination that the lead admits, and whether it is the destination.
     pub(super) fn led(
         &self,
         number: i32,
         goal: &Goal,
         report: &FingerReport,
-    ) -> Result<(Option<Pose>, bool), HandError> {
+    ) -> Result<(Option<LedPlace>, bool), HandError> {
         let (Destination::Joints(end) | Destination::Tip(end)) = goal.destination else { return Ok((None, true)) };
         let part = self.admitted(number, goal, report, &end);
         let joints = report.cycle.joints;
@@ -26,7 +58,7 @@ impl Fingers {
             Destination::Tip(_) => Pose::Tip(self.hand.tip_at(number, place)?),
             _ => Pose::Joints(place),
         };
-        Ok((Some(pose), part >= 1.0))
+        Ok((Some(LedPlace { pose, joints: place.into() }), part >= 1.0))
     }
 
     /// Returns the part of the way from the finger to `end`, rad, that the lead admits.

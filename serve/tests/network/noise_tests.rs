@@ -55,7 +55,7 @@ fn noise_in_process(count: u64) {
     let mut desk = Desk::new(Arc::clone(&hand), settings.limits, now());
     let planner: ClientName = "planner".parse().expect("a name");
     let epoch = 0x1234_5678_9ABC_DEF0;
-    desk.acquire(&planner, false, epoch).expect("nobody owns the hand");
+    desk.acquire(&planner, false, epoch, now()).expect("nobody owns the hand");
     assert!(desk.begin(&planner, epoch, now()));
     let mut sequence = 0;
     let mut next = |parts| {

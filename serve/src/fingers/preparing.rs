@@ -1,0 +1,81 @@
+//! Prepares the new parts of a Target: what the fingers get, before any of it is sent.
+
+use super::Fingers;
+use crate::goal::{Destination, Goal, is_path, rows};
+use sun2xp::groups::FingerCommand;
+use sun2xp::hand::plan_path;
+use sun2xp::motion::{PathPose, Pose, Validity};
+use sun2xp::nalgebra::Vector3;
+use sun2xp::{FingerNumber, HandError, Stage};
+use sun2xp_remote_protocol::{Part, Place};
+
+/// A part of a Target before it is sent: the goal that results, the command for the group, and the poses of its path.
+pub(super) struct Prepared {
+    pub finger: usize,
+    pub goal: Goal,
+    /// None if there is only a path.
+    pub command: Option<FingerCommand>,
+    pub path: Vec<PathPose>,
+}
+
+impl Fingers {
+    /// Prepares a new part.
+    pub(super) fn prepare(&self, part: &Part, valid: Validity, now: u64) -> Result<Prepared, HandError> {
+        let (finger, number) = (part.finger.index(), i32::from(part.finger.number()));
+        let report = self.hand.report(number)?;
+        let known = FingerNumber::try_from(number)?;
+        match report.stage {
+            Stage::Running => {}
+            Stage::Faulted(fault) => return Err(HandError::Faulted { finger: known, fault }),
+            // The servo would discard the part, because it belongs to an earlier spring phase.
+            _ => return Err(HandError::Busy(known)),
+        }
+        let mut path = Vec::new();
+        let destination = match &part.place {
+            Place::Kept => None,
+            Place::Joints(joints) => Some(Destination::Joints(Vector3::from(*joints))),
+            Place::Tip(tip) => Some(Destination::Tip(self.hand.joints_at(number, *tip)?.into())),
+            Place::Path(poses) => {
+                path.extend(poses.iter().map(|pose| PathPose {
+                    time: pose.time,
+                    pose: Pose::Joints(pose.joints),
+                    stiffness: None,
+                }));
+                let plan = plan_path(&self.hand.configuration(), known, &report.reference, &path)?;
+                let until = |pose: &sun2xp_remote_protocol::PathPose| now.saturating_add(nanoseconds(pose.time));
+                poses.last().map(|pose| Destination::Path { end: plan.end(), until: until(pose) })
+            }
+        };
+        let mut goal = self.goals[finger].with(part, destination, &report, now);
+        if !is_path(part) && report.expired && matches!(goal.destination, Destination::Path { .. }) {
+            goal.destination = Destination::None; // The times of an interrupted path are in the past.
+        }
+        let mut command = FingerCommand::new(number).validity(valid);
+        (command.stiffness, command.damping) = (part.stiffness, part.damping);
+        if let Place::Joints(joints) = &part.place {
+            match self.within_limits(number, joints)? {
+                Some(admitted) => goal.destination = Destination::Joints(admitted),
+                // The hand refuses the group, with the reason.
+                None => command.pose = Some(Pose::Joints(*joints)),
+            }
+        }
+        if goal.destination == Destination::None && (part.stiffness.is_some() || report.expired) {
+            goal = self.pulled(number, goal, &report)?;
+        }
+        if command.pose.is_none() {
+            let (place, whole) = self.led(number, &goal, &report)?;
+            (command.pose, goal.whole) = (place.map(|place| place.pose), whole);
+        }
+        if let Some((kx, damping)) = goal.spring.filter(|_| report.expired) {
+            // The finger was caught and has the soft spring. The command contains the spring that the owner wants.
+            (command.stiffness, command.damping) = (Some(rows(&kx)), Some(damping));
+        }
+        let empty = command.pose.is_none() && command.stiffness.is_none() && command.damping.is_none();
+        Ok(Prepared { finger, goal, command: (!empty).then_some(command), path })
+    }
+}
+
+/// A time in ns. The conversion saturates.
+fn nanoseconds(seconds: f64) -> u64 {
+    (seconds * 1e9) as u64
+}

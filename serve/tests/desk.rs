@@ -1,0 +1,121 @@
+//! What the desk does with the Targets of owners, without a network. The tests wait for the servos of a simulated hand.
+
+#[path = "desk/rig.rs"]
+mod rig;
+
+use rig::{FAR, Rig, STIFF, is_near, joints, kept, path};
+use sun2xp::Stage;
+use sun2xp_remote_protocol::{Code, Part};
+use sun2xp_serve::goal::Destination;
+
+#[test]
+fn a_path_of_a_stopped_finger_holds_back_the_whole_target() {
+    let mut rig = Rig::new("");
+    rig.acquire("alice");
+    rig.hand.stop(1).expect("finger 1");
+    rig.wait_until("stop", &[], |rig| matches!(rig.report(1).stage, Stage::Faulted(_)));
+    let before = rig.report(2).set_point_number;
+    let refused = rig.send(&[path(1, 1, 1.0, FAR), joints(2, 1, FAR)]).expect("a refusal");
+    assert_eq!(refused.code, Code::Stopped, "{refused:?}");
+    let cycles = rig.report(2).losses.cycles;
+    rig.wait_until("cycles", &[], |rig| rig.report(2).losses.cycles > cycles + 20);
+    assert_eq!(rig.report(2).set_point_number, before);
+    assert_eq!(rig.desk.goals()[1].command, 0);
+}
+
+/// The owner commands Kx only. A push moves the finger away from where it was caught.
+#[test]
+fn a_stiffness_that_comes_back_pulls_with_the_force_of_the_lead_only() {
+    let mut rig = Rig::new("lead_force = 1.0");
+    rig.acquire("alice");
+    let stiff = Part { stiffness: Some(STIFF), ..kept(1, 1) };
+    rig.wait_until("stiffness", &[stiff.clone()], |rig| rig.report(1).set_point.stiffness[(0, 0)] == STIFF[0][0]);
+    rig.wait_in_silence("catch", |rig| rig.report(1).expired);
+    let caught = rig.report(1).set_point.joints;
+    rig.hand.push_simulated(1, [2.0, 2.0, 0.0]).expect("pushed");
+    rig.wait_in_silence("push", |rig| (rig.report(1).cycle.joints - caught).amax() > 0.2);
+    assert_eq!(rig.send(&[stiff]), None);
+    let report = rig.wait_for("stiffness", |rig| {
+        let report = rig.report(1);
+        (!report.expired).then_some(report)
+    });
+    assert_eq!(report.set_point.stiffness[(0, 0)], STIFF[0][0]);
+    assert!(!is_near(&report.set_point.joints, &caught, 0.05), "the set point is ahead of the finger by the lead only");
+}
+
+#[test]
+fn a_caught_finger_waits_while_an_acquire_recovers_another_one() {
+    let mut rig = Rig::new("end_ms = 300");
+    rig.acquire("alice");
+    rig.wait_until("set point", &[joints(2, 1, FAR)], |rig| rig.report(2).set_point_number > 0);
+    rig.wait_in_silence("catch", |rig| rig.report(2).expired);
+    // The desk calls `begin` when the fingers have recovered.
+    rig.acquire_only("bob");
+    let cycles = rig.report(2).losses.cycles;
+    rig.wait_in_silence("cycles", |rig| rig.report(2).losses.cycles > cycles + 600);
+    assert_eq!(rig.report(2).stage, Stage::Running);
+}
+
+#[test]
+fn a_path_ends_as_soon_as_another_client_acquires() {
+    let mut rig = Rig::new("");
+    rig.acquire("alice");
+    let start = rig.report(2).reference.joints;
+    rig.wait_until("path", &[path(2, 1, 30.0, FAR)], |rig| rig.report(2).reference.joints != start);
+    rig.acquire_only("bob");
+    let number = rig.report(2).set_point_number;
+    rig.wait_in_silence("end of the path", |rig| rig.report(2).set_point_number > number);
+    assert!(!is_near(&rig.report(2).set_point.joints, &FAR.into(), 0.05));
+}
+
+#[test]
+fn the_end_of_a_path_is_a_set_point_to_which_a_caught_finger_returns() {
+    let mut rig = Rig::new("");
+    rig.acquire("alice");
+    let start = rig.report(1).cycle.joints;
+    let end = [start[0] + 0.1, start[1], start[2]];
+    let way = [path(1, 1, 0.2, end)];
+    rig.wait_until("end of the path", &way, |rig| matches!(rig.desk.goals()[0].destination, Destination::Joints(_)));
+    rig.wait_in_silence("catch", |rig| rig.report(1).expired);
+    rig.hand.push_simulated(1, [0.0, 0.5, 0.0]).expect("pushed");
+    rig.wait_in_silence("push", |rig| !is_near(&rig.report(1).cycle.joints, &end.into(), 0.03));
+    rig.hand.push_simulated(1, [0.0; 3]).expect("released");
+    rig.wait_until("return", &way, |rig| {
+        !rig.report(1).expired && is_near(&rig.report(1).set_point.joints, &end.into(), 1e-6)
+    });
+}
+
+#[test]
+fn a_finger_that_is_being_recovered_takes_nothing() {
+    let mut rig = Rig::new("end_ms = 20000");
+    rig.acquire("alice");
+    rig.hand.stop(1).expect("finger 1");
+    let hand = rig.hand.clone();
+    let recovering = std::thread::spawn(move || hand.recover(1));
+    rig.wait_until("recovery", &[], |rig| rig.report(1).stage == Stage::Opening);
+    let now = rig.report(1).cycle.joints;
+    let refused = rig.send(&[joints(1, 1, [now[0] + 0.02, now[1], now[2]])]);
+    // On a busy machine the recovery may have ended already.
+    if rig.report(1).stage == Stage::Opening {
+        assert_eq!(refused.map(|answer| answer.code), Some(Code::InProgress));
+        assert_eq!(rig.desk.goals()[0].command, 0);
+    }
+    recovering.join().expect("no panic").expect("recovered");
+}
+
+#[test]
+fn a_stop_before_a_recovery_is_carried_out_after_it() {
+    let mut rig = Rig::new("end_ms = 20000");
+    rig.acquire("alice");
+    let stops = rig.desk.stops();
+    assert!(rig.desk.stop_again(&stops).is_ok());
+    rig.desk.stop(Some(1)).expect("finger 1");
+    rig.hand.recover(1).expect("recovered, because it began after the stop");
+    assert_eq!(rig.report(1).stage, Stage::Running);
+    rig.desk.stop_again(&stops).expect_err("finger 1 was stopped meanwhile");
+    rig.wait_in_silence("stop", |rig| matches!(rig.report(1).stage, Stage::Faulted(_)));
+    assert_eq!(rig.report(2).stage, Stage::Running);
+    let stops = rig.desk.stops();
+    rig.desk.release();
+    assert!(rig.desk.stop_again(&stops).is_err(), "the end of an ownership stops every finger");
+}
