@@ -46,16 +46,20 @@ impl Stoppable for NetworkHand {
 }
 
 impl NetworkHand {
-    /// Takes over an open hand.
+    /// Takes over an open hand. `seen` is the number of emergency stop calls at the beginning of its opening.
     pub fn start(
         hand: client::RemoteHand,
         configuration: &Configuration,
+        seen: u32,
     ) -> Result<Arc<dyn RemoteHand>, RemoteRefusal> {
         let own = Arc::new(Self { connection: RwLock::new(None), configuration: configuration.clone() });
-        let _stop_calls = StopCalls::watch(Arc::downgrade(&own))?;
+        // A stop that is due at once waits until the connection is there.
+        let mut place = own.connection.write().unwrap_or_else(PoisonError::into_inner);
+        let _stop_calls = StopCalls::watch(Arc::downgrade(&own), seen)?;
         let events = hand.events();
         let connection = Connection { hand, events, first: from_fn(|_| Mutex::new(None)), _stop_calls };
-        *own.connection.write().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(connection));
+        *place = Some(Arc::new(connection));
+        drop(place);
         Ok(own)
     }
 

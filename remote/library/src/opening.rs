@@ -6,10 +6,13 @@ use std::path::Path;
 use std::sync::Arc;
 use sun2xp::Configuration;
 use sun2xp::capi::{RemoteHand, RemoteRefusal, RemoteSource};
+use sun2xp::finger::stop_calls;
 use sun2xp_remote_client as client;
 
 /// Opens the hand that the table `[remote]` of a configuration names.
 pub(crate) fn open(source: RemoteSource, configuration: &Configuration) -> Result<Arc<dyn RemoteHand>, RemoteRefusal> {
+    // The hand reacts to every emergency stop call that is made after this line.
+    let seen = stop_calls();
     let read = match &source {
         RemoteSource::File(path) => client::RemoteConfiguration::read(path),
         // A text has no folder of its own: its files are relative to the working directory.
@@ -22,5 +25,5 @@ pub(crate) fn open(source: RemoteSource, configuration: &Configuration) -> Resul
         client::RemoteErrorKind::NotOwner => forbidden(&remote.hand),
         _ => refusal(error),
     })?;
-    NetworkHand::start(hand, configuration)
+    NetworkHand::start(hand, configuration, seen)
 }

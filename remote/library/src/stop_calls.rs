@@ -23,11 +23,11 @@ pub(crate) trait Stoppable: Send + Sync + 'static {
 pub(crate) struct StopCalls(Arc<AtomicBool>);
 
 impl StopCalls {
-    /// Starts the thread. Calls from now on stop the hand.
-    pub fn watch<H: Stoppable>(hand: Weak<H>) -> Result<Self, RemoteRefusal> {
+    /// Starts the thread. `seen` is the number of calls at the beginning of the opening. Calls since then stop the hand
+    /// too.
+    pub fn watch<H: Stoppable>(hand: Weak<H>, mut seen: u32) -> Result<Self, RemoteRefusal> {
         let ended = Arc::new(AtomicBool::new(false));
         let seen_by_thread = ended.clone();
-        let mut seen = stop_calls();
         // The thread inherits this mask, so the planner's signal handlers run only in the planner's own threads.
         let _blocked = SignalsBlocked::all();
         let started = Builder::new().name("sun2xp stop".into()).spawn(move || {
@@ -48,5 +48,30 @@ impl StopCalls {
 impl Drop for StopCalls {
     fn drop(&mut self) {
         self.0.store(true, Ordering::Release);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc::{Sender, channel};
+
+    struct Told(Sender<()>);
+
+    impl Stoppable for Told {
+        fn stop_every_finger(&self) {
+            let _ = self.0.send(());
+        }
+    }
+
+    #[test]
+    fn a_call_during_the_opening_stops_the_hand() {
+        let seen = stop_calls();
+        sun2xp::stop_all();
+        let (tell, told) = channel();
+        let hand = Arc::new(Told(tell));
+        let watch = StopCalls::watch(Arc::downgrade(&hand), seen);
+        assert!(watch.is_ok());
+        assert_eq!(told.recv_timeout(Duration::from_secs(20)), Ok(()));
     }
 }
