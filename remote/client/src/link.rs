@@ -31,6 +31,9 @@ const CALIBRATION: Duration = Duration::from_secs(610);
 /// The time in which a Status and the first records are received.
 const FIRST: Duration = Duration::from_secs(3);
 
+/// The time in which a State follows the Answer to a request.
+const NEXT_STATE: Duration = Duration::from_millis(200);
+
 /// Attempts of a request that reaches nobody, and the pause between them. Just after a client has connected, Zenoh may
 /// not know the way to the server yet.
 const ATTEMPTS: usize = 3;
@@ -227,7 +230,15 @@ impl Link {
         let answer = self.request(Action::Acquire, None, true)?;
         self.shared.lock().outbox.acquired(&answer);
         self.shared.wake();
+        self.await_state_after(&answer);
         Ok(())
+    }
+
+    /// Waits for a State that shows what the fingers do after this Answer. The newest State may be older, and show that
+    /// a finger still recovers. If no State comes, the calls that need one say so.
+    pub fn await_state_after(&self, answer: &Answer) {
+        let older = |exchange: &mut Exchange| !exchange.view.is_newer_than(answer.time);
+        drop(self.shared.changed.wait_timeout_while(self.shared.lock(), NEXT_STATE, older));
     }
 
     /// Releases the hand if it is owned.

@@ -88,6 +88,11 @@ impl View {
         self.clock.age(self.newest(finger)?.begin, now)
     }
 
+    /// Whether a State was published after this time of the server, ns.
+    pub fn is_newer_than(&self, time: u64) -> bool {
+        self.newest_state.is_some_and(|(_, published)| published > time)
+    }
+
     /// The time since the newest State, ns.
     pub fn silence(&self, now: u64) -> Option<u64> {
         self.heard.map(|heard| now.saturating_sub(heard))

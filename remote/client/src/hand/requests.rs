@@ -47,6 +47,10 @@ impl RemoteHand {
         if action != Action::Stop {
             self.link.shared.lock().owned()?;
         }
-        self.link.request(action, finger, false).map(drop)
+        let answer = self.link.request(action, finger, false)?;
+        if action != Action::Stop {
+            self.link.await_state_after(&answer);
+        }
+        Ok(())
     }
 }

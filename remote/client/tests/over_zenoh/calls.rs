@@ -4,7 +4,7 @@ use crate::server::{FakeServer, LIMIT, configuration, free_port, until};
 use sun2xp_remote_client::{
     Event, Finger, FingerCommand, RemoteError, RemoteErrorKind, RemoteHand, Stage, discover, send_together,
 };
-use sun2xp_remote_protocol::{Action, Place};
+use sun2xp_remote_protocol::{Action, PathPose, Place};
 use zenoh::Wait;
 
 const ONE: Finger = Finger::ALL[0];
@@ -241,4 +241,17 @@ fn what_cannot_be_opened_says_why() {
     let error = RemoteHand::open(&configuration(port, "left", "planner")).map(drop).expect_err("another version");
     assert_eq!(error.kind(), RemoteErrorKind::Protocol);
     assert!(error.to_string().contains("version 2 of the protocol, and not version 1"), "{error}");
+}
+
+#[test]
+fn a_path_can_be_sent_right_after_a_recovery() {
+    let port = free_port();
+    let server = FakeServer::start(port, &["left"]);
+    let hand = RemoteHand::open(&configuration(port, "left", "planner")).expect("open");
+    let opens = || hand.record(1).expect("a record").stage == Stage::Opening;
+    (server.hand().lock().stage, server.hand().lock().late_states) = (Stage::Opening, 4);
+    until("the State of a finger that opens", opens, |&opens| opens);
+    hand.recover(Some(1)).expect("recovered");
+    let pose = PathPose { time: 1.0, joints: [0.5; 3] };
+    hand.send_path(1, &[pose]).expect("the State after the recovery is known");
 }

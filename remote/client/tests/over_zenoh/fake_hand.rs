@@ -28,6 +28,8 @@ pub struct FakeHand {
     pub unanswered: usize,
     /// The version byte of its Status.
     pub version: u8,
+    /// The number of States after a recovery that are not published, so that an older one stays the newest.
+    pub late_states: usize,
     /// Whether the server publishes nothing.
     pub silent: bool,
     pub ended: bool,
@@ -50,6 +52,7 @@ impl FakeHand {
             events: Vec::new(),
             unanswered: 0,
             version: 1,
+            late_states: 0,
             silent: false,
             ended: false,
             session: None,

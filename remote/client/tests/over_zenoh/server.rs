@@ -6,7 +6,7 @@ use std::net::TcpListener;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-use sun2xp_remote_client::{HandName, RemoteConfiguration};
+use sun2xp_remote_client::{HandName, RemoteConfiguration, Stage};
 use sun2xp_remote_protocol::{Action, HandKeys, Target};
 use zenoh::{Config, Session, Wait};
 
@@ -114,6 +114,10 @@ fn publish(session: &Session, hand: &Watched, number: u64) {
     let (state, event) = {
         let mut hand = hand.lock();
         if hand.silent {
+            return;
+        }
+        if hand.late_states > 0 && hand.stage == Stage::Running {
+            hand.late_states -= 1;
             return;
         }
         (hand.state(number).encode().expect("a good State"), hand.events.pop())
