@@ -62,8 +62,8 @@ fn a_path_ends_as_soon_as_another_client_acquires() {
     rig.acquire("alice");
     let start = rig.report(2).reference.joints;
     rig.wait_until("path", &[path(2, 1, 30.0, FAR)], |rig| rig.report(2).reference.joints != start);
-    rig.acquire_only("bob");
     let number = rig.report(2).set_point_number;
+    rig.acquire_only("bob");
     rig.wait_in_silence("end of the path", |rig| rig.report(2).set_point_number > number);
     assert!(!is_near(&rig.report(2).set_point.joints, &FAR.into(), 0.05));
 }
