@@ -10,6 +10,18 @@ const TIP_STEP_CM = 0.08;
 const AXES = ["x", "y", "z"];
 const MESSAGE_MS = 6000;
 
+/// The functions that end the presses of the held buttons.
+const holds = new Set();
+
+/// Releases all held buttons. A button that leaves the page, or whose page loses the focus, may get no event for the end
+/// of the press.
+function releaseAll() {
+  for (const stop of holds) stop();
+}
+
+window.addEventListener("blur", releaseAll);
+document.addEventListener("visibilitychange", releaseAll);
+
 /// Calls `act` at once, and repeatedly while the button is held. Calls `end` when the button is released.
 function held(button, act, end = () => {}) {
   let timer = null;
@@ -17,6 +29,7 @@ function held(button, act, end = () => {}) {
     if (timer === null) return;
     clearInterval(timer);
     timer = null;
+    holds.delete(stop);
     button.classList.remove("held");
     end();
   };
@@ -24,6 +37,7 @@ function held(button, act, end = () => {}) {
     if (event.button !== 0 || timer !== null) return;
     button.setPointerCapture(event.pointerId);
     button.classList.add("held");
+    holds.add(stop);
     timer = setInterval(act, SEND_MS);
     act();
   });
@@ -56,6 +70,7 @@ export class Control {
   }
 
   begin(hand) {
+    releaseAll();
     this.toggle.hidden = !hand.control;
     this.hand = hand;
     this.finger = null;
@@ -79,6 +94,7 @@ export class Control {
   }
 
   build(finger) {
+    releaseAll();
     this.finger = finger;
     this.wanted = null;
     const command = (name, values = {}) => this.order(name, values);

@@ -203,14 +203,22 @@ view.run(() => {
 
 byId("freeze").addEventListener("click", () => setFrozen(!clock.frozen));
 byId("reset-view").addEventListener("click", () => view.reset());
+
+/// Handles the space bar. A browser would also press the button that has the focus, when the key goes down or up.
+function space(event) {
+  // Without control, the space bar keeps its meaning for buttons.
+  if (!hand?.control && event.target.closest("input, select, textarea, button")) return;
+  event.preventDefault();
+  if (event.type === "keyup") return;
+  // As in the terminal, the space bar stops a hand that the page may move, wherever the focus is.
+  if (hand?.control) control.order("stop");
+  else setFrozen(!clock.frozen);
+}
+
+document.addEventListener("keyup", (event) => event.key === " " && space(event));
 document.addEventListener("keydown", (event) => {
-  if (event.target.closest("input, select, textarea, button") && event.key === " ") return;
-  if (event.key === " ") {
-    event.preventDefault();
-    // As in the terminal, the space bar stops a hand that the page may move.
-    if (hand?.control) control.order("stop");
-    else setFrozen(!clock.frozen);
-  } else if (samples.has(Number(event.key)) && !event.target.closest("input")) select(Number(event.key));
+  if (event.key === " ") space(event);
+  else if (samples.has(Number(event.key)) && !event.target.closest("input")) select(Number(event.key));
 });
 byId("legend-ellipsoid").textContent = `compliance: motion of the tip under ${ELLIPSOID_NEWTON} N`;
 byId("legend-arrow").textContent = `tip force, ${CM_PER_NEWTON} cm per N`;

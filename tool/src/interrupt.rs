@@ -2,22 +2,31 @@
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 use std::io;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The request, which all parts of the program share. None before the signals are watched.
+static REQUESTED: Mutex<Option<Arc<AtomicBool>>> = Mutex::new(None);
 
 /// Notes whether the end of the program has been requested. Work that checks it can end in an orderly way.
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Replaces the default action of the signals, which ends the process.
+    /// Replaces the default action of the signals, which ends the process. If the signals are already watched, the
+    /// result also knows a request that has come since then.
     ///
     /// # Errors
     /// Returns an error if the system refuses to watch the signals.
     pub fn watch() -> io::Result<Self> {
+        let mut shared = REQUESTED.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(requested) = &*shared {
+            return Ok(Self(requested.clone()));
+        }
         let requested = Arc::new(AtomicBool::new(false));
         for signal in [SIGHUP, SIGINT, SIGQUIT, SIGTERM] {
             signal_hook::flag::register(signal, requested.clone())?;
         }
+        *shared = Some(requested.clone());
         Ok(Self(requested))
     }
 

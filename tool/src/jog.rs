@@ -3,9 +3,11 @@
 pub mod commands;
 mod keys;
 pub mod panel;
+pub mod stopper;
 mod worker;
 
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::monitor::show::{self, Controls};
 use crate::monitor::source::{Source, Wanted};
 use crate::monitor::terminal::Screen;
@@ -70,7 +72,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         confirm(&configuration)?;
     }
     println!("opening the hand ...");
+    // A signal while the tendons are tightened closes the hand as soon as it is open.
+    let interrupt = Interrupt::watch()?;
     let hand = Arc::new(Hand::open(configuration.clone())?);
+    if interrupt.requested() {
+        return Ok(());
+    }
     if arguments.web {
         let control = if arguments.control { Some(web::Control::start(&hand, configuration.clone())?) } else { None };
         return web::serve(&arguments.address, web::Source::Own, control);

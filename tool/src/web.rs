@@ -10,6 +10,7 @@ mod files;
 mod hub;
 mod listener;
 mod message;
+mod place;
 mod server;
 mod session;
 mod translation;

@@ -2,7 +2,8 @@
 
 use super::commands::Command;
 use super::panel::{JOINT_STEPS, JogPanel, Mode, PUSH_STEPS, TIP_STEPS};
-use super::worker::{Stopper, Worker};
+use super::stopper::Stopper;
+use super::worker::Worker;
 use crate::monitor::show::Pressed;
 use crate::monitor::view::View;
 use ratatui::crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
@@ -43,6 +44,8 @@ pub fn press(view: &mut View, worker: &Worker, configuration: &Configuration, ke
         KeyCode::Char('f') => panel.mode = Mode::Push,
         KeyCode::Char('[') => panel.change_step(false),
         KeyCode::Char(']') => panel.change_step(true),
+        KeyCode::Char('{') => view.scroll = view.scroll.saturating_sub(1),
+        KeyCode::Char('}') => view.scroll = view.scroll.saturating_add(1),
         code => {
             if let Some(command) = command(&mut panel, configuration, code)
                 && !worker.send(command)

@@ -1,9 +1,10 @@
 //! The thread that carries commands out, so that the keys never wait for the hand.
 
 use super::commands::Command;
+use super::stopper::Stopper;
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 use sun2xp::Hand;
@@ -22,27 +23,9 @@ pub struct Worker {
     thread: Option<JoinHandle<()>>,
 }
 
-/// Stops all fingers, from any thread.
-#[derive(Clone, Default)]
-pub struct Stopper {
-    /// Number of emergency stops. Commands that were sent before the last stop are not carried out.
-    stops: Arc<AtomicU64>,
-}
-
-impl Stopper {
-    /// Stops all fingers at once, and drops the commands that are still waiting.
-    pub fn stop(&self) {
-        sun2xp::stop_all();
-        self.stops.fetch_add(1, Ordering::SeqCst);
-    }
-
-    fn stops(&self) -> u64 {
-        self.stops.load(Ordering::SeqCst)
-    }
-}
-
 impl Worker {
-    /// Starts the thread. It ends when this value is dropped, and then no longer holds the hand.
+    /// Starts the thread. It ends when this value is dropped, after the present command, and then no longer holds the
+    /// hand. Waiting commands are dropped.
     ///
     /// # Errors
     /// Returns an error if the system cannot start a thread.
@@ -52,15 +35,13 @@ impl Worker {
         let (stopper, waiting) = (Stopper::default(), Arc::new(AtomicUsize::new(0)));
         let (stopped, left) = (stopper.clone(), waiting.clone());
         let thread = thread::Builder::new().name("commands".into()).spawn(move || {
-            for (stop, command) in to_do {
-                if stopped.stops() == stop {
-                    let result = match command.execute(&hand, &configuration) {
-                        Ok(text) => (text, false),
-                        Err(refused) => (refused.to_string(), true),
-                    };
-                    // The receiver is gone only when the program ends.
-                    let _ = done.send(result);
-                }
+            for (stops, command) in to_do {
+                let result = stopped.carry_out(stops, || match command.execute(&hand, &configuration) {
+                    Ok(text) => (text, false),
+                    Err(refused) => (refused.to_string(), true),
+                });
+                // The receiver is gone only when the program ends.
+                let _ = result.map(|result| done.send(result));
                 left.fetch_sub(1, Ordering::SeqCst);
             }
         })?;
@@ -92,9 +73,32 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
+        self.stopper.end();
         self.commands = None;
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::jog::commands::desired_joints;
+
+    #[test]
+    fn commands_that_wait_at_the_end_are_not_carried_out() {
+        let configuration = Configuration::default();
+        let hand = Arc::new(Hand::open(configuration.clone()).expect("the simulated hand opens"));
+        let before = desired_joints(&hand, 2).expect("runs");
+        hand.stop(1).expect("open");
+        let worker = Worker::start(hand.clone(), configuration).expect("a thread");
+        // The recovery takes some time, and the others wait for it.
+        assert!(worker.send(Command::Recover { finger: 1 }));
+        for _ in 1..MOST_WAITING {
+            assert!(worker.send(Command::MoveJoints { finger: 2, by: [0.0, 0.05, 0.0] }));
+        }
+        drop(worker);
+        assert_eq!(desired_joints(&hand, 2).expect("runs"), before);
     }
 }

@@ -1,12 +1,13 @@
 //! Commands from pages to the hand that this process has opened.
 
 use crate::jog::commands::Command;
+use crate::jog::stopper::Stopper;
 use serde::Serialize;
 use std::io;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Weak};
-use std::thread;
+use std::thread::{self, JoinHandle};
 use sun2xp::Hand;
 use sun2xp::model::configuration::Configuration;
 use tokio::sync::mpsc::UnboundedSender;
@@ -14,16 +15,19 @@ use tokio::sync::mpsc::UnboundedSender;
 /// Number of commands of pages that may wait. A recovery takes seconds, and commands wait for it.
 const WAITING: usize = 32;
 
-/// The hand, and the thread that carries the commands out one after the other. Neither keeps the hand open.
+/// The thread that carries the commands out one after the other. It holds the hand only while it carries one out.
+/// Dropping this value waits for the present command, and drops those that wait.
 pub struct Control {
-    hand: Weak<Hand>,
-    configuration: Arc<Configuration>,
-    orders: Sender<Order>,
+    orders: Option<Sender<Order>>,
+    stopper: Stopper,
     waiting: Arc<AtomicUsize>,
+    thread: Option<JoinHandle<()>>,
 }
 
 struct Order {
     command: Command,
+    /// Number of emergency stops when the command was sent.
+    stops: u64,
     answers: Option<UnboundedSender<Answer>>,
 }
 
@@ -57,56 +61,84 @@ impl Control {
     /// Returns an error if the system has no thread left.
     pub fn start(hand: &Arc<Hand>, configuration: Configuration) -> io::Result<Self> {
         let (orders, receiver) = channel();
-        let waiting = Arc::new(AtomicUsize::new(0));
-        let control = Self { hand: Arc::downgrade(hand), configuration: Arc::new(configuration), orders, waiting };
-        let (hand, configuration) = (Weak::clone(&control.hand), Arc::clone(&control.configuration));
-        let waiting = Arc::clone(&control.waiting);
-        let run = move || carry_out(&receiver, &waiting, &hand, &configuration);
-        thread::Builder::new().name("sun2xp commands".into()).spawn(run)?;
-        Ok(control)
+        let (stopper, waiting) = (Stopper::default(), Arc::new(AtomicUsize::new(0)));
+        let executor = Executor {
+            hand: Arc::downgrade(hand),
+            configuration,
+            stopper: stopper.clone(),
+            waiting: Arc::clone(&waiting),
+        };
+        let thread = thread::Builder::new().name("sun2xp commands".into()).spawn(move || executor.run(&receiver))?;
+        Ok(Self { orders: Some(orders), stopper, waiting, thread: Some(thread) })
     }
 
     /// Carries a command out, and sends the result to `answers`.
     pub fn order(&self, command: Command, answers: UnboundedSender<Answer>) {
         if command == Command::Stop {
-            // A stop waits for nothing. The page may have left.
-            let _ = answers.send(execute(&command, &self.hand, &self.configuration));
+            // A stop waits for nothing, and drops the commands that wait, of other pages too. The page may have left.
+            self.stopper.stop();
+            let _ = answers.send(Answer::new(true, "all fingers are stopped".into()));
             return;
         }
         if self.waiting.load(Ordering::Relaxed) >= WAITING {
             let _ = answers.send(Answer::new(false, "the hand is busy: too many commands wait".into()));
             return;
         }
-        self.queue(Order { command, answers: Some(answers) });
+        self.queue(command, Some(answers));
     }
 
     /// Ends the pushes of a page that has left.
     pub fn release(&self, fingers: &[i32]) {
         for &finger in fingers {
-            self.queue(Order { command: Command::Push { finger, force: [0.0; 3] }, answers: None });
+            self.queue(Command::Push { finger, force: [0.0; 3] }, None);
         }
     }
 
-    fn queue(&self, order: Order) {
+    fn queue(&self, command: Command, answers: Option<UnboundedSender<Answer>>) {
         self.waiting.fetch_add(1, Ordering::Relaxed);
-        // The thread ends only with the process.
-        let _ = self.orders.send(order);
+        let order = Order { command, stops: self.stopper.stops(), answers };
+        // The thread ends only with this value.
+        let _ = self.orders.as_ref().map(|orders| orders.send(order));
     }
 }
 
-fn carry_out(orders: &Receiver<Order>, waiting: &AtomicUsize, hand: &Weak<Hand>, configuration: &Configuration) {
-    for Order { command, answers } in orders {
-        waiting.fetch_sub(1, Ordering::Relaxed);
-        let answer = execute(&command, hand, configuration);
-        // The page may have left.
-        let _ = answers.map(|answers| answers.send(answer));
+impl Drop for Control {
+    fn drop(&mut self) {
+        self.stopper.end();
+        self.orders = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
     }
 }
 
-fn execute(command: &Command, hand: &Weak<Hand>, configuration: &Configuration) -> Answer {
-    let Some(hand) = hand.upgrade() else { return Answer::new(false, "the hand is closed".into()) };
-    match command.execute(&hand, configuration) {
-        Ok(text) => Answer::new(true, text),
-        Err(refused) => Answer::new(false, refused.to_string()),
+/// What the thread needs to carry commands out.
+struct Executor {
+    hand: Weak<Hand>,
+    configuration: Configuration,
+    stopper: Stopper,
+    waiting: Arc<AtomicUsize>,
+}
+
+impl Executor {
+    fn run(&self, orders: &Receiver<Order>) {
+        for Order { command, stops, answers } in orders {
+            self.waiting.fetch_sub(1, Ordering::Relaxed);
+            // The end of a push moves nothing by itself, so a stop does not drop it.
+            let ends_push = matches!(command, Command::Push { force: [0.0, 0.0, 0.0], .. });
+            let stops = if ends_push { self.stopper.stops() } else { stops };
+            let dropped = || Answer::new(false, "dropped by the emergency stop: send it again".into());
+            let answer = self.stopper.carry_out(stops, || self.execute(&command)).unwrap_or_else(dropped);
+            // The page may have left.
+            let _ = answers.map(|answers| answers.send(answer));
+        }
+    }
+
+    fn execute(&self, command: &Command) -> Answer {
+        let Some(hand) = self.hand.upgrade() else { return Answer::new(false, "the hand is closed".into()) };
+        match command.execute(&hand, &self.configuration) {
+            Ok(text) => Answer::new(true, text),
+            Err(refused) => Answer::new(false, refused.to_string()),
+        }
     }
 }

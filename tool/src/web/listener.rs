@@ -1,6 +1,8 @@
-//! The listening socket: a limited number of connections, and none that stays silent.
+//! The listening socket: a limited number of connections, and none that stays silent or slow.
 
-use axum::serve::Listener;
+use super::place::{HEADER, Place};
+use axum::extract::connect_info::Connected;
+use axum::serve::{IncomingStream, Listener};
 use std::future::Future;
 use std::io::{self, ErrorKind};
 use std::net::SocketAddr;
@@ -33,7 +35,42 @@ pub struct Limited {
 pub struct Connection {
     stream: TcpStream,
     silence: Pin<Box<Sleep>>,
-    _permit: OwnedSemaphorePermit,
+    /// The end of the time for the header, and then of the time for the answer.
+    deadline: Pin<Box<Sleep>>,
+    accepted: Instant,
+    place: Place,
+}
+
+impl Connected<IncomingStream<'_, Limited>> for Place {
+    fn connect_info(stream: IncomingStream<'_, Limited>) -> Self {
+        stream.io().place.clone()
+    }
+}
+
+impl Connection {
+    fn new(stream: TcpStream, permit: OwnedSemaphorePermit) -> Self {
+        let (silence, deadline) = (Box::pin(sleep(SILENCE)), Box::pin(sleep(HEADER)));
+        let place = Place::new(permit);
+        Self { stream, silence, deadline, accepted: Instant::now(), place }
+    }
+
+    /// Returns whether the time for the header or the answer is over. Otherwise the task is woken at its end.
+    fn late(&mut self, context: &mut Context) -> bool {
+        while self.deadline.as_mut().poll(context).is_ready() {
+            let Some(time) = self.place.time() else { return false };
+            let end = self.accepted + time;
+            if end <= Instant::now() {
+                return true;
+            }
+            self.deadline.as_mut().reset(end);
+        }
+        false
+    }
+
+    /// Passes a result on, except that a late connection has no more time.
+    fn in_time<T>(&mut self, result: Poll<io::Result<T>>, context: &mut Context) -> Poll<io::Result<T>> {
+        if result.is_pending() && self.late(context) { Poll::Ready(Err(ErrorKind::TimedOut.into())) } else { result }
+    }
 }
 
 impl Limited {
@@ -47,7 +84,7 @@ impl Limited {
         let (stream, peer) = self.listener.accept().await?;
         // Batches are small, and they must not wait for more bytes.
         stream.set_nodelay(true)?;
-        Ok((Connection { stream, silence: Box::pin(sleep(SILENCE)), _permit: permit }, peer))
+        Ok((Connection::new(stream, permit), peer))
     }
 }
 
@@ -79,21 +116,24 @@ impl AsyncRead for Connection {
                 self.silence.as_mut().reset(Instant::now() + SILENCE);
                 Poll::Ready(result)
             }
-            Poll::Pending => Poll::Pending,
+            Poll::Pending => self.in_time(Poll::Pending, context),
         }
     }
 }
 
 impl AsyncWrite for Connection {
     fn poll_write(mut self: Pin<&mut Self>, context: &mut Context, bytes: &[u8]) -> Poll<io::Result<usize>> {
-        Pin::new(&mut self.stream).poll_write(context, bytes)
+        let result = Pin::new(&mut self.stream).poll_write(context, bytes);
+        self.in_time(result, context)
     }
 
     fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_flush(context)
+        let result = Pin::new(&mut self.stream).poll_flush(context);
+        self.in_time(result, context)
     }
 
     fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_shutdown(context)
+        let result = Pin::new(&mut self.stream).poll_shutdown(context);
+        self.in_time(result, context)
     }
 }

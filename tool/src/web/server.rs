@@ -6,12 +6,13 @@ use super::control::Control;
 use super::files::{self, POLICY};
 use super::hub::Hub;
 use super::listener::Limited;
+use super::place::Place;
 use super::session::{LARGEST_MESSAGE, Session};
 use crate::interrupt::Interrupt;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::ws::WebSocketUpgrade;
-use axum::extract::{Query, Request, State};
+use axum::extract::{ConnectInfo, Query, Request, State};
 use axum::http::{HeaderMap, HeaderValue, Response, StatusCode, Uri, header};
 use axum::middleware::{self, Next};
 use axum::routing::get;
@@ -65,7 +66,8 @@ impl Server {
             .route("/stream", get(stream))
             .fallback(get(file))
             .layer(middleware::from_fn_with_state(access, guard))
-            .with_state(shared);
+            .with_state(shared)
+            .into_make_service_with_connect_info::<Place>();
         tokio::select! {
             result = axum::serve(limited, router) => result,
             () = ended(interrupt) => Ok(()),
@@ -81,7 +83,13 @@ async fn ended(interrupt: Interrupt) {
 }
 
 /// Checks every request, and adds the headers that every response has.
-async fn guard(State(access): State<Arc<Access>>, request: Request, next: Next) -> Response<Body> {
+async fn guard(
+    State(access): State<Arc<Access>>,
+    ConnectInfo(place): ConnectInfo<Place>,
+    request: Request,
+    next: Next,
+) -> Response<Body> {
+    place.answers();
     let mut response = match access.check(request.headers()) {
         Ok(()) => next.run(request).await,
         Err(refusal) => refused(refusal),
@@ -96,6 +104,10 @@ async fn guard(State(access): State<Arc<Access>>, request: Request, next: Next) 
     ] {
         headers.insert(name, HeaderValue::from_static(value));
     }
+    if response.status() != StatusCode::SWITCHING_PROTOCOLS {
+        // A connection has one request, so that it cannot hold its place by further ones that it never completes.
+        response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
+    }
     response
 }
 
@@ -105,6 +117,7 @@ async fn file(uri: Uri, headers: HeaderMap) -> Response<Body> {
 
 async fn stream(
     State(shared): State<Shared>,
+    ConnectInfo(place): ConnectInfo<Place>,
     Query(credentials): Query<Credentials>,
     upgrade: WebSocketUpgrade,
 ) -> Response<Body> {
@@ -116,6 +129,7 @@ async fn stream(
     };
     let Server { hub, control, .. } = shared.server;
     upgrade.max_message_size(LARGEST_MESSAGE).max_frame_size(LARGEST_MESSAGE).on_upgrade(async move |socket| {
+        place.leave();
         Session::new(socket, hub, control).run().await;
         drop(permit);
     })

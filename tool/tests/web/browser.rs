@@ -164,7 +164,7 @@ fn the_page_is_there_at_once_and_runs_smoothly() {
 }
 
 /// Lets the tests with a browser run one after the other, because each needs all processors.
-fn alone() -> MutexGuard<'static, ()> {
+pub fn alone() -> MutexGuard<'static, ()> {
     static BROWSER: Mutex<()> = Mutex::new(());
     BROWSER.lock().unwrap_or_else(PoisonError::into_inner)
 }

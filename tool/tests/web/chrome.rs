@@ -86,6 +86,12 @@ impl Browser {
         panic!("the page never does this: {body}")
     }
 
+    /// Presses keys, or moves and presses the mouse, as a person does: these are the sources of WebDriver actions. What
+    /// is pressed stays pressed until a later call releases it.
+    pub fn act(&self, sources: &Value) {
+        self.call("POST", &format!("{}/actions", self.session), &json!({ "actions": sources }));
+    }
+
     /// Returns the entries of a log since the last call: `browser` is the console, `performance` the network.
     pub fn log(&self, kind: &str) -> Vec<Value> {
         let entries = self.call("POST", &format!("{}/se/log", self.session), &json!({ "type": kind }));

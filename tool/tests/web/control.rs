@@ -18,7 +18,7 @@ const CONFIGURATION: &str = "
 ";
 
 /// Starts `sun2xp jog --web` with further arguments.
-fn jog(arguments: &[&str]) -> (Program, TempDir) {
+pub fn jog(arguments: &[&str]) -> (Program, TempDir) {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("sun2xp.toml");
     fs::write(&file, CONFIGURATION).expect("a file");
@@ -88,4 +88,28 @@ fn without_control_the_page_of_jog_only_shows() {
         }
     };
     assert!(matches!(&end, Frame::Close(1008, reason) if reason.contains("--control")), "{end:?}");
+}
+
+#[test]
+fn a_stop_drops_the_recoveries_that_wait() {
+    let (program, _folder) = jog(&["--control"]);
+    let mut page = open(&program);
+    assert_eq!(answer(&mut page, r#"{"command":"stop"}"#)["done"], true);
+    // The first recovery takes some time, and the others wait for it.
+    for finger in 1..=3 {
+        page.send(&format!(r#"{{"command":"recover","finger":{finger}}}"#));
+    }
+    page.send(r#"{"command":"stop"}"#);
+    let mut answers = Vec::new();
+    while answers.len() < 4 {
+        let message = message(&mut page);
+        match message["type"].as_str() {
+            Some("answer") => answers.push(message["text"].as_str().expect("a text").to_owned()),
+            Some("batch") => page.send(&format!(r#"{{"received":{}}}"#, message["number"])),
+            _ => {}
+        }
+    }
+    let dropped = answers.iter().filter(|text| text.contains("dropped by the emergency stop")).count();
+    assert!(dropped >= 2, "{answers:?}");
+    assert!(!answers.iter().any(|text| text.contains("finger 2: holds") || text.contains("finger 3: holds")));
 }

@@ -1,6 +1,7 @@
 //! `sun2xp monitor --web`: who may read the page, and what a browser shows of it.
 
 mod browser;
+mod browser_control;
 mod chrome;
 mod control;
 mod http;

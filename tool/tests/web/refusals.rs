@@ -1,11 +1,14 @@
 //! Requests that the server refuses. These tests need no open hand, so the program waits for one.
 
-use super::http::{connect, get, request};
+use super::http::{connect, get, request, write_request};
 use super::program::Program;
 use super::socket::{Frame, Socket};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::io::{Read, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use std::{panic, thread};
 
 /// A program that waits for a hand.
 fn waiting() -> Program {
@@ -136,6 +139,39 @@ fn only_so_many_pages_are_served() {
     assert_eq!(open().err(), Some(503));
     drop(pages);
     assert!((0..1000).any(|_| open().is_ok()), "the places of pages that have left are free again");
+}
+
+#[test]
+fn connections_that_never_complete_their_header_leave_room_for_pages() {
+    let program = waiting();
+    let mut slow: Vec<_> = (0..64).map(|_| connect(program.address())).collect();
+    for stream in &mut slow {
+        stream.write_all(b"GET / HTTP/1.1\r\nX: ").expect("the server reads");
+    }
+    let done = AtomicBool::new(false);
+    thread::scope(|scope| {
+        scope.spawn(|| {
+            while !done.load(Ordering::Relaxed) {
+                thread::sleep(Duration::from_millis(500));
+                // The server closes the connections.
+                slow.iter_mut().for_each(|stream| drop(stream.write_all(b"x")));
+            }
+        });
+        let page = panic::catch_unwind(|| Socket::open(program.address(), "/stream", &[]).is_ok());
+        done.store(true, Ordering::Relaxed);
+        assert!(page.is_ok_and(|opened| opened), "a page opens while others dribble");
+    });
+}
+
+#[test]
+fn a_connection_has_one_request() {
+    let program = waiting();
+    let host = program.address().to_string();
+    let mut stream = connect(program.address());
+    write_request(&mut stream, "GET", "/", &[("Host", &host)], "");
+    let mut all = Vec::new();
+    stream.read_to_end(&mut all).expect("the server closes the connection after its answer");
+    assert!(String::from_utf8_lossy(&all).starts_with("HTTP/1.1 200"));
 }
 
 #[test]

@@ -1,0 +1,60 @@
+//! The emergency stop of a person, which also drops the commands that still wait.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// Stops all fingers, from any thread.
+#[derive(Clone, Default)]
+pub struct Stopper {
+    /// Number of emergency stops. Commands that were sent before the last stop are not carried out.
+    stops: Arc<AtomicU64>,
+    /// Whether the hand is about to be closed. Then no further command is carried out.
+    ending: Arc<AtomicBool>,
+}
+
+impl Stopper {
+    /// Stops all fingers at once, and drops the commands that are still waiting.
+    pub fn stop(&self) {
+        // The number comes first: a recovery that began between the two would take the stop as answered.
+        self.stops.fetch_add(1, Ordering::SeqCst);
+        sun2xp::stop_all();
+    }
+
+    /// Drops the commands that are still waiting, and all later ones, before the hand is closed.
+    pub fn end(&self) {
+        self.ending.store(true, Ordering::SeqCst);
+    }
+
+    /// Returns the number of stops, which a command keeps until it is carried out.
+    pub fn stops(&self) -> u64 {
+        self.stops.load(Ordering::SeqCst)
+    }
+
+    /// Carries out a command that was sent after `stops` stops. Returns none if a later stop or the end has dropped it.
+    pub fn carry_out<T>(&self, stops: u64, command: impl FnOnce() -> T) -> Option<T> {
+        if self.ending.load(Ordering::SeqCst) || self.stops() != stops {
+            return None;
+        }
+        let result = command();
+        // The stop may have come just before the command began, which may have revived a finger.
+        if self.stops() != stops {
+            sun2xp::stop_all();
+        }
+        Some(result)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_carried_out_after_the_end() {
+        let stopper = Stopper::default();
+        assert_eq!(stopper.carry_out(0, || 1), Some(1));
+        // The number of a command that was sent before another stop.
+        assert_eq!(stopper.carry_out(1, || 1), None);
+        stopper.end();
+        assert_eq!(stopper.carry_out(0, || 1), None);
+    }
+}

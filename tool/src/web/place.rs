@@ -1,0 +1,60 @@
+//! The place of a connection among the limited number of them, and the time that the connection has.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+use tokio::sync::OwnedSemaphorePermit;
+
+/// A connection must have sent the header of its request after this time.
+pub const HEADER: Duration = Duration::from_secs(10);
+
+/// A connection that is not a page must have taken its answer after this time.
+const ANSWER: Duration = Duration::from_secs(60);
+
+/// The place of a connection among the limited number of them.
+#[derive(Clone)]
+pub struct Place(Arc<Mutex<Progress>>);
+
+/// How far a connection is.
+enum Progress {
+    /// The header of the request has not arrived as a whole.
+    Header(OwnedSemaphorePermit),
+    /// The request is being answered.
+    Answer { _permit: OwnedSemaphorePermit },
+    /// It is a page, and pages are counted by themselves.
+    Page,
+}
+
+impl Place {
+    /// Returns the place of a connection that has sent nothing yet.
+    pub fn new(permit: OwnedSemaphorePermit) -> Self {
+        Self(Arc::new(Mutex::new(Progress::Header(permit))))
+    }
+
+    /// Notes that the header of the request has arrived.
+    pub fn answers(&self) {
+        self.change(|progress| match progress {
+            Progress::Header(permit) => Progress::Answer { _permit: permit },
+            later => later,
+        });
+    }
+
+    /// Frees the place of a connection that becomes a page.
+    pub fn leave(&self) {
+        self.change(|_| Progress::Page);
+    }
+
+    fn change(&self, change: impl FnOnce(Progress) -> Progress) {
+        let mut progress = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = std::mem::replace(&mut *progress, Progress::Page);
+        *progress = change(before);
+    }
+
+    /// Returns the time that the connection has from its beginning; none for a page.
+    pub fn time(&self) -> Option<Duration> {
+        match &*self.0.lock().unwrap_or_else(PoisonError::into_inner) {
+            Progress::Header(_) => Some(HEADER),
+            Progress::Answer { .. } => Some(ANSWER),
+            Progress::Page => None,
+        }
+    }
+}

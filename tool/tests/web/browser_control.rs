@@ -1,0 +1,91 @@
+//! A person moves the hand on the page, with keys and mouse in headless Chromium.
+
+use super::browser::alone;
+use super::chrome::Browser;
+use super::control::jog;
+use super::tools::available;
+use serde_json::{Value, json};
+
+/// Notes the commands of the page in `sent`.
+const NOTE_COMMANDS: &str = "
+    window.sent = [];
+    const send = WebSocket.prototype.send;
+    WebSocket.prototype.send = function (text) {
+      const { command } = JSON.parse(text);
+      if (command) window.sent.push(command);
+      return send.call(this, text);
+    };
+";
+
+/// Finds the button with a text. Buttons of another panel may have the same text, so the first one counts.
+fn button(text: &str) -> String {
+    format!("[...document.querySelectorAll('#control button')].find((one) => one.textContent === '{text}')")
+}
+
+fn key(value: &str) -> Value {
+    let actions = json!([{ "type": "keyDown", "value": value }, { "type": "keyUp", "value": value }]);
+    json!([{ "type": "key", "id": "keys", "actions": actions }])
+}
+
+/// Moves the mouse to the middle of a button, and then does `more`.
+fn mouse(browser: &Browser, text: &str, more: &[Value]) {
+    let place = browser.wait_for(&format!("return {}?.getBoundingClientRect().toJSON()", button(text)));
+    let middle = |from: &str, length: &str| {
+        let number = |name: &str| place[name].as_f64().expect("a number");
+        (number(from) + number(length) / 2.0) as i64
+    };
+    let (x, y) = (middle("x", "width"), middle("y", "height"));
+    let mut actions = vec![json!({ "type": "pointerMove", "x": x, "y": y, "duration": 0 })];
+    actions.extend_from_slice(more);
+    browser.act(&json!([{ "type": "pointer", "id": "mouse", "actions": actions }]));
+}
+
+fn commands(browser: &Browser) -> Vec<String> {
+    let sent = browser.run("return window.sent.splice(0)");
+    sent.as_array().expect("commands").iter().map(|name| name.as_str().expect("a name").to_owned()).collect()
+}
+
+#[test]
+fn the_space_bar_stops_the_hand_wherever_the_focus_is() {
+    if !available("chromium", "the page in a browser") {
+        return;
+    }
+    let _alone = alone();
+    let (program, _folder) = jog(&["--control"]);
+    let browser = Browser::start(1280, 800);
+    browser.open(&program.url);
+    let [down, up] = ["pointerDown", "pointerUp"].map(|kind| json!({ "type": kind, "button": 0 }));
+    mouse(&browser, "Close", &[down, up]);
+    browser.wait_for("return document.activeElement.textContent === 'Close'");
+    browser.run(NOTE_COMMANDS);
+    browser.act(&key(" "));
+    browser.wait_for("return document.getElementById('link').textContent.includes('stopped')");
+    assert_eq!(commands(&browser), ["stop"]);
+
+    // A field for a number has the focus.
+    browser.run("document.querySelector('#control input[type=number]').focus()");
+    browser.act(&key(" "));
+    assert_eq!(commands(&browser), ["stop"]);
+}
+
+#[test]
+fn a_held_button_ends_when_another_finger_is_selected() {
+    if !available("chromium", "the page in a browser") {
+        return;
+    }
+    let _alone = alone();
+    let (program, _folder) = jog(&["--control"]);
+    let browser = Browser::start(1280, 800);
+    browser.open(&program.url);
+    browser.wait_for(&format!("return !!{}", button("+z")));
+    browser.run(NOTE_COMMANDS);
+    mouse(&browser, "+z", &[json!({ "type": "pointerDown", "button": 0 })]);
+    browser.wait_for("return window.sent.length > 2");
+    browser.act(&key("2"));
+    browser.wait_for("return document.querySelector('#control h3').textContent === 'Finger 2'");
+    commands(&browser);
+    // Ten times the interval of the commands of a held button.
+    browser.run("await new Promise((resolve) => setTimeout(resolve, 600))");
+    assert_eq!(commands(&browser), [""; 0]);
+    browser.act(&json!([{ "type": "pointer", "id": "mouse", "actions": [{ "type": "pointerUp", "button": 0 }] }]));
+}
