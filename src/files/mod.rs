@@ -8,6 +8,8 @@ mod update;
 
 pub use privileges::raised_privileges;
 pub use regular::{open_regular_file, read_regular_file};
+#[cfg(feature = "internals")]
+pub use replace::NewFile;
 pub use replace::{create_file, replace_file};
 pub use update::{UpdateError, update_file};
 

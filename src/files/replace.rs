@@ -65,15 +65,19 @@ pub fn create_file(
 
 /// A file under a temporary name. Dropping this value removes the temporary name, unless the file was moved to its
 /// place. A file that a killed process leaves behind is never read.
-pub(super) struct NewFile {
+pub struct NewFile {
     folder: PathBuf,
     path: PathBuf,
+    /// The content goes here.
     pub output: BufWriter<File>,
     placed: bool,
 }
 
 impl NewFile {
     /// Creates a file in the folder of `target`, to replace a file with the metadata `old`.
+    ///
+    /// # Errors
+    /// Returns the error that the system reports.
     pub fn beside(target: &Path, old: Option<&Metadata>) -> io::Result<Self> {
         let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -95,6 +99,9 @@ impl NewFile {
     }
 
     /// Moves the file to `path`, and replaces the file there if it exists.
+    ///
+    /// # Errors
+    /// Returns the error that the system reports.
     pub fn replace(mut self, path: &Path) -> io::Result<()> {
         fs::rename(&self.path, path)?;
         self.placed = true;
@@ -102,13 +109,19 @@ impl NewFile {
     }
 
     /// Writes everything to the disk.
+    ///
+    /// # Errors
+    /// Returns the error that the system reports.
     pub fn flush(&mut self) -> io::Result<()> {
         self.output.flush()?;
         self.output.get_ref().sync_all()
     }
 
     /// Gives the file its final name, if the name is free.
-    fn place_at_free(&mut self, path: &Path) -> io::Result<()> {
+    ///
+    /// # Errors
+    /// Returns the error that the system reports, [`io::ErrorKind::AlreadyExists`] if the name is not free.
+    pub fn place_at_free(&mut self, path: &Path) -> io::Result<()> {
         match fs::hard_link(&self.path, path) {
             // Dropping this value removes the temporary name.
             Ok(()) => Ok(()),

@@ -1,16 +1,17 @@
 //! `sun2xp export`: a recording as CSV files, which spreadsheets and programs for data read.
 
 mod columns;
+mod output;
 
 use crate::failure::{Failure, wrong_usage};
 use crate::trace::{self, Finger, Item, Mark, Row};
 use clap::ValueEnum;
 use columns::{Column, Value, columns, object_columns};
+use output::Output;
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::collections::btree_map::Entry;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use sun2xp::model::ShownPath;
 use sun2xp::simulated::ObjectState;
 
 /// Writes a recording as CSV: one file for each finger, one for the events, and one for the object of a simulated hand.
@@ -50,7 +51,8 @@ enum Format {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let standard_output = arguments.output.as_deref() == Some(Path::new("-"));
-    let mut files = Files { arguments, standard_output, start: None, open: BTreeMap::new(), paths: Vec::new() };
+    let start = trace::first_cycle(&arguments.file)?;
+    let mut files = Files { arguments, standard_output, start, open: BTreeMap::new() };
     trace::read(&arguments.file, "export", &mut |item| files.take(item))?;
     files.finish()
 }
@@ -62,8 +64,7 @@ struct Files<'a> {
     /// Beginning of the first cycle, ns.
     start: Option<u64>,
     /// The file of every finger, and the files of [`EVENTS`] and [`OBJECT`].
-    open: BTreeMap<i32, Box<dyn Write>>,
-    paths: Vec<PathBuf>,
+    open: BTreeMap<i32, Output>,
 }
 
 /// The key of the file of events.
@@ -137,55 +138,53 @@ impl Files<'_> {
     }
 
     /// Returns the file of a finger or of the events. A new file begins with its header.
-    fn file(&mut self, key: i32, header: &str) -> Result<&mut Box<dyn Write>, Failure> {
+    fn file(&mut self, key: i32, header: &str) -> Result<&mut dyn Write, Failure> {
         let key = if self.standard_output { EVENTS } else { key };
-        if !self.open.contains_key(&key) {
-            let mut file: Box<dyn Write> = match self.standard_output {
-                true => Box::new(BufWriter::new(io::stdout())),
-                false => Box::new(BufWriter::new(self.create(key)?)),
-            };
-            writeln!(file, "{header}")?;
-            self.open.insert(key, file);
-        }
-        self.open.get_mut(&key).ok_or_else(|| "no file was opened".into())
+        let output = match self.open.entry(key) {
+            Entry::Occupied(open) => open.into_mut(),
+            Entry::Vacant(place) => {
+                let mut output = if self.standard_output {
+                    Output::standard()
+                } else {
+                    Output::file(self.arguments.path(key)?, self.arguments.force)?
+                };
+                writeln!(output.writer(), "{header}")?;
+                place.insert(output)
+            }
+        };
+        Ok(output.writer())
     }
 
-    fn create(&mut self, key: i32) -> Result<File, Failure> {
-        let (recording, name) = (&self.arguments.file, |part: &str| self.name(part));
+    /// Gives the files their names. Until here nothing in the folder has changed.
+    fn finish(mut self) -> Result<(), Failure> {
+        self.open.values_mut().try_for_each(Output::flush)?;
+        let force = self.arguments.force;
+        let paths = self.open.into_values().map(|output| output.place(force)).collect::<Result<Vec<_>, _>>()?;
+        let mut paths: Vec<PathBuf> = paths.into_iter().flatten().collect();
+        paths.sort();
+        for path in paths {
+            writeln!(io::stdout(), "{}", path.display())?;
+        }
+        Ok(())
+    }
+}
+
+impl Arguments {
+    /// The path of a CSV file.
+    fn path(&self, key: i32) -> Result<PathBuf, Failure> {
         let name = match key {
-            EVENTS => name("events"),
-            OBJECT => name("object"),
-            finger => name(&format!("finger{finger}")),
+            EVENTS => self.name("events"),
+            OBJECT => self.name("object"),
+            finger => self.name(&format!("finger{finger}")),
         }?;
-        let folder = self.arguments.output.clone().or_else(|| recording.parent().map(Path::to_path_buf));
-        let path = folder.unwrap_or_default().join(name);
-        let mut options = File::options();
-        options.write(true).create(true).truncate(true).create_new(!self.arguments.force);
-        let file = options.open(&path).map_err(|error| match error.kind() {
-            io::ErrorKind::AlreadyExists => {
-                wrong_usage(format!("{} exists: replace it with --force", ShownPath(&path)))
-            }
-            _ => format!("cannot write {}: {error}", ShownPath(&path)).into(),
-        })?;
-        self.paths.push(path);
-        Ok(file)
+        let folder = self.output.clone().or_else(|| self.file.parent().map(Path::to_path_buf));
+        Ok(folder.unwrap_or_default().join(name))
     }
 
     /// The name of a CSV file: the name of the recording without its extension, and the part.
     fn name(&self, part: &str) -> Result<String, Failure> {
-        let recording = self.arguments.file.file_stem().ok_or_else(|| wrong_usage("FILE has no name"))?;
+        let recording = self.file.file_stem().ok_or_else(|| wrong_usage("FILE has no name"))?;
         Ok(format!("{}-{part}.csv", recording.to_string_lossy()))
-    }
-
-    fn finish(mut self) -> Result<(), Failure> {
-        for file in self.open.values_mut() {
-            file.flush()?;
-        }
-        self.paths.sort();
-        for path in &self.paths {
-            writeln!(io::stdout(), "{}", path.display())?;
-        }
-        Ok(())
     }
 }
 

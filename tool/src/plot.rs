@@ -134,7 +134,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Passes the selected part of a recording to a plot. With `one_finger`, if no finger is
 /// selected, the first finger of the recording is selected.
 fn collect(file: &Path, selection: &mut Selection, one_finger: bool, plot: &mut dyn Plot) -> Result<(), Failure> {
-    let mut start = None;
+    let mut start = trace::first_cycle(file)?;
     trace::read(file, "plot", &mut |item| {
         let (time, finger) = match &item {
             Item::Finger(finger) => {

@@ -10,11 +10,12 @@ use crate::interrupt::Interrupt;
 use crate::recording::{Item, Recording};
 use counts::Counts;
 use display::Display;
-use files::{Files, Limits};
+use files::{Files, Limits, Turn};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use sun2xp::model::{Counted, FingerNumber};
+use sun2xp::realtime::now;
 use sun2xp::telemetry::{Description, Ended, Message, Reader};
 
 /// Longest time for which the recorder waits for messages before it looks at its other limits.
@@ -73,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
 fn record(arguments: &Arguments, limits: Limits) -> Result<ExitStatus, Failure> {
     let interrupt = Interrupt::watch()?;
     let mut reader = Reader::attach(arguments.hand.as_deref())?;
-    let mut files = Files::begin(arguments.output.clone(), reader.description(), limits)?;
+    let mut files = Files::begin(arguments.output.clone(), reader.description(), limits, now())?;
     let duration = arguments.seconds.map(Duration::try_from_secs_f64).transpose()?;
     let mut display = Display::new(files.path(), duration);
     let (began, mut counts, mut messages) = (Instant::now(), Counts::default(), Vec::new());
@@ -95,9 +96,11 @@ fn record(arguments: &Arguments, limits: Limits) -> Result<ExitStatus, Failure> 
             }
         };
         // A file begins only when there is something to write, so that the last one is not empty.
-        if !messages.is_empty() && files.turn()? {
+        let turn = if messages.is_empty() { Turn::default() } else { files.turn()? };
+        if turn.begun {
             display.begin_file(files.path());
         }
+        turn.undeleted.iter().for_each(|reason| display.line(reason));
         note_losses(received.lost, &mut files, &mut counts, &display)?;
         for message in &messages {
             counts.add(message);
@@ -132,7 +135,11 @@ fn convert(black_box: &Path, arguments: &Arguments, limits: Limits) -> Result<Ex
     let recording = Recording::open(black_box)?;
     let description: Description = recording.description().clone();
     let output = arguments.output.clone().unwrap_or_else(|| black_box.with_extension("mcap"));
-    let mut files = Files::begin(Some(output), &description, limits)?;
+    let mut recording = recording.peekable();
+    // The first entry has the time of the first cycle. A black box without cycles has no entry with a time.
+    let begin = recording.peek().and_then(|entry| entry.as_ref().ok()).map_or(0, |entry| entry.time);
+    let begin = begin.saturating_add_signed(description.clock_offset.saturating_neg());
+    let mut files = Files::begin(Some(output), &description, limits, begin)?;
     let mut counts = Counts::default();
     let (mut first, mut last) = (None, 0);
     for entry in recording {

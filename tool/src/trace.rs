@@ -103,6 +103,19 @@ pub fn read(file: &Path, what: &str, visit: Visit) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Returns the time of the first cycle, ns of the monotonic clock; none if there is no cycle, or none before an entry
+/// that cannot be read. Marks may precede the first cycle.
+///
+/// # Errors
+/// Returns an error if the file is not a recording.
+pub fn first_cycle(file: &Path) -> Result<Option<u64>, Failure> {
+    let mut entries = Recording::open(file)?.map_while(Result::ok);
+    Ok(entries.find_map(|entry| match entry.item {
+        recording::Item::Message(Message::Cycle { record, .. }) => Some(record.began),
+        _ => None,
+    }))
+}
+
 /// Reads a recording or a black box, and passes its items on. Returns the description of the hand, and whether the file
 /// has its end. Calls `reach` with the part of the file that has been read, 0 to 1.
 ///

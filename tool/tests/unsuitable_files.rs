@@ -5,6 +5,8 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
+use sun2xp::hand::Hand;
+use sun2xp::model::configuration::{Configuration, RealTime};
 
 /// Runs the tool. It must end within a time limit and use less than half a gigabyte of memory.
 fn tool(arguments: &[&str], configuration: Option<&Path>) -> Output {
@@ -61,4 +63,32 @@ fn every_file_that_is_read_is_a_regular_file_of_a_sensible_size() {
             assert!(said.contains(reason) && said.contains(&unsuitable), "{arguments:?}: {said}");
         }
     }
+}
+
+#[test]
+fn a_black_box_with_an_impossible_rate_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let mut configuration = Configuration::default();
+    configuration.hand.real_time = RealTime::Ignore;
+    let hand = Hand::open(configuration).expect("the simulated hand opens");
+    hand.write_black_box(1, &path("good.jsonl")).expect("written");
+    drop(hand);
+    let text = std::fs::read_to_string(path("good.jsonl")).expect("read");
+    let (header, rest) = text.split_once('\n').expect("a header");
+    let mut header: serde_json::Value = serde_json::from_str(header).expect("JSON");
+    *header.pointer_mut("/origin/hand/rate").expect("a rate") = 0.into();
+    write(path("altered.jsonl"), format!("{header}\n{rest}")).expect("written");
+    let file = path("altered.jsonl").to_str().expect("a name").to_owned();
+    let picture = path("timing.svg").to_str().expect("a name").to_owned();
+    let folder = folder.path().to_str().expect("a name");
+    for arguments in [
+        vec!["plot", &file, "--kind", "timing", "--output", &picture],
+        vec!["export", &file, "--output", folder],
+        vec!["record", "--from-black-box", &file],
+    ] {
+        let said = refusal(&arguments, None);
+        assert!(said.contains("cannot be used: rate 0 Hz"), "{arguments:?}: {said}");
+    }
+    assert!(!path("altered.mcap").exists());
 }

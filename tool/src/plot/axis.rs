@@ -9,6 +9,9 @@ pub struct Axis {
     pub logarithmic: bool,
 }
 
+/// Largest number of ticks of a logarithmic axis.
+const MOST_POWERS: usize = 40;
+
 /// Smallest range of a linear axis, as a fraction of its largest value.
 const NARROWEST: f64 = 1e-6;
 
@@ -48,7 +51,10 @@ impl Axis {
     pub fn ticks(&self, most: usize) -> Vec<(f64, String)> {
         if self.logarithmic {
             let exponents = self.low.log10().round() as i32..=self.high.log10().round() as i32;
-            return exponents.map(|exponent| (10f64.powi(exponent), power_of_ten(exponent))).collect();
+            return exponents
+                .take(MOST_POWERS)
+                .map(|exponent| (10f64.powi(exponent), power_of_ten(exponent)))
+                .collect();
         }
         let raw = (self.high - self.low) / most.max(2) as f64;
         let magnitude = 10f64.powf(raw.log10().floor());
@@ -91,6 +97,11 @@ mod tests {
         assert_eq!(texts(Axis::linear(-0.11, 0.32), 5), ["\u{2212}0.1", "0.0", "0.1", "0.2", "0.3"]);
         assert_eq!(texts(Axis::linear(0.0, 1990.0), 4), ["0", "500", "1000", "1500"]);
         assert_eq!(texts(Axis::logarithmic(3.0, 24_000.0), 4), ["1", "10", "100", "1000", "10000", "10\u{2075}"]);
+    }
+
+    #[test]
+    fn an_endless_axis_has_a_limited_number_of_ticks() {
+        assert!(Axis::logarithmic(1.0, f64::INFINITY).ticks(4).len() <= MOST_POWERS);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::recording::RecordingWriter;
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::{self, Display, Formatter};
 use std::fs::{self, File, OpenOptions};
-use std::io::BufWriter;
+use std::io::{self, BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use sun2xp::model::{FingerNumber, ShownPath};
@@ -37,6 +37,8 @@ pub struct Files {
     paths: VecDeque<PathBuf>,
     /// Number of files that have been begun.
     begun: u32,
+    /// Number in the name of the present file.
+    number: u32,
     /// Bytes of the finished files.
     finished: u64,
 }
@@ -48,6 +50,15 @@ struct OpenFile {
     since: Instant,
 }
 
+/// What [`Files::turn`] has done.
+#[derive(Default)]
+pub struct Turn {
+    /// Whether a new file has begun.
+    pub begun: bool,
+    /// Why an old file could not be deleted.
+    pub undeleted: Option<String>,
+}
+
 /// The files that were written, for a message.
 pub struct Written {
     last: PathBuf,
@@ -56,13 +67,20 @@ pub struct Written {
 }
 
 impl Files {
-    /// Begins the first file. Without `output` it gets a name in the working directory.
+    /// Begins the first file, at a time of the monotonic clock, ns. Without `output` it gets a name in the working
+    /// directory.
     ///
     /// # Errors
     /// Returns an error if the file exists or cannot be written.
-    pub fn begin(output: Option<PathBuf>, description: &Description, limits: Limits) -> Result<Self, Failure> {
+    pub fn begin(
+        output: Option<PathBuf>,
+        description: &Description,
+        limits: Limits,
+        time: u64,
+    ) -> Result<Self, Failure> {
         let first = output.unwrap_or_else(|| PathBuf::from(format!("{}-{}.mcap", description.name, date_and_time())));
-        let file = OpenFile::create(first.clone(), description)?;
+        let created = create_new(&first).map_err(|error| uncreated(&first, &error))?;
+        let file = OpenFile::begin(first.clone(), created, description, time)?;
         Ok(Self {
             paths: [first.clone()].into(),
             first,
@@ -71,6 +89,7 @@ impl Files {
             controllers: BTreeMap::new(),
             file,
             begun: 1,
+            number: 1,
             finished: 0,
         })
     }
@@ -116,29 +135,54 @@ impl Files {
         self.file.explain(RecordingWriter::flush_if_due)
     }
 
-    /// Begins a new file if the present one has reached a limit. Returns whether a new file has begun.
+    /// Begins a new file if the present one has reached a limit.
     ///
     /// # Errors
     /// Returns an error if a file cannot be written.
-    pub fn turn(&mut self) -> Result<bool, Failure> {
+    pub fn turn(&mut self) -> Result<Turn, Failure> {
         let full = self.limits.bytes.is_some_and(|most| self.file.bytes() >= most);
         let old = self.limits.age.is_some_and(|most| self.file.since.elapsed() >= most);
         if !full && !old {
-            return Ok(false);
+            return Ok(Turn::default());
         }
+        let (path, created) = self.create_next()?;
+        // Messages before the next cycle follow the newest one, which is in the present file.
+        let next = OpenFile::begin(path, created, &self.description, self.file.writer.time())?;
         self.begun += 1;
-        let next = OpenFile::create(numbered(&self.first, self.begun), &self.description)?;
         let last = std::mem::replace(&mut self.file, next);
         self.finished += last.finish()?;
         self.paths.push_back(self.file.path.clone());
         for message in self.controllers.values().flatten() {
             self.file.explain(|writer| writer.write(message))?;
         }
-        let superfluous = self.limits.keep.is_some_and(|keep| self.begun > keep);
-        if let Some(path) = superfluous.then(|| self.paths.pop_front()).flatten() {
-            fs::remove_file(&path).map_err(|error| format!("cannot delete {}: {error}", ShownPath(&path)))?;
+        Ok(Turn { begun: true, undeleted: self.delete_oldest() })
+    }
+
+    /// Creates the file with the next free number. Earlier recordings may have left files with higher numbers.
+    fn create_next(&mut self) -> Result<(PathBuf, File), Failure> {
+        loop {
+            self.number += 1;
+            let path = numbered(&self.first, self.number);
+            match create_new(&path) {
+                Ok(created) => return Ok((path, created)),
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(uncreated(&path, &error)),
+            }
         }
-        Ok(true)
+    }
+
+    /// Deletes the oldest file if there are too many. Returns why it is still there. The recording continues, because
+    /// its cycles matter more than the space.
+    fn delete_oldest(&mut self) -> Option<String> {
+        let superfluous = self.limits.keep.is_some_and(|keep| self.paths.len() > keep as usize);
+        let path = superfluous.then(|| self.paths.pop_front()).flatten()?;
+        match fs::remove_file(&path) {
+            // Somebody may have moved it.
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                Some(format!("cannot delete {}: {error}. The file stays", ShownPath(&path)))
+            }
+            _ => None,
+        }
     }
 
     /// Ends the last file.
@@ -153,10 +197,8 @@ impl Files {
 }
 
 impl OpenFile {
-    fn create(path: PathBuf, description: &Description) -> Result<Self, Failure> {
-        let created = OpenOptions::new().write(true).create_new(true).open(&path);
-        let file = created.map_err(|error| format!("cannot create {}: {error}", ShownPath(&path)))?;
-        let writer = RecordingWriter::new(BufWriter::new(file), description)?;
+    fn begin(path: PathBuf, file: File, description: &Description, time: u64) -> Result<Self, Failure> {
+        let writer = RecordingWriter::new(BufWriter::new(file), description, time)?;
         Ok(Self { path, writer, since: Instant::now() })
     }
 
@@ -194,6 +236,14 @@ impl Display for Written {
     }
 }
 
+fn create_new(path: &Path) -> io::Result<File> {
+    OpenOptions::new().write(true).create_new(true).open(path)
+}
+
+fn uncreated(path: &Path, error: &io::Error) -> Failure {
+    format!("cannot create {}: {error}", ShownPath(path)).into()
+}
+
 /// Returns the name of a further file: `hand.mcap` becomes `hand-2.mcap`.
 fn numbered(first: &Path, number: u32) -> PathBuf {
     let stem = first.file_stem().unwrap_or_default().to_string_lossy();
@@ -224,22 +274,4 @@ fn date(days: u64) -> (u64, u64, u64) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn files_are_numbered_before_their_ending() {
-        assert_eq!(numbered(Path::new("a/hand.mcap"), 2), Path::new("a/hand-2.mcap"));
-        assert_eq!(numbered(Path::new("hand"), 11), Path::new("hand-11"));
-    }
-
-    #[test]
-    fn days_have_their_dates() {
-        assert_eq!(date(0), (1970, 1, 1));
-        assert_eq!(date(11_016), (2000, 2, 29));
-        assert_eq!(date(11_017), (2000, 3, 1));
-        assert_eq!(date(20_453), (2025, 12, 31));
-        assert_eq!(date(47_540), (2100, 2, 28));
-        assert_eq!(date(47_541), (2100, 3, 1));
-    }
-}
+mod tests;

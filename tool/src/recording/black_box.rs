@@ -6,9 +6,9 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 use std::time::UNIX_EPOCH;
-use sun2xp::finger::{self, CycleRecord, Fault, FaultKind, Stage};
+use sun2xp::finger::{self, CycleRecord, Fault, FaultKind, Origin, Stage};
 use sun2xp::model::configuration::Configuration;
-use sun2xp::model::{FingerNumber, Part};
+use sun2xp::model::{FingerNumber, Part, ShownPath};
 use sun2xp::telemetry::{Description, Message};
 
 /// Returns whether a file is a text of JSON, as a black box is. An MCAP file begins with another byte.
@@ -21,6 +21,7 @@ pub fn is_one(path: &Path) -> io::Result<bool> {
 pub fn read(path: &Path) -> Result<(Description, Vec<Entry>), Failure> {
     let recording = finger::Recording::open(path)?;
     let finger::Recording { origin, library, cycles, .. } = recording;
+    check(&origin).map_err(|reason| format!("{} cannot be used: {reason}", ShownPath(path)))?;
     let number = FingerNumber::new(origin.finger).ok_or("the black box names no finger")?;
     let mut configuration = Configuration { hand: origin.hand.clone(), ..Default::default() };
     if let Some(first) = origin.controllers.first() {
@@ -55,6 +56,15 @@ pub fn read(path: &Path) -> Result<(Description, Vec<Entry>), Failure> {
         add(began, Message::Cycle { finger: number, record });
     }
     Ok((description, entries))
+}
+
+/// Checks the configurations. An altered file may have any values, and the programs that draw and convert a recording
+/// expect those that a hand may have.
+fn check(origin: &Origin) -> Result<(), String> {
+    let refused = |key: &str, reason: &str| format!("{key} {reason}");
+    origin.hand.check().map_err(|wrong| refused(wrong.key, &wrong.reason))?;
+    let mut fingers = origin.controllers.iter().map(|source| &source.finger);
+    fingers.try_for_each(|finger| finger.check().map_err(|wrong| refused(wrong.key, &wrong.reason)))
 }
 
 /// Returns the stage that has this text in a black box.

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use sun2xp::hand::Hand;
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, RealTime};
+use sun2xp::realtime::now;
 use sun2xp::telemetry::{Message, Reader};
 
 fn open(name: &str) -> Hand {
@@ -33,7 +34,7 @@ fn messages(name: &str, time: Duration) -> (Reader, Vec<Message>) {
 
 fn write(path: &Path, reader: &Reader, messages: &[Message]) {
     let file = File::create(path).expect("a file");
-    let mut writer = RecordingWriter::new(file, reader.description()).expect("begun");
+    let mut writer = RecordingWriter::new(file, reader.description(), now()).expect("begun");
     for (number, message) in messages.iter().enumerate() {
         writer.write(message).expect("written");
         if number % 500 == 0 {

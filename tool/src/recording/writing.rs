@@ -31,7 +31,7 @@ pub struct RecordingWriter<W: Write + Seek> {
     samples: [Option<Channel>; 3],
     replay: [Option<Channel>; 3],
     bytes: Vec<u8>,
-    /// Time of the newest cycle, ns of the monotonic clock.
+    /// Time of the newest cycle or of the beginning, ns of the monotonic clock.
     time: u64,
     flushed: Instant,
 }
@@ -59,11 +59,12 @@ struct Lost {
 }
 
 impl<W: Write + Seek> RecordingWriter<W> {
-    /// Begins a recording of the hand with this description.
+    /// Begins a recording of the hand with this description. Messages before the first cycle get the time `begin`, ns of
+    /// the monotonic clock.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
-    pub fn new(output: W, description: &Description) -> Result<Self, Failure> {
+    pub fn new(output: W, description: &Description, begin: u64) -> Result<Self, Failure> {
         let mut writer = WriteOptions::new()
             .profile("ros2")
             .library(concat!("sun2xp ", env!("CARGO_PKG_VERSION")))
@@ -84,7 +85,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
             samples: [None; 3],
             replay: [None; 3],
             bytes: Vec::new(),
-            time: description.started.saturating_mul(1_000_000_000).saturating_add_signed(-description.clock_offset),
+            time: begin,
             flushed: Instant::now(),
         };
         recording.write_json(DESCRIPTION, recording.time, description)?;
@@ -125,6 +126,11 @@ impl<W: Write + Seek> RecordingWriter<W> {
                 self.write_json(STATUS, status.time, &status)
             }
         }
+    }
+
+    /// Returns the time of the newest cycle or of the beginning, ns of the monotonic clock.
+    pub fn time(&self) -> u64 {
+        self.time
     }
 
     /// Marks cycles that were lost before the messages that follow.

@@ -85,7 +85,12 @@ pub fn replay(file: &Path) -> Result<Report, Failure> {
     if newest.is_none() {
         return Err(in_file(file, "it contains no cycles"));
     }
-    let reports = fingers.into_values().map(|finger| finger.report).collect();
+    let reports: Vec<FingerReport> = fingers.into_values().map(|finger| finger.report).collect();
+    let proven = reports.iter().any(|report| report.replayed > 0);
+    if !proven && reports.iter().any(|report| report.without_state > 0) {
+        let reason = "no cycle can be replayed, because no recorded state precedes one: record for at least a second";
+        return Err(in_file(file, reason));
+    }
     Ok(Report::new(recording.description().library.clone(), !recording.is_complete(), reports))
 }
 

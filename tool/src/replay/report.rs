@@ -188,6 +188,7 @@ impl FingerReport {
 
     fn add_result_to(&self, table: &mut Table) {
         let result = match self.pass() {
+            true if self.replayed == 0 && self.without_state > 0 => Cell::new(Look::Warning, "no cycle"),
             true => {
                 let text = format!(
                     "{}, every motor command the same to the last bit",

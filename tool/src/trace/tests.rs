@@ -1,6 +1,6 @@
 //! A recording of a simulated hand is passed on whole: every cycle, its gaps, stages and events.
 
-use super::{Item, Mark, MarkKind, Row, read};
+use super::{Item, Mark, MarkKind, Row, first_cycle, read};
 use crate::recording::RecordingWriter;
 use std::fs::File;
 use std::path::Path;
@@ -42,7 +42,10 @@ fn every_cycle_of_a_recording_is_a_row_and_lost_cycles_are_marked() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("hand.mcap");
     let (reader, messages) = messages();
-    let mut writer = RecordingWriter::new(File::create(&path).expect("a file"), reader.description()).expect("begun");
+    let mut writer =
+        RecordingWriter::new(File::create(&path).expect("a file"), reader.description(), 0).expect("begun");
+    // The recorder may mark cycles that were lost before the first one, here at the beginning of the clock.
+    writer.write_lost(FingerNumber::THREE, 1).expect("written");
     let half = messages.len() / 2;
     messages[..half].iter().for_each(|message| writer.write(message).expect("written"));
     writer.write_lost(FingerNumber::TWO, 12).expect("written");
@@ -62,7 +65,11 @@ fn every_cycle_of_a_recording_is_a_row_and_lost_cycles_are_marked() {
     let marks: Vec<&Mark> =
         items.iter().filter_map(|item| if let Item::Mark(mark) = item { Some(mark) } else { None }).collect();
     let of = |kind| marks.iter().filter(move |mark| mark.kind == kind);
-    let gap = of(MarkKind::Gap).next().expect("a gap");
+    let early = of(MarkKind::Gap).next().expect("a gap");
+    assert_eq!((early.finger, early.time), (Some(3), 0));
+    let first = rows.iter().map(|row| row.sample.began).next();
+    assert!(first.is_some_and(|began| began > 0) && first_cycle(&path).expect("a recording") == first);
+    let gap = of(MarkKind::Gap).nth(1).expect("a gap");
     assert_eq!((gap.finger, gap.text.as_str()), (Some(2), "12 cycles are not recorded"));
     // The file has the time of day of the gap. The mark has a time of the monotonic clock, near those of the cycles.
     let nearest = rows.iter().map(|row| row.sample.began.abs_diff(gap.time)).min().expect("a row");

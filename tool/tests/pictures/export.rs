@@ -1,5 +1,6 @@
 //! CSV files: every number has the recorded bits.
 
+use crate::damage::damaged;
 use crate::recorded::{done, recorded, tool};
 use std::collections::BTreeMap;
 use std::fs;
@@ -105,4 +106,36 @@ fn no_file_is_replaced_without_force_and_other_fingers_are_left_out() {
     assert_eq!(refused.status.code(), Some(2), "{refused:?}");
     assert!(String::from_utf8_lossy(&refused.stderr).contains("--force"), "{refused:?}");
     assert!(export(&["--force"]).status.success());
+}
+
+#[test]
+fn a_refused_or_failed_export_leaves_the_folder_as_it_was() {
+    let recorded = recorded();
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let names = || {
+        let entries = fs::read_dir(folder.path()).expect("a folder");
+        let mut names: Vec<_> = entries.map(|entry| entry.expect("an entry").file_name()).collect();
+        names.sort();
+        names
+    };
+    // The first event follows rows of the finger.
+    fs::write(path("finger-2-events.csv"), "old").expect("written");
+    let output = folder.path().to_str().expect("a name");
+    let refused = tool(folder.path(), &["export", recorded.file().to_str().expect("a name"), "--output", output]);
+    assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+    assert_eq!(names(), ["finger-2-events.csv"]);
+
+    // The recording is damaged after rows of the finger.
+    fs::copy(recorded.file(), path("box.jsonl")).expect("copied");
+    let recording = ["record", "--from-black-box", "box.jsonl", "-o", "hand.mcap"];
+    done(folder.path(), &recording);
+    let whole = fs::read(path("hand.mcap")).expect("read");
+    fs::write(path("hand.mcap"), damaged(&whole)).expect("written");
+    fs::write(path("hand-finger2.csv"), "old").expect("written");
+    let before = names();
+    let failed = tool(folder.path(), &["export", "hand.mcap", "--force"]);
+    assert_eq!(failed.status.code(), Some(1), "{failed:?}");
+    assert_eq!(names(), before);
+    assert_eq!(fs::read_to_string(path("hand-finger2.csv")).expect("read"), "old");
 }

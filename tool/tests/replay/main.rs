@@ -1,5 +1,7 @@
 //! `sun2xp replay` of recordings: every cycle is recomputed to the last bit, across changes, faults and gaps.
 
+#[path = "../common/damage.rs"]
+mod damage;
 #[allow(dead_code)]
 #[path = "../../../tests/common/pauses.rs"]
 mod pauses;
@@ -8,7 +10,8 @@ mod recorded;
 #[path = "../black_box/rig.rs"]
 mod rig;
 
-use recorded::{Recorded, damaged, recorded};
+use damage::damaged;
+use recorded::{Recorded, recorded};
 use rig::replayed_with;
 use serde_json::Value;
 use sun2xp::model::FingerNumber;
@@ -113,6 +116,15 @@ fn a_gap_is_reported_and_the_replay_continues_after_it() {
     assert_eq!((number(&finger["gaps"]), number(&finger["missing_cycles"])), (1, 20));
     assert_eq!(number(&finger["first_gaps"][0]["first"]), begin);
     assert!(number(&finger["replayed"]) > 600 && number(&finger["without_state"]) < 200, "{finger:#}");
+}
+
+#[test]
+fn a_recording_without_states_is_refused() {
+    let recording = recorded();
+    let rest = recording.messages.iter().filter(|message| !matches!(message, Message::Keyframe { .. }));
+    let file = recording.write(&rest.cloned().collect::<Vec<_>>());
+    let (status, told) = replayed_with(file.path(), &[]);
+    assert!(status == Some(1) && told.contains("no recorded state precedes one"), "{told}");
 }
 
 #[test]

@@ -1,0 +1,82 @@
+//! Where rows of CSV go: to standard output, or to a file that gets its name when all rows are written.
+
+use crate::failure::{Failure, wrong_usage};
+use std::fs;
+use std::io::{self, BufWriter, ErrorKind, Stdout, Write};
+use std::path::{Path, PathBuf};
+use sun2xp::files::NewFile;
+use sun2xp::model::ShownPath;
+
+/// An output. A file that is dropped without [`Output::place`] leaves the folder as it was.
+pub enum Output {
+    Standard(BufWriter<Stdout>),
+    File {
+        path: PathBuf,
+        /// The file at `path`, or the file to which a symbolic link leads.
+        target: PathBuf,
+        file: NewFile,
+    },
+}
+
+impl Output {
+    pub fn standard() -> Self {
+        Self::Standard(BufWriter::new(io::stdout()))
+    }
+
+    /// Begins a file. Without `force` there must be no file at `path`.
+    ///
+    /// # Errors
+    /// Returns an error if there is one, or if the folder cannot be written.
+    pub fn file(path: PathBuf, force: bool) -> Result<Self, Failure> {
+        let old = fs::metadata(&path).ok();
+        if fs::symlink_metadata(&path).is_ok() && !force {
+            return Err(exists(&path));
+        }
+        if old.as_ref().is_some_and(|old| !old.is_file()) {
+            return Err(format!("cannot replace {}: it is not a regular file", ShownPath(&path)).into());
+        }
+        let target = path.canonicalize().unwrap_or_else(|_| path.clone());
+        let file = NewFile::beside(&target, old.as_ref()).map_err(|error| unwritable(&path, &error))?;
+        Ok(Self::File { path, target, file })
+    }
+
+    pub fn writer(&mut self) -> &mut dyn Write {
+        match self {
+            Self::Standard(output) => output,
+            Self::File { file, .. } => &mut file.output,
+        }
+    }
+
+    /// Writes everything.
+    ///
+    /// # Errors
+    /// Returns the error that the system reports.
+    pub fn flush(&mut self) -> Result<(), Failure> {
+        match self {
+            Self::Standard(output) => Ok(output.flush()?),
+            Self::File { path, file, .. } => file.flush().map_err(|error| unwritable(path, &error)),
+        }
+    }
+
+    /// Gives a file its name. Returns the path.
+    ///
+    /// # Errors
+    /// Returns an error if somebody has made a file at this path meanwhile, or the error that the system reports.
+    pub fn place(self, force: bool) -> Result<Option<PathBuf>, Failure> {
+        let Self::File { path, target, mut file } = self else { return Ok(None) };
+        let placed = if force { file.replace(&target) } else { file.place_at_free(&target) };
+        match placed {
+            Ok(()) => Ok(Some(path)),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(exists(&path)),
+            Err(error) => Err(unwritable(&path, &error)),
+        }
+    }
+}
+
+fn exists(path: &Path) -> Failure {
+    wrong_usage(format!("{} exists: replace it with --force", ShownPath(path)))
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> Failure {
+    format!("cannot write {}: {error}", ShownPath(path)).into()
+}

@@ -1,0 +1,105 @@
+//! The files of a recording, without a hand.
+
+use super::*;
+use crate::recording::{Item, Recording};
+use sun2xp::finger::{CycleRecord, Stage};
+use sun2xp::model::configuration::Configuration;
+use tempfile::TempDir;
+
+/// Every call of [`Files::turn`] begins a new file.
+const AT_ONCE: Limits = Limits { bytes: Some(0), age: None, keep: Some(2) };
+
+fn begin(folder: &TempDir) -> Files {
+    let description = Description {
+        name: "hand".into(),
+        process: 1,
+        library: "test".into(),
+        started: 1,
+        clock_offset: 1_000_000_000_000,
+        fingers: vec![FingerNumber::ONE],
+        configuration: Configuration::default(),
+    };
+    Files::begin(Some(folder.path().join("hand.mcap")), &description, AT_ONCE, 7_000).expect("begun")
+}
+
+fn names(folder: &TempDir) -> Vec<String> {
+    let entries = fs::read_dir(folder.path()).expect("a folder");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8")).collect();
+    names.sort();
+    names
+}
+
+/// The times of the entries of a file, ns of the monotonic clock.
+fn times(folder: &TempDir, name: &str) -> Vec<(bool, u64)> {
+    let recording = Recording::open(&folder.path().join(name)).expect("a recording");
+    let entries = recording.map(|entry| entry.expect("an entry"));
+    entries.map(|entry| (matches!(entry.item, Item::Lost { .. }), entry.time - 1_000_000_000_000)).collect()
+}
+
+#[test]
+fn files_of_an_earlier_recording_are_kept_and_their_numbers_skipped() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("hand-2.mcap"), "old").expect("written");
+    fs::write(folder.path().join("hand-4.mcap"), "old").expect("written");
+    let mut files = begin(&folder);
+    for _ in 0..3 {
+        assert!(files.turn().expect("a file").begun);
+    }
+    assert_eq!(names(&folder), ["hand-2.mcap", "hand-4.mcap", "hand-5.mcap", "hand-6.mcap"]);
+    assert!(files.finish().expect("finished").to_string().contains("the last of 4 files"));
+}
+
+#[test]
+fn an_old_file_that_cannot_be_deleted_does_not_end_the_recording() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut files = begin(&folder);
+    fs::remove_file(folder.path().join("hand.mcap")).expect("removed");
+    for _ in 0..2 {
+        let turn = files.turn().expect("a file");
+        assert_eq!((turn.begun, turn.undeleted), (true, None), "somebody has moved it");
+    }
+    // A folder cannot be deleted as a file.
+    fs::remove_file(folder.path().join("hand-2.mcap")).expect("removed");
+    fs::create_dir(folder.path().join("hand-2.mcap")).expect("made");
+    let turn = files.turn().expect("a file");
+    assert!(turn.begun && turn.undeleted.is_some_and(|reason| reason.contains("hand-2.mcap")));
+}
+
+#[test]
+fn marks_before_the_first_cycle_of_a_file_have_the_time_of_the_cycle_before() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut files = begin(&folder);
+    files.write_lost(FingerNumber::ONE, 1).expect("written");
+    let record = CycleRecord {
+        cycle: 1,
+        began: 9_000,
+        stage: Stage::Limp,
+        timing: Default::default(),
+        feedback: None,
+        status: 0,
+        control: None,
+    };
+    files.write(&Message::Cycle { finger: FingerNumber::ONE, record }).expect("written");
+    files.turn().expect("a file");
+    files.write_lost(FingerNumber::ONE, 1).expect("written");
+    files.finish().expect("finished");
+    assert_eq!(times(&folder, "hand.mcap"), [(true, 7_000), (false, 9_000)]);
+    assert_eq!(times(&folder, "hand-2.mcap"), [(true, 9_000)]);
+}
+
+#[test]
+fn files_are_numbered_before_their_ending() {
+    assert_eq!(numbered(Path::new("a/hand.mcap"), 2), Path::new("a/hand-2.mcap"));
+    assert_eq!(numbered(Path::new("hand"), 11), Path::new("hand-11"));
+}
+
+#[test]
+fn days_have_their_dates() {
+    assert_eq!(date(0), (1970, 1, 1));
+    assert_eq!(date(11_016), (2000, 2, 29));
+    assert_eq!(date(11_017), (2000, 3, 1));
+    assert_eq!(date(20_453), (2025, 12, 31));
+    assert_eq!(date(47_540), (2100, 2, 28));
+    assert_eq!(date(47_541), (2100, 3, 1));
+}
