@@ -65,8 +65,8 @@ fn remedy(least_baud: u32, fastest_rate: f64, fingers: usize) -> String {
 /// The line is full duplex, so the first reply may begin while the second command is still being sent. Replies are
 /// longer than commands. An exchange therefore takes one command, the board's turnaround and all replies.
 pub fn exchange_microseconds(baud: u32, fingers: usize, more: usize) -> f64 {
-    let bytes = Kind::Command.wire_length() + fingers * (Kind::Reply.wire_length() + more);
-    bytes as f64 * BITS_PER_BYTE / f64::from(baud) * 1e6 + f64::from(TURNAROUND_MICROSECONDS)
+    let bytes = Kind::Command.wire_length() as f64 + fingers as f64 * (Kind::Reply.wire_length() as f64 + more as f64);
+    bytes * BITS_PER_BYTE / f64::from(baud) * 1e6 + f64::from(TURNAROUND_MICROSECONDS)
 }
 
 /// Returns the time by which a TactileRequest prolongs an exchange, us: the time of its answer, which follows the
@@ -167,6 +167,11 @@ mod tests {
         assert_eq!(tactile_requests(3_000_000, 3, 1000.0), 3);
         // A hand that does not fit has no time for touch.
         assert_eq!(tactile_requests(115_200, 3, 1000.0), 0);
+    }
+
+    #[test]
+    fn endless_replies_take_endless_time() {
+        assert!(exchange_microseconds(1_000_000, 3, usize::MAX) > 1e12);
     }
 
     #[test]

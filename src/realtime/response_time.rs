@@ -31,11 +31,12 @@ pub struct Response {
 
 impl PeriodicThread {
     fn computing(&self) -> u64 {
-        self.before + self.after
+        self.before.saturating_add(self.after)
     }
 
     fn alone(&self) -> u64 {
-        self.wake_up + self.before + self.waiting + self.after
+        // Costs that are far too high must not become small.
+        self.wake_up.saturating_add(self.before).saturating_add(self.waiting).saturating_add(self.after)
     }
 
     /// Whether `other` may delay this thread on its core. Threads of equal priority run in the order in which they
@@ -141,6 +142,13 @@ mod tests {
         assert_eq!(done(&[thread(0, 70, 1000, [0, 9, 0, 0]), thread(0, 80, 1000, [0, 600, 0, 0])])[1], Some(600));
         let anywhere = PeriodicThread { core: None, ..other };
         assert_eq!(done(&[anywhere, thread(1, 80, 1000, [0, 600, 0, 0])]), [Some(530), Some(660)]);
+    }
+
+    #[test]
+    fn endless_times_have_no_bound() {
+        for endless in [[u64::MAX, 1, 1, 1], [1, u64::MAX, 1, 1], [1, 1, u64::MAX, 1], [1, 1, 1, u64::MAX]] {
+            assert_eq!(done(&[thread(0, 90, 1000, endless), thread(0, 80, 1000, [0, 10, 0, 0])]), [None, None]);
+        }
     }
 
     #[test]

@@ -68,7 +68,7 @@ pub struct Arguments {
     /// An order to carry out at the start. May be repeated.
     #[arg(long = "order", value_name = "ORDER")]
     orders: Vec<String>,
-    /// Make a symbolic link to the port, and remove it at `quit`. An existing symbolic link is replaced. The board's
+    /// Make a symbolic link to the port, and remove it at `quit` or at an error. An existing symbolic link is replaced. The board's
     /// unique number is derived from this path, so a board that is restarted with the same link is the same board for
     /// its host.
     #[arg(long, value_name = "PATH")]
@@ -107,33 +107,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(link) = &arguments.link {
         make_link(&port.path(), link)?;
     }
-    say(&port.path().display().to_string())?;
     let session =
         Session { port: &port, configuration: &configuration, link: arguments.link.as_deref(), seed: arguments.seed };
+    say(&port.path().display().to_string())?;
     for order in &orders {
         let answer = session.carry_out(order)?;
         if answer.starts_with("error") {
             return Err(wrong_usage(answer));
         }
     }
-
-    for line in io::stdin().lock().lines() {
-        let line = line?;
-        match Order::read(&line) {
-            Ok(Some(Order::Quit)) => {
-                if let Some(link) = &arguments.link {
-                    std::fs::remove_file(link)?;
-                }
-                return Ok(());
-            }
-            Ok(Some(order)) => say(&session.carry_out(&order)?)?,
-            Ok(None) => {}
-            Err(error) => say(&one_line(&format!("error {error}")))?,
-        }
-    }
-    loop {
-        std::thread::park();
-    }
+    session.take_orders()
 }
 
 /// Reads the orders of the command line.
@@ -185,6 +168,24 @@ struct Session<'a> {
 }
 
 impl Session<'_> {
+    /// Executes the orders of standard input until `quit`. Does not end with standard input.
+    fn take_orders(&self) -> Result<(), Failure> {
+        let (mut input, mut line) = (io::stdin().lock(), Vec::new());
+        while input.read_until(b'\n', &mut line).is_ok_and(|length| length > 0) {
+            // A line that is not UTF-8 is an unknown order.
+            match Order::read(&String::from_utf8_lossy(&line)) {
+                Ok(Some(Order::Quit)) => return Ok(()),
+                Ok(Some(order)) => say(&self.carry_out(&order)?)?,
+                Ok(None) => {}
+                Err(error) => say(&one_line(&format!("error {error}")))?,
+            }
+            line.clear();
+        }
+        loop {
+            std::thread::park();
+        }
+    }
+
     /// Executes an order and returns the answer.
     fn carry_out(&self, order: &Order) -> Result<String, Failure> {
         let address = |number: u8| Some(self.configuration.address(FingerNumber::new(number.into())?));
@@ -204,6 +205,18 @@ impl Session<'_> {
                 Ok(answer)
             }
             Order::Quit => Ok("ok".into()),
+        }
+    }
+}
+
+impl Drop for Session<'_> {
+    /// Removes the link, if it still leads to this board.
+    fn drop(&mut self) {
+        if let Some(link) = self.link
+            && std::fs::read_link(link).is_ok_and(|port| port == self.port.path())
+        {
+            // A link that cannot be removed leads nowhere, and the next board replaces it.
+            let _ = std::fs::remove_file(link);
         }
     }
 }

@@ -20,7 +20,7 @@ const AVERAGED: u64 = 200;
 ///
 /// Turn a motor by hand, and see which encoder counts; hang a weight on a tendon, and see which gauge measures how
 /// much. Turns and tensions are relative to the first line. They include the signs and scales of the configuration, and
-/// the gauges are averaged over 200 cycles.
+/// the gauges are averaged over 200 cycles. A fault, such as a board that no longer answers, ends the command.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file.
@@ -110,6 +110,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         && arguments.seconds.is_none_or(|seconds| began.elapsed() < Duration::from_secs(seconds))
     {
         sleep(INTERVAL);
+        // A faulted finger has no new readings, and its last one would look like a motor that does not turn.
+        if let Some(fault) = hand.fault(arguments.finger)?.stopped {
+            return Err(format!("finger {}: {fault}", arguments.finger).into());
+        }
         let Some(reading) = Reading::take(&hand, arguments.finger)? else { continue };
         let reading = reading.relative_to(first.get_or_insert(reading), &finger);
         match arguments.json {

@@ -127,3 +127,24 @@ fn defects_occur_while_it_runs_and_are_repaired() {
     let port = answer.strip_prefix("ok ").unwrap_or_else(|| panic!("{answer}"));
     shake_hands(Path::new(port), 1).unwrap();
 }
+
+#[test]
+fn a_line_that_is_no_text_is_answered_and_a_long_line_too() {
+    let mut board = Board::start(&["--finger", "1"]);
+    board.line();
+    board.orders.as_mut().unwrap().write_all(b"\xff\xfe\n").unwrap();
+    let answer = board.line();
+    assert!(answer.starts_with("error "), "{answer}");
+    let answer = board.order(&"commands ".repeat(100_000));
+    assert!(answer.starts_with("error usage: commands drop"), "{answer}");
+    assert_eq!(board.order("good"), "ok");
+}
+
+#[test]
+fn a_refused_order_leaves_no_link() {
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("board");
+    let mut board = Board::start(&["--finger", "1", "--order", "cut 2 1", "--link", &link.to_string_lossy()]);
+    assert_eq!(board.process.wait().unwrap().code(), Some(2));
+    assert!(!link.is_symlink());
+}

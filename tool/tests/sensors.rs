@@ -1,8 +1,9 @@
 //! `sun2xp sensors` shows what the encoders and gauges of a board measure.
 
 use serde_json::Value;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use tempfile::TempDir;
 
 const TOOL: &str = env!("CARGO_BIN_EXE_sun2xp");
 
@@ -16,7 +17,7 @@ struct Program {
 impl Program {
     fn start(arguments: &[&str]) -> Self {
         let mut command = Command::new(TOOL);
-        command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped());
+        command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut process = command.spawn().expect("the tool starts");
         let input = process.stdin.take().expect("a pipe");
         let output = BufReader::new(process.stdout.take().expect("a pipe"));
@@ -46,9 +47,8 @@ fn four(reading: &Value, key: &str) -> [f64; 4] {
     [0, 1, 2, 3].map(|place| reading[key][place].as_f64().unwrap_or_else(|| panic!("{key}: {reading}")))
 }
 
-#[test]
-fn turned_encoders_and_loaded_gauges_are_shown() {
-    let folder = tempfile::tempdir().expect("a folder");
+/// Starts a board with finger 2, and `sun2xp sensors` for it.
+fn board_and_sensors(folder: &TempDir) -> (Program, Program) {
     let link = folder.path().join("board");
     let link = link.to_str().expect("a name");
     let mut board = Program::start(&["board", "--finger", "2", "--patient", "500", "--link", link]);
@@ -57,7 +57,28 @@ fn turned_encoders_and_loaded_gauges_are_shown() {
     let port = format!("[hand]\nwatchdog_ms = 1000\n[finger]\nport = \"simulated\"\n[finger.2]\nport = \"{link}\"\n");
     std::fs::write(&file, port).expect("written");
     let file = file.to_str().expect("a name");
-    let mut sensors = Program::start(&["sensors", "--config", file, "--finger", "2", "--json"]);
+    let sensors = Program::start(&["sensors", "--config", file, "--finger", "2", "--json"]);
+    (board, sensors)
+}
+
+#[test]
+fn a_fault_ends_the_readings() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut board, mut sensors) = board_and_sensors(&folder);
+    sensors.reading();
+    writeln!(board.input, "unplug").expect("an order");
+    // The lines until the fault. The pipe ends with the program.
+    while !sensors.line().is_empty() {}
+    assert_eq!(sensors.process.wait().expect("ended").code(), Some(1));
+    let mut said = String::new();
+    sensors.process.stderr.take().expect("a pipe").read_to_string(&mut said).expect("text");
+    assert!(said.contains("finger 2: "), "{said}");
+}
+
+#[test]
+fn turned_encoders_and_loaded_gauges_are_shown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut board, mut sensors) = board_and_sensors(&folder);
     let first = sensors.reading();
     assert_eq!((four(&first, "turns"), four(&first, "tensions")), ([0.0; 4], [0.0; 4]));
 

@@ -59,7 +59,7 @@ impl Trouble {
                 [time] => Trouble::Line(LineFault::Stall, 1.0, nanoseconds(time)?),
                 _ => return Err("usage: stall MS".into()),
             },
-            "commands" => match Self::read(rest)? {
+            "commands" => match Self::read(if rest.first() == Some(&"commands") { &[] } else { rest })? {
                 Some(Trouble::Line(fault, probability, time)) => Trouble::LineToBoard(fault, probability, time),
                 _ => return Err("usage: commands drop, corrupt, delay, duplicate, reorder or stall ...".into()),
             },

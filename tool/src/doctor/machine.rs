@@ -85,20 +85,29 @@ fn throttling(runtime: &str, period: &str) -> Finding {
 fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) -> Finding {
     let subject = "real-time priority";
     let wanted = configuration.of_hand().map(|finger| finger.priority).max().unwrap_or(0);
-    let limit = limit.unwrap_or(0);
     if wanted == 0 {
         let advice = "The servos have the jitter of ordinary threads: set finger.priority to 80";
         return Finding::new(Rating::Warning, subject, "finger.priority is 0", advice);
     }
-    if capable || limit >= wanted.into() {
-        let by = if capable { "CAP_SYS_NICE".into() } else { format!("the rtprio limit {limit}") };
+    // No limit means unlimited.
+    if capable || limit.is_none_or(|limit| limit >= wanted.into()) {
+        let by = match limit {
+            _ if capable => "CAP_SYS_NICE".into(),
+            Some(limit) => format!("the rtprio limit {limit}"),
+            None => "the rtprio limit: unlimited".into(),
+        };
         return Finding::good(subject, format!("{wanted} is permitted by {by}"));
     }
     let advice = format!(
         "The servos would have the jitter of ordinary threads. Write `@realtime - rtprio 90` into {LIMITS}, join the \
          group (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
     );
-    lacking(configuration, subject, format!("{wanted} is configured, but the rtprio limit is {limit}"), advice)
+    lacking(
+        configuration,
+        subject,
+        format!("{wanted} is configured, but the rtprio limit is {}", limit.unwrap_or(0)),
+        advice,
+    )
 }
 
 fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> Finding {
@@ -165,9 +174,12 @@ fn governor(online: &[usize], read: impl Fn(usize) -> Option<String>) -> Finding
     }
 }
 
-/// The soft limit in a line of /proc/self/limits; `None` if it is unlimited or the line is missing.
+/// The soft limit in a line of /proc/self/limits; `None` if it is unlimited, and 0 if the line is missing.
 fn limit(limits: &str, name: &str) -> Option<u64> {
-    field(limits, name).split_whitespace().next()?.parse().ok()
+    match field(limits, name).split_whitespace().next() {
+        Some("unlimited") => None,
+        number => Some(number.and_then(|number| number.parse().ok()).unwrap_or(0)),
+    }
 }
 
 /// Whether /proc/self/status lists an effective capability.
@@ -190,110 +202,4 @@ fn listed(list: &str) -> Vec<usize> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::fs;
-    use sun2xp::model::configuration::RealTime;
-    use tempfile::TempDir;
-
-    /// Files of a machine that passes every check.
-    const GOOD: [(&str, &str); 9] = [
-        ("proc/version", "Linux version 6.1.0-18-rt-amd64 (debian) #1 SMP PREEMPT_RT Debian 6.1.76-1\n"),
-        ("proc/sys/kernel/sched_rt_runtime_us", "950000\n"),
-        ("proc/sys/kernel/sched_rt_period_us", "1000000\n"),
-        (
-            "proc/self/limits",
-            "Limit  Soft Limit  Hard Limit  Units\nMax locked memory   unlimited  unlimited  bytes\nMax realtime \
-             priority  90  90\n",
-        ),
-        ("proc/self/status", "Name:\tx\nCapEff:\t0000000000000000\nCpus_allowed_list:\t0-3\n"),
-        ("sys/devices/system/cpu/isolated", "2-3\n"),
-        ("sys/devices/system/cpu/online", "0-3\n"),
-        ("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance\n"),
-        ("sys/devices/system/cpu/cpu3/cpufreq/scaling_governor", "performance\n"),
-    ];
-
-    /// The findings if one file of a good machine differs.
-    fn found(path: &str, text: &str, change: impl FnOnce(&mut Configuration)) -> Vec<Finding> {
-        let root = TempDir::new().expect("a folder");
-        for (file, text) in GOOD.into_iter().chain([(path, text)]) {
-            let file = root.path().join(file);
-            fs::create_dir_all(file.parent().expect("a folder")).expect("made");
-            fs::write(file, text).expect("written");
-        }
-        let mut configuration = Configuration::default();
-        configuration.fingers.iter_mut().for_each(|finger| finger.core = Some(2));
-        change(&mut configuration);
-        findings(&configuration, root.path())
-    }
-
-    #[test]
-    fn a_good_machine_is_good() {
-        let findings = found("proc/x", "", |_| {});
-        assert_eq!(findings.len(), 6);
-        assert!(findings.iter().all(|finding| finding.verdict == Rating::Good), "{findings:#?}");
-    }
-
-    #[test]
-    fn every_fault_is_found_alone_with_its_remedy() {
-        use Rating::{Failure, Warning};
-        let limits = |memory, priority| {
-            format!("Max locked memory  {memory}  {memory} bytes\nMax realtime priority  {priority}  0\n")
-        };
-        let status = |capabilities, cores| format!("CapEff:\t{capabilities}\nCpus_allowed_list:\t{cores}\n");
-        for (path, text, subject, verdict, remedy) in [
-            ("proc/version", "Linux version 6.1.0 #1 SMP PREEMPT_DYNAMIC".into(), "kernel", Warning, "linux-image-rt"),
-            ("proc/sys/kernel/sched_rt_runtime_us", "-1".into(), "real-time throttling", Warning, "950000"),
-            ("proc/sys/kernel/sched_rt_runtime_us", "0".into(), "real-time throttling", Failure, "950000"),
-            ("proc/sys/kernel/sched_rt_runtime_us", "200000".into(), "real-time throttling", Warning, "950000"),
-            ("proc/self/limits", limits("unlimited", "0"), "real-time priority", Warning, "rtprio 90"),
-            ("proc/self/limits", limits("65536", "90"), "locked memory", Warning, "memlock unlimited"),
-            ("proc/self/status", status("0", "0-1"), "cores", Warning, "finger.core"),
-            ("sys/devices/system/cpu/isolated", "3".into(), "cores", Warning, "isolcpus=2"),
-            (
-                "sys/devices/system/cpu/cpu3/cpufreq/scaling_governor",
-                "powersave".into(),
-                "frequency governor",
-                Warning,
-                "cpupower",
-            ),
-        ] {
-            let findings = found(path, &text, |_| {});
-            let bad: Vec<_> = findings.iter().filter(|finding| finding.verdict != Rating::Good).collect();
-            assert_eq!(bad.len(), 1, "{path} {text}: {findings:#?}");
-            assert_eq!((bad[0].subject.as_str(), bad[0].verdict), (subject, verdict), "{bad:?}");
-            assert!(bad[0].advice.contains(remedy), "{bad:?}");
-        }
-    }
-
-    #[test]
-    fn capabilities_replace_limits_and_enforcing_makes_failures() {
-        let none = "Max locked memory  0  0 bytes\nMax realtime priority  0  0\n";
-        let failures =
-            found("proc/self/limits", none, |configuration| configuration.hand.real_time = RealTime::Enforce);
-        assert_eq!(failures.iter().filter(|finding| finding.verdict == Rating::Failure).count(), 2, "{failures:#?}");
-
-        let (wanted, limits) = (Configuration::default(), Some(0));
-        assert_eq!(scheduling(&wanted, limits, true).verdict, Rating::Good);
-        assert_eq!(memory(&wanted, limits, true).verdict, Rating::Good);
-        let status = "CapEff:\t0000000000804000\n";
-        assert!(has(status, CAP_IPC_LOCK) && has(status, CAP_SYS_NICE) && !has(status, 0) && !has("", CAP_SYS_NICE));
-    }
-
-    #[test]
-    fn cores_are_reported_in_words() {
-        let found = |wanted: Option<usize>, isolated: &[usize]| {
-            let mut configuration = Configuration::default();
-            configuration.fingers.iter_mut().for_each(|finger| finger.core = wanted);
-            cores(&configuration, &[0, 1], isolated).found
-        };
-        assert!(found(None, &[]).ends_with("none, so the scheduler selects them; permitted: 0, 1; isolated: none"));
-        assert_eq!(found(Some(1), &[1]), "configured: 1; permitted: 0, 1; isolated: 1");
-    }
-
-    #[test]
-    fn lists_of_cores_are_read() {
-        assert_eq!(listed("0-2,5\n"), [0, 1, 2, 5]);
-        assert_eq!(listed("\n"), [0; 0]);
-    }
-}
+mod tests;

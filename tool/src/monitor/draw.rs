@@ -82,7 +82,7 @@ fn draw_hand(frame: &mut Frame, area: Rect, view: &View, palette: &Palette, hand
         }
         None => draw_fingers(frame, upper, view, palette, hand),
     }
-    faults::draw(frame, fault_area, palette, faults, view.scroll);
+    faults::draw(frame, fault_area, palette, faults, view);
     if lower.height == 0 {
         return;
     }

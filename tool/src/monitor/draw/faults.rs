@@ -2,6 +2,7 @@
 
 use super::palette::Palette;
 use crate::monitor::state::HandState;
+use crate::monitor::view::View;
 use crate::monitor::words::wrap;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -42,15 +43,17 @@ pub fn lines(palette: &Palette, hand: &HandState, width: usize) -> Vec<Line<'sta
     lines
 }
 
-/// Draws the lines. If there is no room for all of them, the keys up and down scroll them, and the last line says so.
-pub fn draw(frame: &mut Frame, area: Rect, palette: &Palette, mut lines: Vec<Line<'static>>, scroll: usize) {
+/// Draws the lines. If there is no room for all of them, the view's keys scroll them, and the last line names the keys.
+pub fn draw(frame: &mut Frame, area: Rect, palette: &Palette, mut lines: Vec<Line<'static>>, view: &View) {
     let room = usize::from(area.height);
     if lines.len() > room && room > 0 {
         let hidden = lines.len() - (room - 1);
-        let scroll = scroll.min(hidden);
+        let scroll = view.scroll.min(hidden);
         lines.drain(..scroll);
         lines.truncate(room - 1);
-        let text = format!("   {} more lines above, {} below: up and down keys", scroll, hidden - scroll);
+        // In jog the arrows move the hand.
+        let keys = if view.jog.is_some() { "keys { and }" } else { "up and down keys" };
+        let text = format!("   {} more lines above, {} below: {keys}", scroll, hidden - scroll);
         lines.push(Line::styled(text, palette.warning));
     }
     frame.render_widget(Paragraph::new(lines), area);

@@ -27,6 +27,7 @@ const JOG_KEYS: &[(&str, &str)] = &[
     ("o c", "open or close the hand"),
     ("r", "recover the finger"),
     ("d p s", "detail, freeze the picture, snapshot"),
+    ("{ }", "scroll long fault texts"),
     ("q", "close the hand and quit"),
 ];
 

@@ -166,6 +166,11 @@ fn a_fault_is_shown_with_its_whole_remedy() {
         seen += &picture(&attached.view, (80, 24));
     }
     assert_contains(&seen, &["onebegin", "oneend", "twobegin", "twoend", "threebegin", "threeend", "lines above"]);
+    assert_contains(&seen, &["up and down keys"]);
+    // The arrow keys of jog move the hand.
+    attached.view.jog = Some(JogPanel::new(true));
+    let with_jog = picture(&attached.view, (80, 24));
+    assert!(with_jog.contains("keys { and }") && !with_jog.contains("up and down keys"), "{with_jog}");
 }
 
 #[test]
