@@ -13,8 +13,8 @@ const MESSAGE_MS = 6000;
 /// The functions that end the presses of the held buttons.
 const holds = new Set();
 
-/// Releases all held buttons. A button that leaves the page, or whose page loses the focus, may get no event for the end
-/// of the press.
+/// Releases all held buttons. A button that leaves the page, or whose page loses the focus, may get no event for the
+/// end of the press.
 function releaseAll() {
   for (const stop of holds) stop();
 }

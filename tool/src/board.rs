@@ -68,9 +68,9 @@ pub struct Arguments {
     /// An order to carry out at the start. May be repeated.
     #[arg(long = "order", value_name = "ORDER")]
     orders: Vec<String>,
-    /// Make a symbolic link to the port, and remove it at `quit` or at an error. An existing symbolic link is replaced. The board's
-    /// unique number is derived from this path, so a board that is restarted with the same link is the same board for
-    /// its host.
+    /// Make a symbolic link to the port, and remove it at `quit` or at an error. An existing symbolic link is replaced.
+    /// The board's unique number is derived from this path, so a board that is restarted with the same link is the same
+    /// board for its host.
     #[arg(long, value_name = "PATH")]
     link: Option<PathBuf>,
     /// SCHED_FIFO priority of the board, where permitted. 0 means not real-time.

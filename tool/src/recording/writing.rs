@@ -59,8 +59,8 @@ struct Lost {
 }
 
 impl<W: Write + Seek> RecordingWriter<W> {
-    /// Begins a recording of the hand with this description. Messages before the first cycle get the time `begin`, ns of
-    /// the monotonic clock.
+    /// Begins a recording of the hand with this description. Messages before the first cycle get the time `begin`, ns
+    /// of the monotonic clock.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
