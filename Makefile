@@ -6,7 +6,7 @@
 #   make install-remote      installs them too, after make install
 #   make uninstall           removes exactly the files that were installed
 #   make deb                 builds a Debian package, target/dist/sun2xp_VERSION_ARCHITECTURE.deb
-#   make wheel               builds the Python wheel in target/wheels, the same bytes from the same source
+#   make wheel               builds the Python wheel in target/wheels; the same source gives the same bytes
 #   make check-installed     installs into an empty folder, and uses the result with every compiler and build system
 #   make clean               removes what was built
 #

@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 /// release.
 const ABI: u32 = 0;
 
-/// The smallest crate that can be linked to a shared library.
+/// The smallest crate that rustc can build into a shared library.
 const EMPTY: &str = "#![no_std]\n#[panic_handler]\nfn panicked(_: &core::panic::PanicInfo) -> ! {\n    loop {}\n}\n";
 
 fn main() {

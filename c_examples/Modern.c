@@ -1,4 +1,4 @@
-/* Modern.c - a planner in C17: double arrays, every result looked at, a smooth reach instead of a jump. */
+/* Modern.c - a planner in C17: double arrays, every result checked, a smooth reach instead of a jump. */
 
 #define _POSIX_C_SOURCE 200809L
 

@@ -1,8 +1,8 @@
 /// sun2xp.hpp - the calls of sun2xp.h for C++17: handles that close themselves, exceptions, arrays and durations.
 ///
-/// This header has no library of its own: everything is inline, over the C interface. Each function is the call of
-/// sun2xp.h with the same name, which has the manual. A refused call throws sun2xp::error with the number and the text
-/// of the refusal. Structs are those of sun2xp.h, and their size is set here.
+/// This header has no library of its own: everything is inline, over the C interface. Most functions make the call of
+/// sun2xp.h with the same name; the manual of the call is in sun2xp.h. A refused call throws sun2xp::error with the
+/// number and the text of the refusal. Structs are those of sun2xp.h. This header sets their member size.
 ///
 ///     sun2xp::hand hand = sun2xp::hand::named("nominal");
 ///     hand.finger(1).send_position({0.0, 0.5, 0.8});
@@ -33,7 +33,7 @@ using matrix3 = std::array<std::array<double, 3>, 3>;
 /// A duration in seconds. Every duration of std::chrono converts to it.
 using seconds = std::chrono::duration<double>;
 
-/// All fingers, where a function says so.
+/// The number that stands for all fingers. Only functions that say so accept it.
 inline constexpr int all_fingers = SUN2XP_ALL_FINGERS;
 
 /// The condition of a wait.
@@ -74,7 +74,7 @@ inline int checked(int result)
     throw error(-result, refusal.system_errno, refusal.call, refusal.text, refusal.remedy);
 }
 
-/// Fills a struct by a call.
+/// Returns a struct that a call has filled.
 template <class Struct, class Call> Struct filled(Call call)
 {
     Struct result = {};
@@ -201,7 +201,7 @@ public:
         return position;
     }
 
-    /// Waits. Returns false if the time is over. Also for all_fingers.
+    /// Waits until the condition holds. Returns false if it does not hold within the time. Also for all_fingers.
     bool wait(until condition, seconds longest)
     {
         const int result = sun2xp_wait(hand_, number_, static_cast<int>(condition), longest.count());
@@ -310,14 +310,14 @@ public:
         return event([this](struct sun2xp_event *to) { return sun2xp_next_event(hand_, to); });
     }
 
-    /// Waits for an event. Returns none if there was none within the time.
+    /// Waits for an event. Returns std::nullopt if no event occurs within the time.
     std::optional<struct sun2xp_event> wait_event(seconds longest)
     {
         const auto take = [&](struct sun2xp_event *to) { return sun2xp_wait_event(hand_, to, longest.count()); };
         return event(take);
     }
 
-    /// Calls a function with each event. An empty function ends that.
+    /// Calls a function with each event. An empty function ends these calls.
     void on_event(event_callback callback)
     {
         std::shared_ptr<listener> next;

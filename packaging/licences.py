@@ -30,12 +30,13 @@ REMOTE_FILE = "third-party-licences-remote.txt"
 
 
 def contained(metadata, owners):
-    """Returns the crates that are linked to packages, without crates that only run during the build."""
+    """Returns the crates that are linked into these packages, without crates that only run during the build."""
     # The metadata has the crates of all features; the tree has those of the enabled ones.
     command = ["cargo", "tree", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}"]
     command += [argument for owner in owners for argument in ("--package", owner)] + ["--target", TARGET]
     lines = subprocess.check_output(command, cwd=ROOT, text=True).splitlines()
-    # The packages of the workspace are not third-party. A crate that the workspace replaces by its own copy is.
+    # The packages of the workspace are not third-party. A crate that the workspace replaces by its own copy is
+    # third-party.
     linked = {tuple(line.split()[:2]) for line in lines if line and not line.startswith("sun2xp")}
     found = [package for package in metadata["packages"] if (package["name"], "v" + package["version"]) in linked]
     return sorted(found, key=lambda package: (package["name"], package["version"]))
@@ -45,7 +46,7 @@ def files(package):
     """Returns the files with licences in the sources of a crate."""
     folder = pathlib.Path(package["manifest_path"]).parent
     found = sorted(file for file in folder.iterdir() if file.is_file() and file.name.upper().startswith(NAMES))
-    # Of several licences that a user may choose from, this is the shortest.
+    # If a user may choose from several licences, the text of the MIT licence is the shortest.
     mit = [file for file in found if "MIT" in file.name.upper()]
     return mit if mit and "MIT" in (package["license"] or "") and "AND" not in package["license"] else found
 

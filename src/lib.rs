@@ -115,7 +115,7 @@ pub mod io {
     pub use crate::board::{FingerIo, HandIo, IoCommand, IoFaults, IoProperties, IoSample, IoTerms};
 }
 
-/// What the kinematics of a finger report: joint torques, limits, and its pose in the palm.
+/// The results of a finger's kinematics: joint torques, limits, and the pose of the finger in the palm.
 pub mod kinematics {
     pub use crate::hand::{FingerLimits, JointTorques, PalmPose};
 }

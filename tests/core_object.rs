@@ -99,7 +99,8 @@ fn friction_holds_below_its_angle_and_yields_above() {
     // The friction of 0.6 holds up to 31 degrees.
     let held = slides_on_three_tips(29.0);
     assert!(held.norm() < 1e-7, "{held}");
-    // Above, the box slides with g (sin - 0.6 cos), here 0.6 m/s^2. Between 0.1 and 0.2 s that is 9.1 mm.
+    // Above this angle, the box slides with the acceleration g (sin - 0.6 cos), here 0.6 m/s^2. Between 0.1 and 0.2 s
+    // it slides by 9.1 mm.
     let slid = slides_on_three_tips(34.0);
     let acceleration = 9.81 * (34f64.to_radians().sin() - 0.6 * 34f64.to_radians().cos());
     let expected = acceleration * 0.015;

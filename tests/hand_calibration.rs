@@ -99,7 +99,7 @@ fn fingers_are_zeroed_against_their_stops_and_identified() {
     let mut configuration = read_default();
     configuration.hand.rate = 500.0;
     for finger in &mut configuration.fingers {
-        // With a short way and little tension, the calibration is quick.
+        // With a small range of motion and little tension, the calibration is quick.
         finger.zeroing.method = Some(sun2xp::model::configuration::ZeroingMethod::Stops);
         finger.zeroing.speed = 1.5;
         finger.joints.minimum_degrees = [-30.0, -10.0, 30.0];

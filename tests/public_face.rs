@@ -1,5 +1,5 @@
-//! The public face of the crate: the names without the feature `internals`, which are listed in docs/abi/rust-names,
-//! and an example that runs. To renew the list: SUN2XP_WRITE_NAMES=1 cargo test --test public_face
+//! The public interface of the crate: the names without the feature `internals`, which are listed in
+//! docs/abi/rust-names, and an example that runs. To renew the list: SUN2XP_WRITE_NAMES=1 cargo test --test public_face
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -31,8 +31,8 @@ const CAP_SYS_NICE: libc::c_ulong = 23;
 
 type Right = (libc::__rlimit_resource_t, libc::c_ulong);
 
-/// Runs `opens.c`, which opens and closes the hand, without a right. Returns exit status, standard output and standard
-/// error.
+/// Runs `opens.c`, which opens and closes the hand, without this right. Returns exit status, standard output and
+/// standard error.
 fn opened_without(right: Right, configuration: &str) -> (Option<i32>, String, String) {
     run_without(right, configuration, "opens.c")
 }

@@ -139,7 +139,7 @@ use_result:
     };
 unclaimed:
     atomic {
-        /* The claim belongs to the hand of its beginning. */
+        /* The claim belongs to the hand with which the call began. */
         if
         :: mine == generation -> claimed[f] = false
         :: else

@@ -4,7 +4,7 @@
  * A loop that polls a condition is one statement that waits for the condition, so a call that polls without end is an
  * invalid end state. A wait with a time limit may end at any time, so it never blocks. A servo waits here until it
  * has something to do, instead of beginning a cycle every period. Faults and calls are limited in number. So every run
- * ends, and it must end with every process at its end.
+ * ends, and every process must have terminated by then.
  *
  * The name of a scene (-DSHUTDOWN, ...) selects the threads of the planner: see `init`. -DPORTS=1 puts both fingers on
  * one port and one servo thread. -DMUTANT_... introduces a defect that must be found.

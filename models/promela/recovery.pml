@@ -50,7 +50,7 @@ proctype Recoverer(byte f)
           }
        :: atomic { !have_link[p] && sent && !restored[f] -> repairs[f]++; unlock(repair[p]); break }
        :: atomic {
-              /* The handshake beside other fingers needs a finger at rest. */
+              /* If other fingers of the port still run, the handshake requires this finger to be at rest. */
               !have_link[p] && beside_others && !sent && AT_REST(f) && link_held[p] ->
               restored[f] = true;
               sent = true;

@@ -9,7 +9,7 @@ init {
 #endif
     atomic {
 #ifdef SHUTDOWN
-        /* Shutdown while the hand opens, twice at once, beside sun2xp_stop_all and a fault. */
+        /* Two threads shut down while the hand opens, during sun2xp_stop_all and a fault. */
         callers = 4;
         run Opener(); run Closer(); run Closer(); run Stopper();
         broken[0] = true
@@ -43,7 +43,7 @@ init {
         broken[0] = true
 #endif
 #ifdef CALLS
-        /* Shutdown beside calls that hold several locks. */
+        /* Shutdown during calls that hold several locks. */
         callers = 4;
         run Commander(0); run Commander(0); run Grouper(0); run Closer()
 #endif

@@ -1,4 +1,4 @@
-/* The threads of the library beside the servos. */
+/* The threads of the library other than the servos. */
 
 /* `write` in src/hand/dispatcher/collecting.rs: takes as long as a disk takes. */
 proctype Writer()

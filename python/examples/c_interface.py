@@ -41,7 +41,7 @@ def main(header: str, library: str) -> None:
     check(sun2xp.sun2xp_tip(hand, 1, tip))
     print("tip", *(f"{place:.2f}" for place in tip.position), "cm")
     if sun2xp.sun2xp_send_position(hand, 7, [0, 0, 0]) != -sun2xp.SUN2XP_ERROR_ARGUMENT:
-        raise RuntimeError("there is a finger 7")
+        raise RuntimeError("the hand accepted a command for finger 7")
     print(ffi.string(sun2xp.sun2xp_error_text(hand)).decode())
     check(sun2xp.sun2xp_close(hand))
 

@@ -41,7 +41,7 @@ def main(header: str, library: str) -> None:
     check(hand.GetPosD(1, joints))
     print("joints", *(f"{joint:.3f}" for joint in joints))
     if hand.SendPosD(7, joints) != -1:
-        raise RuntimeError("a finger 7")
+        raise RuntimeError("the hand accepted a command for finger 7")
     print(ffi.string(hand.HandError()).decode())
     check(hand.CloseHand())
 

@@ -35,8 +35,8 @@ struct Contents {
     complete: bool,
 }
 
-/// The description as JSON; for each finger the fields and the bytes of its cycles; the marks; whether the file has its
-/// end.
+/// The description as JSON; for each finger the fields and the bytes of its cycles; the marks; whether the file is
+/// complete.
 type Read<'py> = (String, BTreeMap<i32, (Vec<Field>, Bound<'py, PyByteArray>)>, Vec<MarkTuple>, bool);
 
 /// Reads a recording or a black box.

@@ -30,8 +30,8 @@ impl Hand {
         until(py, || Ok(self.0.with(|hand| waiting.poll(hand))?.then_some(())))
     }
 
-    /// Makes a faulted finger a spring again, which holds its present pose at its initial stiffness. The cause of the
-    /// fault must be removed first. Does nothing if the finger is not faulted.
+    /// Makes a faulted finger a spring again. The finger holds its present pose at its initial stiffness. The cause of
+    /// the fault must be removed first. Does nothing if the finger is not faulted.
     fn recover(&self, py: Python<'_>, finger: i32) -> PyResult<()> {
         // After a stop this waits until the servo has carried it out.
         let recovering = self.slow(py, |hand| Recovering::begin(hand, finger))?;

@@ -8,7 +8,7 @@ use std::time::Duration;
 use sun2xp::HandError;
 use sun2xp::realtime::SignalsBlocked;
 
-/// Longest time between two looks at the signals that Python has received.
+/// Longest time between two checks for signals that Python has received.
 pub const SLICE: Duration = Duration::from_millis(20);
 
 /// Stack of a thread that makes a call. Opening a hand needs more than the 256 KiB of the library's threads.

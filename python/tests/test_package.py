@@ -1,4 +1,4 @@
-"""The face of the package: types, stubs and documentation."""
+"""The public interface of the package: types, stubs and documentation."""
 
 import inspect
 import operator

@@ -78,7 +78,7 @@ def _columns(given: Sequence[str], prefix: str, fingers: Sequence[int]) -> Dict[
     every = [name for joints in known.values() for name in joints]
     unknown = [name for name in given if name not in every]
     if unknown or not given:
-        raise Unusable(f"there is no joint {', '.join(unknown) or 'named'}: the joints are {', '.join(every)}")
+        raise Unusable(f"there is no joint {', '.join(unknown) or 'in joint_names'}: the joints are {', '.join(every)}")
     if len(set(given)) != len(given):
         raise Unusable("a joint is named twice")
     columns = {}

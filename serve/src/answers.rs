@@ -25,7 +25,7 @@ const WAITING: usize = 256;
 /// Capacity of the queue of the other queries, which have some hundred bytes each.
 const OTHERS: usize = 16_384;
 
-/// Interval at which a thread looks whether the server ends.
+/// Interval at which a thread checks whether the server ends.
 const INTERVAL: Duration = Duration::from_millis(50);
 
 /// A message that is to be sent.

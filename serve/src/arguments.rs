@@ -101,7 +101,8 @@ fn ending() -> Vec<i32> {
     [SIGINT, SIGTERM].into_iter().chain((!ignores(SIGHUP)).then_some(SIGHUP)).collect()
 }
 
-/// Reads the names of an option. The messages of clap would show control characters as they are.
+/// Reads the names that were given with an option. clap does not read them itself, because its messages would show
+/// control characters unescaped.
 fn names(option: &'static str, texts: &[String]) -> Result<Vec<ClientName>, ServeError> {
     let name = |text: &String| {
         client_name(text).map_err(|reason| ServeError::Argument { option, text: Shown(text).to_string(), reason })

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use sun2xp_remote_protocol::ClientName;
 use time::{Duration, OffsetDateTime};
 
-/// The names of the files of the authority.
+/// Name of the files of the authority, without the extension.
 const AUTHORITY: &str = "ca";
 
 /// How long the authority is valid.
@@ -25,7 +25,7 @@ const AUTHORITY_VALIDITY: Duration = Duration::days(3650);
 /// How long other certificates are valid.
 const VALIDITY: Duration = Duration::days(730);
 
-/// Difference of the clocks of two machines that does not matter.
+/// Largest difference between the clocks of two machines with which a new certificate is accepted at once.
 const CLOCK_DIFFERENCE: Duration = Duration::days(1);
 
 /// The certificates to make.
@@ -124,7 +124,8 @@ fn issuer(folder: &Path, user: u32, made: &mut Vec<PathBuf>) -> Result<Issuer<'s
     params.is_ca = IsCa::Ca(BasicConstraints::Constrained(0));
     params.key_usages = vec![KeyUsagePurpose::KeyCertSign, KeyUsagePurpose::CrlSign];
     if is_there(&certificate) || is_there(&key) {
-        // Certificates name their authority by its name and its key, so the same parameters are the same authority.
+        // A certificate identifies its authority by the name and the key of the authority. So the same parameters and
+        // the stored key give the same authority.
         return Ok(Issuer::new(params, authority::read(&certificate, &key, user)?));
     }
     let pair = KeyPair::generate().map_err(|error| ServeError::certificate(&key, error))?;

@@ -1,6 +1,6 @@
 //! The desk of the hand. Everything that clients want passes through it, one message at a time. It knows the owner,
-//! decides which Targets are taken, and counts how long the owner may still be silent. It sends to the mailboxes of the
-//! fingers and never waits.
+//! decides which Targets are taken, and keeps track of how long the owner may still be silent. It sends to the
+//! mailboxes of the fingers and never waits.
 
 use crate::acceptance::{Acceptance, Fresh, Rejection};
 use crate::fingers::Fingers;
@@ -76,7 +76,7 @@ impl Desk {
         &self.counts
     }
 
-    /// Returns the number of clients that have asked for anything.
+    /// Returns the number of clients that have sent a permitted Request.
     #[must_use]
     pub fn clients(&self) -> u32 {
         self.clients.len() as u32
@@ -94,7 +94,7 @@ impl Desk {
         self.fingers.progress()
     }
 
-    /// Notes that this client has asked for something.
+    /// Notes that this client has sent a permitted Request.
     pub fn note_client(&mut self, client: &ClientName) {
         if !self.clients.contains(client) {
             self.clients.insert(client.clone());
@@ -121,7 +121,7 @@ impl Desk {
                 return None;
             }
         };
-        // The owner lives, also if the hand refuses what it sends.
+        // A Target shows that the owner is alive, even if the hand refuses it.
         let silence = self.hear(fresh)?;
         match self.fingers.apply(&target.parts, &silence, now) {
             Ok(()) => {
@@ -137,7 +137,7 @@ impl Desk {
         }
     }
 
-    /// Notes that the owner lives. Returns none while an acquire recovers fingers.
+    /// Notes that the owner is alive. Returns none while an acquire recovers fingers.
     fn hear(&mut self, fresh: Fresh) -> Option<Silence> {
         let silence = self.silence.as_mut()?;
         silence.renew(fresh.seen, fresh.validity);

@@ -1,5 +1,5 @@
 //! Sends what the owner wants to the fingers of the hand: new parts of Targets, the rest of the way to a destination
-//! that is far ahead of a finger, and the set points of fingers that were caught and whose owner lives again.
+//! that is far ahead of a finger, and, when the owner is heard again, the set points of fingers that were caught.
 
 mod leading;
 mod preparing;
@@ -167,7 +167,7 @@ impl Fingers {
                     // The finger follows the end of the path as a set point that it has reached.
                     (self.goals[index].destination, self.goals[index].whole) = (Destination::Joints(end), true);
                 } else if self.admitted(number, &goal, &report, &report.reference.joints) < 1.0 {
-                    // The finger lags behind its path. It continues to the end of the path as to a single pose.
+                    // The finger lags behind its path. Instead it moves straight to the last pose.
                     (self.goals[index].destination, self.goals[index].whole) = (Destination::Joints(end), false);
                     self.send(number, &report, silence.of_commanded(), false);
                 }

@@ -73,8 +73,8 @@ fn config(settings: &Settings, access: &str, largest: u16) -> Result<Config, Ser
         ("scouting/delay", "0".into()),
         ("scouting/multicast/enabled", "false".into()),
         ("scouting/gossip/enabled", "false".into()),
-        // When zenoh receives a declaration, its functions call themselves once for each part of the key. They run
-        // before access control. So a long key with many parts exhausts the stack. Two limits bound the length of a
+        // When zenoh receives a declaration, its functions recurse once for each part of the key. They run before
+        // access control. So a long key with many parts exhausts the stack. Two limits bound the length of a
         // key: the size of a batch, which the two sides agree on when they connect, and the size of a message of
         // several batches.
         ("transport/link/tx/batch_size", largest.to_string()),

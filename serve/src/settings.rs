@@ -111,8 +111,8 @@ pub struct Overrides {
 }
 
 impl Settings {
-    /// Reads the table `[serve]` of a file; without a file, all values are the default values. Relative paths of TLS
-    /// begin in the folder of the file.
+    /// Reads the table `[serve]` of a file; without a file, all values are the default values. Relative paths of
+    /// the files of TLS are relative to the folder of the configuration file.
     ///
     /// # Errors
     /// Returns an error, with file and line, if the file cannot be read or the table cannot be used. Returns an error

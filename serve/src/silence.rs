@@ -1,5 +1,5 @@
 //! The dead man's handle, as the server counts it: how long the owner may still be silent. The servos count the same
-//! times themselves, so a server that hangs delays nothing.
+//! times themselves, so they catch the fingers in time even if the server hangs.
 
 use std::time::Duration;
 use sun2xp::motion::Validity;

@@ -29,7 +29,9 @@ fn a_stiffness_that_comes_back_pulls_with_the_force_of_the_lead_only() {
     let mut rig = Rig::new("lead_force = 1.0");
     rig.acquire("alice");
     let stiff = Part { stiffness: Some(STIFF), ..kept(1, 1) };
-    rig.wait_until("stiffness", std::slice::from_ref(&stiff), |rig| rig.report(1).set_point.stiffness[(0, 0)] == STIFF[0][0]);
+    rig.wait_until("stiffness", std::slice::from_ref(&stiff), |rig| {
+        rig.report(1).set_point.stiffness[(0, 0)] == STIFF[0][0]
+    });
     rig.wait_in_silence("catch", |rig| rig.report(1).expired);
     let caught = rig.report(1).set_point.joints;
     rig.hand.push_simulated(1, [2.0, 2.0, 0.0]).expect("pushed");

@@ -15,8 +15,8 @@ fn report(rig: &Rig, finger: i32) -> FingerReport {
     rig.hand().report(finger).expect("a report")
 }
 
-/// Moves every finger to three places, and waits until it has settled. Each joint must then be `near` its set point,
-/// rad. The tips touch nothing.
+/// Moves every finger to three places, and waits until it has settled. Each joint must then be within
+/// `near`, rad, of its set point. The tips touch nothing.
 fn follows(name: NamedHand, near: f64) {
     let rig = Rig::named(name, "end_ms = 20000");
     let (hand, client) = ("hand".parse().expect("a name"), "alice".parse().expect("a name"));
@@ -36,7 +36,7 @@ fn follows(name: NamedHand, near: f64) {
 }
 
 /// Moves finger 1 and falls silent on its way. Until its end state, the finger must hold the place where it was caught.
-/// Each joint must stay as `near` as this, rad.
+/// `near` is the largest permitted motion of a joint meanwhile, rad.
 fn is_caught(name: NamedHand, near: f64) {
     let rig = Rig::named(name, "");
     let mut alice = rig.connect("alice");

@@ -15,7 +15,7 @@ use sun2xp::realtime::now;
 use sun2xp::{FaultKind, Stage};
 use sun2xp_remote_protocol::{Action, Code, Event, Place};
 
-/// Longest time from the last life sign of a client until its fingers are caught, cycles.
+/// Longest time from the moment at which a client falls silent until its fingers are caught, cycles.
 const CAUGHT: u64 = 120;
 
 /// Longest time until the fingers are in their end state, cycles.

@@ -70,7 +70,8 @@ pub fn exchange_microseconds(baud: u32, fingers: usize, more: usize) -> f64 {
 }
 
 /// Returns the time by which a TactileRequest prolongs an exchange, us: the time of its answer, which follows the
-/// Replies. The request follows the Commands. It is on the line at the same time as the first Reply, which is longer.
+/// Replies. The request itself adds no time. It follows the Commands, and is sent while the first Reply, which is
+/// longer, is received.
 pub fn tactile_microseconds(baud: u32) -> f64 {
     Kind::TactileEvent.wire_length() as f64 * BITS_PER_BYTE / f64::from(baud) * 1e6
 }
@@ -137,7 +138,8 @@ mod tests {
         assert!(text.starts_with("3 fingers at 1000 Hz do not fit") && text.contains(" 3 replies of "), "{text}");
         let one = capacity(115_200, 1, 1000.0).unwrap_err().to_string();
         assert!(one.starts_with("1 finger at 1000 Hz does not fit") && one.contains(" 1 reply of "), "{one}");
-        // Such a rate is not permitted, and there is no other finger.
+        // The text does not suggest a lower rate, because the rate that this line can carry is below the permitted
+        // rates. It does not suggest fewer fingers, because no other finger shares the port.
         assert!(!one.contains("hand.rate") && !one.contains("fewer fingers"), "{one}");
         assert!(capacity(2_000_000, 3, 1000.0).is_ok());
         assert!(capacity(1_000_000, 3, refusal.fastest_rate).is_ok());

@@ -125,7 +125,7 @@ impl<T: Transport> Link<T> {
     }
 
     /// Sends the Commands of all fingers on the port, at most 15, in one write. Bytes that the port does not accept at
-    /// once are lost and counted. The caller notices the loss by the missing Reply.
+    /// once are lost and counted. The caller detects the loss, because no Reply arrives.
     pub fn send(&mut self, commands: &[OutgoingCommand]) -> Result<(), LinkError> {
         self.send_with(commands, &[])
     }
@@ -197,7 +197,8 @@ impl<T: Transport> Link<T> {
             match frame {
                 Frame::Reply(reply) => return Ok(Some(Arrival::Reply(Received { address, sequence, reply }))),
                 Frame::TactileEvent(event) => return Ok(Some(Arrival::Tactile { address, sequence, event })),
-                // A refused handshake frame is no error here. Its refusal came too late, and is only counted.
+                // A refused handshake frame is no error here. The refusal answers a relayed request, or it came too
+                // late and is only counted.
                 Frame::Refused(refused) if refused.request == Kind::Command as u8 => {
                     return Err(LinkError::Refused { address, refused });
                 }
@@ -211,7 +212,7 @@ impl<T: Transport> Link<T> {
         Ok(None)
     }
 
-    /// Sends the bytes of a relayed request behind the Commands of this period.
+    /// Stores the bytes of a relayed request. The next [`send`](Self::send) sends them after its Commands.
     pub fn relay(&mut self, request: &[u8]) {
         self.relayed.set(request);
     }

@@ -69,7 +69,7 @@ pub enum LinkError {
     #[error("the board cannot do what is configured: {0}")]
     Terms(#[from] TermsError),
     /// The board refused a request.
-    #[error("the board refuses (finger address {address}): {refused}")]
+    #[error("the board refuses the request (finger address {address}): {refused}")]
     Refused {
         /// The finger's address.
         address: u8,

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// The pause after a driver has announced bytes but has none.
+/// The pause after a driver announced bytes but had none to read.
 const NOTHING_TO_READ: Duration = Duration::from_micros(100);
 
 /// An open serial port: exclusive, raw, eight data bits, no parity, one stop bit, no flow control.

@@ -15,7 +15,7 @@ pub enum Obstacle {
     Slack {
         /// The tendon's number, 1 to 4.
         tendon: u8,
-        /// Tension by its gauge, N.
+        /// Tension that its gauge shows, N.
         newton: f64,
     },
     /// A motor does not follow its command.
@@ -101,7 +101,7 @@ pub enum Obstacle {
         /// Distance, degrees.
         degrees: f64,
     },
-    /// The range of a joint between its stops is smaller than configured.
+    /// The range of a joint between its stops differs from the configured range.
     #[error(
         "joint {joint} moves {degrees:.1} degrees between its stops, but {expected:.1} are configured: something \
          blocks it, zeroing.torque is too small for its friction, or zeroing.lower_stop_degrees, upper_stop_degrees or \
@@ -188,7 +188,7 @@ pub enum Obstacle {
     /// A motor pulls another tendon.
     #[error(
         "tendons {first} and {second} are swapped: motor {first} pulls tendon {second}, and motor {second} pulls \
-         tendon {first}. Lead each tendon to its motor, or swap both motors with their encoders"
+         tendon {first}. Route each tendon to its motor, or swap both motors with their encoders"
     )]
     SwappedTendons {
         /// The tendon's number, 1 to 4.

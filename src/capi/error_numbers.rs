@@ -43,7 +43,7 @@ pub const SUN2XP_ERROR_SYSTEM: c_int = 12;
 /// There is not enough memory.
 pub const SUN2XP_ERROR_NO_MEMORY: c_int = 13;
 
-/// The time limit is over.
+/// The time limit has expired.
 pub const SUN2XP_ERROR_TIMED_OUT: c_int = 14;
 
 /// A calibration failed.

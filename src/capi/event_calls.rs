@@ -27,7 +27,7 @@ use std::time::{Duration, Instant};
 /// Takes the earliest event of all fingers since sun2xp_open that no call has taken yet. Events come in the
 /// order of their times, except if a servo is late by more than two periods. Each finger keeps its newest
 /// 4096 events. If they are not taken in time, the oldest are lost, and event->lost counts them. A callback
-/// of sun2xp_on_event takes nothing away from this call.
+/// of sun2xp_on_event takes no events: this call returns them too.
 ///
 /// Returns 1 if there was an event, 0 if there was none, or a negative number with
 ///   EPERM    forked child
@@ -115,8 +115,8 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
 /// The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 ///
 /// When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
-/// called again. If a callback makes one of these calls, the call does not wait. A previous callback that
-/// runs then is not called again after it has returned.
+/// called again. If a callback makes one of these calls, the call does not wait. If the previous
+/// callback is then still running, it is not called again after it has returned.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -153,8 +153,8 @@ pub extern "C" fn sun2xp_on_event(
         });
         Ok(move || {
             let events = hand_table::events(hand)?;
-            // The hand stays open until the callback is replaced. Otherwise this call could replace the callback of a
-            // hand that is opened at the same place of the table meanwhile.
+            // The hand stays open until the callback is replaced. Otherwise another hand could
+            // be opened at the same place of the table, and this call would replace the callback of that hand.
             let previous = hand_table::with(hand, |hand| {
                 let listener = callback.map(|callback| events.listener(hand, callback)).transpose()?;
                 Ok::<_, HandError>(events.replace(listener))

@@ -122,7 +122,7 @@ pub unsafe extern "C" fn sun2xp_send_group(
 ///   EINVAL   no such finger; no such until; seconds is negative or NaN
 ///   EIO      a finger is faulted
 ///   EBUSY    a finger is limp, is being calibrated, or is closed
-///   ETIMEDOUT  the time is over; sun2xp_error_text names a finger that has not arrived or settled
+///   ETIMEDOUT  the time has expired; sun2xp_error_text names a finger that has not arrived or settled
 ///
 /// Threads: any.
 ///

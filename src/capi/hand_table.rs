@@ -22,7 +22,7 @@ struct Place {
     /// wait for this lock.
     lifecycle: Mutex<()>,
     /// Locked for writing only to insert or remove a hand.
-    /// Boxed, so that the table is small and all zeros, and takes no place in the library's file.
+    /// Boxed, so that the table is small and all zeros, and takes no space in the library's file.
     hand: RwLock<Option<Box<Opened>>>,
     /// The value of the handle of the open hand; 0 if there is none.
     handle: AtomicUsize,
@@ -57,7 +57,7 @@ pub(super) fn default_handle() -> Handle {
     Handle::from_value(TABLE[DEFAULT].handle.load(Ordering::Acquire))
 }
 
-/// Opens the hand of OpenHand. `open_remote` opens one on another machine.
+/// Opens the hand of OpenHand. `open_remote` opens the hand if it is on another machine.
 pub(super) fn open_default(open_remote: RemoteOpener) -> Result<(), Refusal> {
     refuse_while_exiting()?;
     let Some(_opening) = TABLE[DEFAULT].lifecycle.try_lock() else { return Err(Refusal::Busy) };

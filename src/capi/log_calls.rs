@@ -18,7 +18,8 @@ pub const SUN2XP_LOG_REFUSAL: c_int = 1;
 /// The library continues, but not as the user may expect.
 pub const SUN2XP_LOG_WARNING: c_int = 2;
 
-/// A function that takes messages: severity (SUN2XP_LOG_...), one line of text, and the argument of sun2xp_set_log.
+/// A function that receives messages: severity (SUN2XP_LOG_...), one line of text, and the argument of
+/// sun2xp_set_log.
 pub type sun2xp_log = Option<extern "C" fn(severity: c_int, text: *const c_char, user: *mut c_void)>;
 
 type Callback = extern "C" fn(c_int, *const c_char, *mut c_void);
@@ -31,7 +32,7 @@ thread_local! {
     static IN_CALLBACK: Cell<bool> = const { Cell::new(false) };
 }
 
-/// sun2xp_set_log - take the messages of the library
+/// sun2xp_set_log - receive the messages of the library
 ///
 ///   callback   function to call with each message; null: messages go to standard error again
 ///   user       third argument of each call of the function

@@ -26,11 +26,11 @@ pub struct sun2xp_object {
     pub touching: c_int,
     /// Simulated time since sun2xp_open, s.
     pub time: f64,
-    /// Position of the middle: x, y, z, cm.
+    /// Position of the centre: x, y, z, cm.
     pub position: [f64; 3],
     /// Rotation from the object's frame to the palm's, row by row.
     pub rotation: [[f64; 3]; 3],
-    /// Velocity of the middle, cm/s.
+    /// Velocity of the centre, cm/s.
     pub velocity: [f64; 3],
     /// Angular velocity, rad/s.
     pub angular_velocity: [f64; 3],
@@ -43,7 +43,7 @@ pub struct sun2xp_object {
 ///   object   result, some milliseconds old at most; set object->size before the call
 ///
 /// All simulated fingers touch one object if hand.simulated_object is configured: a ball or a box with
-/// mass, friction and gravity, on a table or not. hand.gravity is its gravity.
+/// mass and friction. It can lie on a table. hand.gravity also acts on the object.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

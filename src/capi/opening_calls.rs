@@ -23,7 +23,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///
 /// Opens the ports, starts the servos and brings the tendons under tension. Returns when every finger has
 /// answered and holds its present pose at the configured initial stiffness. Takes at most about a second
-/// for a simulated hand. A program may open 16 hands.
+/// for a simulated hand. A program may have 16 hands of sun2xp_open
+/// open at the same time.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -49,7 +50,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///     }
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sun2xp_open(path: *const c_char, hand: *mut *mut sun2xp_hand) -> c_int {
-    // SAFETY: here and below, by the contract in the manual, each pointer is null or points to what it is for.
+    // SAFETY: here and below, by the contract in the manual, each pointer is null or points to the data of its
+    // description.
     unsafe {
         open("sun2xp_open", hand, || {
             if path.is_null() {

@@ -21,8 +21,8 @@ use std::ffi::c_int;
 ///
 /// With hand.end_state = "release", the default, the torque goes to zero at once. With "hold" the motors
 /// keep their last torque, up to hand.hold_torque_limit, for hand.hold_time_ms, by default 2 s and at most
-/// a minute. Configure "hold" only for objects that must not be dropped: no call releases the torque
-/// earlier. Only the emergency stop input of the board, or cutting the board's power, does.
+/// a minute. Configure "hold" only for objects that must not be dropped, because no call releases the torque
+/// earlier. Only the emergency stop input of the board, or cutting the board's power, releases it earlier.
 ///
 /// sun2xp_stop_all is not a safety function: it needs this process, this machine and the cable.
 ///

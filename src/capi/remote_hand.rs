@@ -89,7 +89,7 @@ pub trait RemoteHand: Send + Sync {
     /// Waits until there is an event, for at most `limit`, or without limit. Takes nothing.
     fn wait_for_event(&self, limit: Option<Duration>) -> Result<(), RemoteRefusal>;
 
-    /// Brings the hand to its end state and gives it up. A second call does nothing.
+    /// Brings the hand to its end state and releases it. A second call does nothing.
     fn close(&self);
 }
 
@@ -105,7 +105,7 @@ pub fn open_only_remote_hands(opener: RemoteOpener) {
     let _ = OVER_THE_NETWORK.set(opener);
 }
 
-/// The opener over the network, in a library that has one.
+/// The function that opens hands over the network. Returns none in a library without network code.
 pub(super) fn over_the_network() -> Option<RemoteOpener> {
     OVER_THE_NETWORK.get().copied()
 }

@@ -40,7 +40,7 @@ struct Errors {
 }
 
 thread_local! {
-    // All bytes are zero, so that the value takes no place in the library's file.
+    // All bytes are zero, so that the value takes no space in the library's file.
     static ERRORS: RefCell<Errors> = const {
         RefCell::new(Errors {
             entries: [const {

@@ -19,7 +19,7 @@ pub extern "C" fn sun2xp_version() -> *const c_char {
     uncancelled(|| CStr::from_bytes_with_nul(VERSION.as_bytes()).unwrap_or_default().as_ptr())
 }
 
-/// sun2xp_version_number - the version as a number that rises
+/// sun2xp_version_number - the version as a number that increases with each version
 ///
 /// Returns 10000 times the major, plus 100 times the minor, plus the patch number.
 /// SUN2XP_VERSION_NUMBER is the same number for the header.

@@ -219,7 +219,7 @@ impl Controller {
     /// periods since the previous sample, and `full_scale` the largest count of the gauges.
     pub fn watch(&self, watch: &mut Watch, state: &State, feedback: &Feedback, age: f64, full_scale: u16) -> Alarms {
         let heat = self.heating.part(&state.heat);
-        // The cycle has already converted the counts to units.
+        // The cycle has already converted the counts to physical units.
         let measured = Measured { motor_angles: state.motor_angles, tensions: state.report.tensions };
         self.monitors.watch(watch, feedback, &measured, &state.report, &state.pulls, &heat, age, full_scale)
     }

@@ -17,7 +17,7 @@ pub struct Feedback {
     pub gauge_counts: [u16; 4],
 }
 
-/// Sensor values in units: a [`Feedback`] with its scales, signs and zeros applied.
+/// Sensor values in physical units: a [`Feedback`] with its scales, signs and zeros applied.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     /// m_theta of eq. 28, rad. It increases as the motor pulls its tendon in.
@@ -92,9 +92,9 @@ pub enum Activity {
     /// Brings every tendon to the pretension of eq. 20 at zero joint torque, from any amount of slack. The joints stay
     /// where they are.
     TakeUpSlack,
-    /// Brings every tendon to that pretension, without gravity compensation. The joints are held where they are when
-    /// the last tendon comes taut. The given values, N, are the errors of the gauges (shown minus true tension). For
-    /// calibration.
+    /// Brings every tendon to the pretension of [`Activity::TakeUpSlack`], without gravity compensation. The joints are
+    /// held where they are when the last tendon comes taut. The given values, N, are the errors of the gauges (shown
+    /// minus true tension). For calibration.
     Tighten(Vector4<f64>),
     /// Makes the fingertip the spring of this set point.
     Follow(SetPoint),

@@ -128,8 +128,8 @@ impl BlackBox {
         while let Some(record) = self.arriving.pop() {
             self.faulted |= matches!(record.stage, Stage::Faulted(_));
             self.outlet.iter_mut().for_each(|outlet| outlet.add_record(&record));
-            // There is a gap, because nothing was collected for too long or the finger was faulted. A replay cannot
-            // cross a gap.
+            // A gap occurs if nothing was collected for too long, or if the finger was faulted. A replay cannot cross a
+            // gap.
             if self.records.back().is_some_and(|last| last.cycle + 1 != record.cycle) {
                 self.records.clear();
             }

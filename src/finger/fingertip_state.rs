@@ -26,7 +26,7 @@ pub struct FingertipState {
 
 impl FingertipState {
     /// Returns the state of the tip of a finger with these links and this R. `spring` is none for a finger that is not
-    /// a spring. It then has no stiffness.
+    /// a spring. The stiffness is then zero.
     pub fn new(links: Links, r: &Matrix3x4<f64>, report: &Report, spring: Option<(&JointSprings, &SetPoint)>) -> Self {
         let joints = &report.joints;
         let torques = r * report.tensions; // eq. 13

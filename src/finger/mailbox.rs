@@ -163,9 +163,10 @@ impl Mailbox {
         Some(matches!(planners.reports.read().stage, Stage::Closed | Stage::Faulted(_)))
     }
 
-    /// Changes the last set point and sends it as a whole, unless the finger is faulted. A path ends. If no set point
-    /// was sent since the finger became a spring, the change starts from the set point that the servo holds. The new
-    /// set point is valid for this spring phase only: if the finger faults meanwhile, it is discarded.
+    /// Changes the last set point and sends it as a whole, unless the finger is faulted. A path in progress ends. If no
+    /// set point was sent since the finger became a spring, the change starts from the set point that the servo holds.
+    /// The new set point is valid for this spring phase only: if the finger faults meanwhile, the set point is
+    /// discarded.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. Nothing is sent in that case.

@@ -25,7 +25,7 @@ pub(super) struct PathBuffer {
 }
 
 impl PathBuffer {
-    /// Constructs a path that rests, and adds its pages to `memory`.
+    /// Constructs a path without motion, and adds its pages to `memory`.
     pub fn new(memory: &mut LockedMemory) -> Self {
         let pieces = Pages::from_fn(MOST_PIECES, |_| Piece::at_rest(Vector3::zeros()));
         let stiffness = Pages::from_fn(MOST_POSES, |_| TimedStiffness::default());

@@ -1,6 +1,6 @@
 //! The relay: passes the handshake of one finger through the servo that serves the other fingers of the port.
 //!
-//! The servo sends at most one relayed request in a period, behind the Commands, so the boards answer it after the
+//! The servo sends at most one relayed request in a period, after the Commands, so the boards answer it after the
 //! Replies of that period. The finger of the request gets no Command, which leaves room for the answer. The longest
 //! answer, Configured, has 38 bytes more than a Reply. If it does not end before the next Command, it delays the
 //! Replies of the next period by at most 32 bytes. They still arrive in time, because the recovering finger does not

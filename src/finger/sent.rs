@@ -6,7 +6,7 @@ use crate::finger::{FingerReport, Validity};
 /// The part of the set point that a call replaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Replaced {
-    /// The joint angles, and perhaps other parts. A path ends.
+    /// The joint angles, and perhaps other parts. A path in progress ends.
     Place,
     /// The stiffness. A path that is followed no longer changes it.
     Stiffness,

@@ -1,4 +1,4 @@
-//! A port and its fingers: sends their Commands, and receives the Replies.
+//! A port and its fingers. The port sends the Commands of its fingers, and receives the Replies.
 
 use crate::board::protocol::Message;
 use crate::board::{Allowance, Arrival, Link, LinkCounters, LinkError, OutgoingCommand, OutgoingRequest, Transport};

@@ -18,7 +18,8 @@ const ANSWER: u64 = 160_000_000;
 /// Time for which the ports are searched again if a board is missing. Some boards restart when their port is opened.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Time between two searches. Where no port exists, a search takes no time, and the thread would use its core fully.
+/// Time between two searches. If no port exists, a search returns at once. Without this pause, the thread would then
+/// use its core fully.
 const PAUSE: Duration = Duration::from_millis(50);
 
 /// A finger that answers at a port.
@@ -95,8 +96,8 @@ fn port_of(
     let mut ports = searched.iter().filter(|port| port.answer.iter().flatten().any(is_wanted));
     let twice = match (ports.next(), ports.next()) {
         (Some(port), None) => return Ok(port.path.clone()),
-        (Some(_), Some(_)) => " as the only one: boards at two ports report it",
-        (None, _) => "",
+        (Some(_), Some(_)) => "found twice",
+        (None, _) => "not found",
     };
     let patterns = configuration.hand.search_ports.join(", ");
     Err(HandError::NoSuchBoard { finger, number, patterns, found: listed(searched), twice })

@@ -23,7 +23,7 @@ const ANSWER: Duration = Duration::from_secs(5);
 
 /// A calibration in progress. It runs without further calls; [`Calibrating::poll`] reports its progress.
 #[derive(Debug)]
-#[must_use = "a calibration is followed by polling it"]
+#[must_use = "the results of a calibration are put in force only if it is polled"]
 pub struct Calibrating {
     finger: FingerNumber,
     /// While this exists, no other call can calibrate the finger.
@@ -122,8 +122,8 @@ impl Calibrating {
         let report = hand.dispatcher.report(finger)?;
         if report.recoveries != self.recoveries {
             // The finger has faulted and recovered between two polls, so this calibration is over. If the report has a
-            // verdict, the verdict is of another calibration. Without this return, progress would be reported without
-            // end.
+            // verdict, the verdict belongs to another calibration. Without this return, progress would be reported
+            // forever.
             return Err(HandError::Interrupted(finger));
         }
         if report.orders != self.order {

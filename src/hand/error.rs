@@ -109,8 +109,8 @@ pub enum HandError {
     },
     /// The board that the configuration names by its unique number was not found.
     #[error(
-        "finger {finger}: no board at {patterns} reports the number {number} of finger.{finger}.board{twice}. Found: \
-         {found}. Connect the board and switch it on, correct finger.{finger}.board, or add its port to \
+        "finger {finger}: the board with the number {number} of finger.{finger}.board was {twice} at {patterns}. \
+         Found: {found}. Connect the board and switch it on, correct finger.{finger}.board, or add its port to \
          hand.search_ports"
     )]
     NoSuchBoard {
@@ -122,7 +122,7 @@ pub enum HandError {
         patterns: String,
         /// What answered at each port.
         found: String,
-        /// Empty, or the reason why boards with the number cannot be used.
+        /// "not found", or "found twice" if boards at two ports report the number.
         twice: &'static str,
     },
     /// The self-test of a finger has found a part that is wired wrongly. The motors of the finger are off.

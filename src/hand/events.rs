@@ -1,5 +1,5 @@
-//! The events of a hand for planners: queues from which they are taken or waited for, and listeners that get them in a
-//! thread of their own.
+//! The events of a hand for planners. Planners take events from queues, and wait for events at queues. Listeners get
+//! the events in a thread of their own.
 //!
 //! Every queue and every listener gets all events. Each has its own position in the logs of the fingers, so none takes
 //! an event away from another.

@@ -30,8 +30,8 @@ pub struct FingerTip {
     pub contact: [f64; 3],
     /// Whether the finger touches something, as far as tensions and motion show it.
     pub touching: bool,
-    /// Speed of the tip perpendicular to `contact`, cm/s, while the finger touches something: the tip slides on the
-    /// object, or moves it.
+    /// Speed of the tip perpendicular to `contact`, cm/s, while the finger touches something. A speed above 0 means
+    /// that the tip slides on the object, or moves it.
     pub slide: f64,
 }
 

@@ -24,8 +24,8 @@ pub struct JointTorques {
 pub struct PalmPose {
     /// Origin of the finger's frame: `finger.base`.
     pub base: [f64; 3],
-    /// Axes of the finger's frame as columns: `rotation[row][column]`. A vector v of the finger's frame is rotation v
-    /// in the palm's frame.
+    /// Axes of the finger's frame as columns: `rotation[row][column]`. The product of this matrix and a vector in the
+    /// finger's frame is the vector in the palm's frame.
     pub rotation: [[f64; 3]; 3],
     /// Position of the tip, from the measured joint angles.
     pub tip: [f64; 3],

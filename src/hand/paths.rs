@@ -32,7 +32,7 @@ impl Hand {
     /// The finger follows without the lag with which it follows a single set point.
     ///
     /// The whole path is checked against the joint limits and the limits of `[finger.motion]` before anything moves. A
-    /// later path, or a later place for the finger, replaces the path without a jump. A later Kx takes effect at once,
+    /// later path, or a later desired pose, replaces the path without a jump. A later Kx takes effect at once,
     /// and the path no longer changes Kx.
     ///
     /// `valid` is how long the end of the path is valid after the finger has arrived; none for the configured time.

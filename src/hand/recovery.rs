@@ -100,8 +100,8 @@ impl Recovering {
             return Ok(());
         };
         let waiting = Instant::now();
-        // The refusal of the handshake beside other fingers. They may have faulted meanwhile, so that the servo is
-        // about to release the link.
+        // The error of the relayed handshake. It is returned only if the servo does not release the link within one
+        // more poll: the other fingers may have faulted meanwhile, and then the servo is about to release the link.
         let mut refusal = None;
         let mut sent = false;
         loop {

@@ -245,7 +245,8 @@ impl Hand {
     /// Brings every finger to its configured end state and ends the threads. Dropping the hand does the same.
     pub fn close(self) {}
 
-    /// Waits until every finger is a spring that holds its pose. Each finger applies the open time-out itself.
+    /// Waits until no finger is opening any more: each finger is a spring that holds its pose, or was opened limp. Each
+    /// finger applies the open time-out itself.
     fn wait_for_every_finger(&self, goes_on: &dyn Fn() -> bool) -> Result<(), HandError> {
         loop {
             check_goes_on(goes_on)?;

@@ -40,7 +40,7 @@ impl Hand {
     }
 
     /// Renews the validity of what was sent last to finger 1, 2 or 3, without a new set point. The times count from the
-    /// next cycle, also while a path is not at its end. A finger whose set point has already expired continues to hold
+    /// next cycle, even if a path has not ended. A finger whose set point has already expired continues to hold
     /// its pose, and only the time until its end state begins anew.
     ///
     /// # Errors

@@ -56,7 +56,7 @@ impl LinkDynamics {
         self.inertia_at(&Pose::new(self, theta), self.coupling() * theta[2].cos())
     }
 
-    /// Returns H(theta), kg m^2. `coupled` is the part of it that varies with theta_2.
+    /// Returns H(theta), kg m^2. `coupled` is [`Self::coupling`] times cos(theta_2).
     fn inertia_at(&self, pose: &Pose, coupled: f64) -> Matrix3<f64> {
         let [_, l1, l2] = self.length;
         let [_, link1, link2] = self.link;

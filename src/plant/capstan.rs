@@ -6,8 +6,8 @@
 //! tensions on its two sides have a ratio of at most 1 + mu, and otherwise slides until they have this ratio.
 //!
 //! The tendon has no mass, so the points slide without delay. The friction therefore has no chatter at rest, and its
-//! computation is stable for any step. A regularised friction force (a steep function of the speed) would creep at
-//! rest.
+//! computation is stable for any step. With a regularised friction force (a steep function of the speed), the points
+//! would creep at rest.
 
 use super::elasticity::Elasticity;
 

@@ -1,8 +1,8 @@
 //! One elastic contact with Coulomb friction, between a point and a surface.
 //!
-//! The contact has a spring and a damper across the surface and another pair along it. The spring along the surface
-//! holds a resting contact without creep: the point sticks until the friction limit is reached. A friction force that
-//! depends only on the sliding speed would let a held object creep.
+//! The contact has a spring and a damper normal to the surface, and another pair along the surface. The spring along
+//! the surface holds a resting contact without creep: the point sticks until the friction limit is reached. A friction
+//! force that depends only on the sliding speed would let a held object creep.
 
 use nalgebra::Vector3;
 
@@ -18,9 +18,9 @@ pub(super) struct Indentation {
 /// A contact with its memory: the stretch of the spring along the surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FrictionContact {
-    /// Stiffness across and along the surface, N/m.
+    /// Stiffness normal to the surface and along it, N/m.
     stiffness: f64,
-    /// Damping across and along the surface, N s/m.
+    /// Damping normal to the surface and along it, N s/m.
     damping: f64,
     /// Coefficient of friction.
     friction: f64,
@@ -45,7 +45,7 @@ impl FrictionContact {
         // The damper never pulls the point to the surface.
         let normal = (self.stiffness * depth - self.damping * leaving).max(0.0);
         let limit = self.friction * normal;
-        // The surface may have turned since the last step. Removing the stretch across the surface only reduces the
+        // The surface may have turned since the last step. Removing the stretch normal to the surface only reduces the
         // energy.
         let stretch = self.stretch - outward * self.stretch.dot(&outward) + along * step;
         self.stretch = stretch.cap_magnitude(limit / self.stiffness);
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn a_resting_contact_holds_a_force_below_the_limit_without_creep() {
         let mut contact = contact();
-        // 5 N across the surface hold 2.5 N along it. A motion of 0.4 mm needs 2 N.
+        // A normal force of 5 N holds 2.5 N along the surface. A motion of 0.4 mm needs 2 N.
         for _ in 0..400 {
             contact.advance(Some(PRESSED), &Vector3::new(0.01, 0.0, 0.0), STEP);
         }

@@ -46,7 +46,7 @@ pub struct FreeObject {
     position: Vector3<f64>,
     rotation: UnitQuaternion<f64>,
     velocity: Vector3<f64>,
-    /// Angular momentum about the middle, kg m^2/s.
+    /// Angular momentum about the centre of mass, kg m^2/s.
     spin: Vector3<f64>,
     at_fingers: [FrictionContact; FINGERS],
     at_table: [FrictionContact; CORNERS],
@@ -122,7 +122,7 @@ impl FreeObject {
         self.gravity = gravity;
     }
 
-    /// Returns the position of the middle, m.
+    /// Returns the position of the centre of mass, m.
     pub fn position(&self) -> Vector3<f64> {
         self.position
     }
@@ -132,7 +132,7 @@ impl FreeObject {
         self.rotation
     }
 
-    /// Returns the velocity of the middle, m/s.
+    /// Returns the velocity of the centre of mass, m/s.
     pub fn velocity(&self) -> Vector3<f64> {
         self.velocity
     }
@@ -153,7 +153,7 @@ impl FreeObject {
         self.forces
     }
 
-    /// Places the object somewhere else, m, with this velocity, m/s, and angular velocity, rad/s.
+    /// Moves the object to `position`, m, with this velocity, m/s, and angular velocity, rad/s.
     pub fn put(&mut self, position: Vector3<f64>, velocity: Vector3<f64>, angular_velocity: Vector3<f64>) {
         (self.position, self.velocity) = (position, velocity);
         let in_object = self.rotation.inverse() * angular_velocity;

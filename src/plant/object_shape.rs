@@ -40,7 +40,7 @@ impl Shape {
         match *self {
             Self::Ball { radius } => {
                 let distance = point.norm();
-                // In the middle of a ball, every direction leads out.
+                // At the centre of a ball, every direction points outward.
                 let outward = if distance > 0.0 { point / distance } else { Vector3::z() };
                 (distance < radius).then_some(Indentation { depth: radius - distance, outward })
             }
@@ -54,7 +54,7 @@ impl Shape {
         }
     }
 
-    /// Returns the points that can touch a plane with the unit normal `up`. They are relative to the middle of the
+    /// Returns the points that can touch a plane with the unit normal `up`. They are relative to the centre of the
     /// object, in the frame in which the object has this rotation. A ball has one such point.
     pub fn lowest(&self, rotation: &UnitQuaternion<f64>, up: &Vector3<f64>) -> impl Iterator<Item = Vector3<f64>> {
         let (rotation, up, shape) = (*rotation, *up, *self);

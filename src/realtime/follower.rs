@@ -10,8 +10,8 @@ const NATURAL: f64 = 1.0;
 /// Damping ratio of the loop.
 const DAMPING: f64 = 1.0;
 
-/// Largest relative change of a period. Crystals differ by 100 ppm, ceramic resonators by 3000 ppm and more. A larger
-/// difference is not caused by the clocks.
+/// Largest relative change of a period. Crystals differ by 100 ppm, ceramic resonators by 3000 ppm and more. A
+/// difference above this limit is not caused by the clocks.
 const MOST: f64 = 5e-3;
 
 /// A change of the other clock by more than this number of periods beyond the largest drift is a jump of the clock.

@@ -35,8 +35,8 @@ impl Schedule {
     }
 
     /// Returns the number of the period that contains `time`, ns. The threads of a hand count the same periods, from
-    /// the start that their schedules have in common. [`Schedule::shift`] does not change the numbers, so a schedule
-    /// that follows another clock skips or repeats a number now and then.
+    /// the start that their schedules have in common. [`Schedule::shift`] moves the cycles but not the periods that are
+    /// counted. If a schedule follows another clock, its cycles therefore skip or repeat a number now and then.
     pub fn number(&self, time: u64) -> u64 {
         (time + self.margin).saturating_sub(self.origin) / self.period
     }

@@ -45,8 +45,8 @@ pub enum CoupledPortsError {
     System(#[from] io::Error),
 }
 
-/// Simulated boards with one finger each, an object, and the thread that runs them. Dropping it ends the thread and
-/// removes the ports.
+/// Simulated boards with one finger each, an object, and the thread that runs them. Dropping this value ends the thread
+/// and removes the ports.
 pub struct CoupledPorts {
     shared: Arc<Mutex<Shared>>,
     object: ObjectView,

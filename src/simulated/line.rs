@@ -12,7 +12,7 @@ pub enum LineFault {
     Drop,
     /// One bit of a frame is inverted.
     Corrupt,
-    /// A frame arrives later by this time, ns. Frames that follow may overtake it.
+    /// A frame is delayed by this time, ns. Later frames may overtake it.
     Delay(u64),
     /// A frame arrives twice.
     Duplicate,

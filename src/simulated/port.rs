@@ -25,7 +25,8 @@ const TICK: Duration = Duration::from_millis(1);
 /// runs, the port loses the host's mark of exclusive use (TIOCEXCL). The host's lock (flock) stays.
 const SILENCE: u64 = 100_000_000;
 
-/// A simulated board with its own port and a thread that runs it. Dropping it ends the thread and removes the port.
+/// A simulated board with its own port and a thread that runs the board. Dropping this value ends the thread and
+/// removes the port.
 #[derive(Debug)]
 pub struct SimulatedPort {
     shared: Arc<Mutex<Shared>>,

@@ -56,7 +56,7 @@ impl PseudoTerminal {
     }
 
     /// Waits for bytes, at most for `timeout`, and reads what has arrived. It returns 0 only after the whole `timeout`.
-    /// If the read fails, it sleeps for `timeout` first.
+    /// If the read fails, it sleeps for `timeout` before it returns 0.
     ///
     /// # Errors
     /// Returns [`Closed`] if another part of the program has closed a descriptor.

@@ -15,13 +15,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ObjectState {
-    /// Simulated time since the boards have started, s.
+    /// Simulated time since the boards started, s.
     pub time: f64,
-    /// Position of the middle, cm.
+    /// Position of the centre of mass, cm.
     pub position: [f64; 3],
     /// Rotation matrix from the object's frame to the palm's, row by row. At the start it is the identity.
     pub rotation: [[f64; 3]; 3],
-    /// Velocity of the middle, cm/s.
+    /// Velocity of the centre of mass, cm/s.
     pub velocity: [f64; 3],
     /// Angular velocity, rad/s.
     pub angular_velocity: [f64; 3],
@@ -87,7 +87,8 @@ impl Scene {
     }
 }
 
-/// Returns the tip of a finger in the palm's frame. The frames of the fingers are in cm.
+/// Returns the position and the velocity of a finger's tip in the palm's frame, in m and m/s. The finger's frame is in
+/// cm.
 fn tip_in_palm(finger: &mut SimulatedFinger, to_palm: &Isometry3<f64>) -> TipMotion {
     let plant = finger.plant();
     TipMotion {

@@ -1,4 +1,4 @@
-//! The driving-point admittance of a fingertip: the velocity with which the tip answers a force on it.
+//! The driving-point admittance of a fingertip: the velocity with which the tip responds to a force on it.
 
 use super::one_cycle_map::{Moving, OneCycleMap};
 use super::rest::Rest;

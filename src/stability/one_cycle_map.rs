@@ -1,5 +1,5 @@
-//! The motion of a finger near a rest, as a linear map of one cycle: plant, controller, and the one cycle of delay
-//! between sample and torque.
+//! The motion of a finger near an equilibrium ([`Rest`]), as a linear map of one cycle: plant, controller, and the one
+//! cycle of delay between sample and torque.
 
 use super::plant_set::Variant;
 use super::recurrence::{growth, growth_besides_drift};
@@ -246,7 +246,7 @@ impl OneCycleMap {
     }
 }
 
-/// A finger that runs.
+/// A simulated finger in motion, with the state of its controller.
 #[derive(Clone)]
 pub(super) struct Moving {
     pub plant: Plant,

@@ -5,7 +5,7 @@ use crate::model::configuration::ConfiguredSimulation;
 /// One in this many replies is lost: 5 %.
 const LOSS_INTERVAL: usize = 20;
 
-/// A plant that differs from the controller's model in one property, or a link that loses replies.
+/// A plant that differs from the controller's model in one property, or a connection to the board that loses replies.
 #[derive(Clone, Copy, Debug)]
 pub struct Variant {
     /// The difference.

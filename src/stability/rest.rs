@@ -58,8 +58,8 @@ pub(super) struct Support {
 }
 
 impl Rest {
-    /// Returns the rest of a hard finger with friction, with the report's law, a relative damping of 1 and no wall.
-    /// `kx` is in N/cm.
+    /// Returns a hard finger with friction at rest, with the report's law, a relative damping of 1 and no wall. `kx` is
+    /// in N/cm.
     pub fn hard_finger(joints: Vector3<f64>, deflection: Vector3<f64>, kx: &Matrix3<f64>) -> Self {
         Self { joints, deflection, stiffness: spatial(kx), law: Law::Report, damping: 1.0, wall: None }
     }

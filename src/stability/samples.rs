@@ -88,11 +88,11 @@ impl ContactType {
     }
 }
 
-/// Returns `number` samples of the finger at rest, anywhere within the joint limits. If `walls`, every finger presses
-/// against a wall. Of four samples, one is isotropic with eigenvalues of 1, two have random eigenvalues of which the
-/// largest is 1, and one has three random eigenvalues. Of four samples, one is a soft finger, and with walls one is a
-/// frictionless point. The others are hard fingers. Half of the samples have the report's law. The relative damping is
-/// 1, or the smallest or largest admissible one.
+/// Returns `number` samples of the finger at rest, anywhere within the joint limits. If `walls` is true, every finger
+/// presses against a wall. Of four samples, one is isotropic with eigenvalues of 1, two have random eigenvalues of
+/// which the largest is 1, and one has three random eigenvalues. Of four samples, one is a soft finger, and with walls
+/// one is a frictionless point. The others are hard fingers. Half of the samples have the report's law. The relative
+/// damping is 1, or the smallest or largest admissible one.
 pub(super) fn samples(finger: &ConfiguredFinger, number: usize, seed: u64, walls: bool) -> Vec<Sample> {
     let mut random = Pcg64::seed_from_u64(seed);
     let (low, high) = finger.joint_limits();

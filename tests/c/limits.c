@@ -1,6 +1,6 @@
 /* The system refuses descriptors, threads and pseudo-terminals, one after the other. OpenHand reports the system's
-   errno and the remedy, leaves nothing behind, and succeeds once the limit is gone. Functions of this program, in
-   front of the system's, refuse the threads and the pseudo-terminals. */
+   errno and the remedy, leaves nothing behind, and succeeds once the limit is gone. This program replaces functions
+   of the system by its own, which refuse the threads and the pseudo-terminals. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <dlfcn.h>

@@ -42,7 +42,7 @@ static void *open_and_close(void *unused)
     if (locked() > most)
         most = locked();
     if (unlocks) {
-        /* MemoryLocked says what OpenHand has done. */
+        /* memory_locked reports what OpenHand has done. */
         CHECK(munlockall() == 0 && locked() == 0);
         CHECK(sun2xp_status(HAND, 1, &Status) == 0 && Status.memory_locked == 1);
     }

@@ -1,4 +1,4 @@
-/* Calls with several things wrong at once. Each call corrects one more of them than the call before. Prints a line
+/* Calls with several errors at once. Each call has one error less than the call before it. Prints a line
    for each call: its name and the errno of its refusal. Finger 1 is on a real port, the others are simulated. */
 #include <errno.h>
 #include <math.h>

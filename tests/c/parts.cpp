@@ -64,7 +64,7 @@ static void moves(sun2xp::hand &hand)
     pose.place[1] = 0.5;
     pose.place[2] = 0.9;
     hand.finger(1).send_path({pose});
-    // The finger needs far longer for this way than the two calls.
+    // The finger needs far longer for this motion than the two calls take.
     hand.finger(1).send_position({0.3, 0.9, 1.3}, 10s);
     CHECK(!hand.finger(1).wait(sun2xp::until::arrived, 0s));
 }

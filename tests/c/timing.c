@@ -1,6 +1,5 @@
 /* sun2xp_timing and sun2xp_reset_timing: every stage of a running servo, wrong arguments, and a struct that may grow
-   in later
-   versions. */
+   in later versions. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"

@@ -1,4 +1,4 @@
-//! Identification of fingers that rub, stick, harden or were measured badly.
+//! Identification of fingers with friction, stiction or hardening tendons, and of fingers that were measured badly.
 
 use crate::bench::Bench;
 use sun2xp::calibration::{Findings, Identified, Obstacle, Task};

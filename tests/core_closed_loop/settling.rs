@@ -9,8 +9,8 @@ fn settles_everywhere(scheme: Scheme, rate: f64) {
     let finger = finger_with(scheme);
     let mut worst: f64 = 0.0;
     let mut least: f64 = f64::INFINITY;
-    // Figure 11 does not compensate the friction of the motors. The finger stops within a band around its target. The
-    // place in this band depends on the way of the finger: it is 0.020 rad from the target with the report's law, and
+    // Figure 11 does not compensate the friction of the motors. The finger stops within a band around its target. Where
+    // it stops in this band depends on how it approached: it is 0.020 rad from the target with the report's law, and
     // 0.022 rad with the exact law.
     let settled = if scheme == Scheme::Figure11 { 1.25 * SETTLED } else { SETTLED };
     for pose in poses() {

@@ -8,7 +8,7 @@ use sun2xp::finger::events::{Event, EventKind};
 use sun2xp::model::configuration::{Configuration, TouchElement};
 use sun2xp::simulated::{Defect, LineFault};
 
-/// Two elements: one looks forward along the last link, one sideways along the axis of joint 2.
+/// Two elements: one faces forward along the last link, the other sideways along the axis of joint 2.
 fn two_elements(configuration: &mut Configuration) {
     let element = |normal| TouchElement { position: [0.0; 3], normal, newton_per_count: 0.001, zero: 200 };
     configuration.fingers[0].touch.elements = vec![element([0.0, 0.0, 1.0]), element([1.0, 0.0, 0.0])];

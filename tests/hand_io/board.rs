@@ -1,4 +1,4 @@
-//! The adapter that plays the part of the board, at a link without threads.
+//! The adapter that acts as the board, on a link without threads.
 
 use super::plant_io::{PlantIo, Switches, starts_and_stops};
 use sun2xp::board::protocol::{Command, Configured, Identity, Status};

@@ -1,4 +1,4 @@
-//! Hands whose hardware the program provides: the physics of a finger stands behind the trait.
+//! Hands whose hardware the program provides: a simulated finger implements the trait.
 
 mod board;
 mod hand;

@@ -92,7 +92,7 @@ fn without_names(declarations: &str) -> String {
     declarations.lines().map(|line| without_parameter_names(line) + "\n").collect()
 }
 
-/// Moves the comment above each constant and member to its right: each of these takes one line then, or a few.
+/// Moves the comment above each constant and member to its right, so that a constant or member takes one line or a few.
 fn with_comments_beside(lines: &[String]) -> String {
     let mut rest = lines.iter();
     let mut text = String::new();

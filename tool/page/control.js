@@ -4,7 +4,7 @@ import { element } from "./element.js";
 
 const DEGREES = 180 / Math.PI;
 const SEND_MS = 60;
-/// Largest step of a joint of a real finger, rad. The hand refuses larger ones.
+/// Largest step of a joint of a real finger, rad. sun2xp refuses steps of more than 0.0524 rad.
 const REAL_STEP = 0.045;
 const TIP_STEP_CM = 0.08;
 const AXES = ["x", "y", "z"];

@@ -2,7 +2,7 @@
 
 import { Matrix3 } from "./vendor/three.js";
 
-/// Semi-axes, cm. A direction without stiffness would have an endless one.
+/// Limits of the semi-axes, cm. In a direction without stiffness the semi-axis would be infinite.
 const SHORTEST = 0.12;
 const LONGEST = 5;
 

@@ -7,7 +7,7 @@ import { AROUND, RINGS } from "./quality.js";
 import { paint, solid } from "./shapes.js";
 import { colour } from "./theme.js";
 
-/// The ellipsoid shows where the tip goes under this force, N, in true scale.
+/// The ellipsoid shows, to scale, where the tip goes under this force, N.
 export const ELLIPSOID_NEWTON = 5;
 const JOINTS = ["q0", "q1", "q2"];
 const SET_POINT = ["d0", "d1", "d2"];

@@ -47,7 +47,7 @@ const PLOTS = [
   },
 ];
 
-/// A range that changes seldom, so that the axis does not tremble.
+/// A range that rarely changes, so that the axis does not jitter.
 function calmRange(low, high, fromZero) {
   if (low === null || high === null || !Number.isFinite(low + high)) return [0, 1];
   const least = Math.max(Math.abs(high), 1) * 0.05;
@@ -165,7 +165,7 @@ class Plot {
     return calmRange(low, high, this.kind.fromZero);
   }
 
-  /// Draws the last seconds before `time`, which the axis of times calls 0.
+  /// Draws the last seconds before `time`. `time` is 0 on the time axis.
   show(samples, finger, time) {
     if (!this.plot) this.build();
     this.bounds = this.kind.bounds?.(finger);

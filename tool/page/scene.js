@@ -23,7 +23,7 @@ import { simple } from "./quality.js";
 import { colour, isDark, onColours } from "./theme.js";
 
 const FIRST_VIEW = new Vector3(21, -25, 14);
-/// Below this number of pictures a second, the view draws fewer pixels, and then no shadows.
+/// Below this number of frames per second, the view reduces its quality step by step: fewer pixels, no shadows.
 const ENOUGH = 45;
 
 /// Returns the ends of the segments of circles that are `step` apart, and of a cross.
@@ -86,7 +86,7 @@ export class View {
     if (this.grid) this.grid.material.color.set(colour("grid"));
   }
 
-  /// Draws a floor at `height` along `up`: rings every 5 cm that catch shadows.
+  /// Draws a floor at `height` along z, cm: a disc that receives shadows, and rings every 5 cm.
   setFloor(height) {
     if (this.floor) this.scene.remove(this.floor, this.grid);
     this.floor = new Mesh(new CircleGeometry(20, 40), new ShadowMaterial({ opacity: 0.2 }));
@@ -157,7 +157,7 @@ export class View {
     if (frames.rate < ENOUGH && document.visibilityState === "visible") this.cheaper();
   }
 
-  /// Takes one step to a picture that is drawn faster.
+  /// Reduces the quality by one step, so that a frame takes less time.
   cheaper() {
     if (this.ratio > 1) this.ratio = 1;
     else if (this.sun.castShadow) this.sun.castShadow = this.floor.visible = false;

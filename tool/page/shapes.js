@@ -58,7 +58,7 @@ function distance({ from, to }) {
   return new Vector3(...from).distanceTo(new Vector3(...to));
 }
 
-/// Moves a geometry along y to its place between two points.
+/// Turns and moves a geometry, whose axis is y, so that it lies between two points.
 function between({ from, to }, geometry) {
   const [start, end] = [new Vector3(...from), new Vector3(...to)];
   const turn = new Quaternion().setFromUnitVectors(UP, end.clone().sub(start).normalize());

@@ -1,4 +1,4 @@
-// The samples of the last minute, finger by finger, and the clock that shows them.
+// The samples of the last minute, finger by finger, and the clock that says which of them are shown.
 
 const SECONDS = 60;
 const RATE = 60;

@@ -50,7 +50,7 @@ struct Port {
 #[derive(Serialize)]
 struct Finger {
     address: u8,
-    /// As `finger.board` takes it.
+    /// In the form that `finger.board` takes.
     unique_number: BoardNumber,
     firmware: String,
     board_kind: u16,

@@ -48,7 +48,7 @@ const RETRIES: u32 = 3;
 /// Leads through the bring-up of a finger, and writes what it finds into the configuration file.
 ///
 /// The steps are board, computer, encoders, gauges, motors, zeros, tendons, bound and spring. Each step says what it
-/// does and what you should see, asks you to act at the finger, and names what is wrong with its remedy. The motors are
+/// does and what you should see, asks you to act at the finger, and names every fault and its remedy. The motors are
 /// off between the steps. Steps that have passed are noted in a file beside the configuration, for example
 /// hand.commission.json, and are skipped when the tool runs again.
 ///
@@ -74,8 +74,8 @@ pub struct Arguments {
     /// Do every step again.
     #[arg(long, conflicts_with = "steps")]
     again: bool,
-    /// The masses of the weights for the gauges, kg, in rising order. The weight of the heaviest must be below
-    /// `finger.tendon.maximum`.
+    /// The masses of the weights for the gauges, kg, in rising order. The weight of the heaviest must not
+    /// exceed `finger.tendon.maximum`.
     #[arg(long, value_name = "KG", value_delimiter = ',', default_values_t = [0.5, 1.0], value_parser = mass)]
     weights: Vec<f64>,
     /// Do not wait for Enter: a jig does what the tool asks for.

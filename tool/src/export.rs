@@ -1,4 +1,4 @@
-//! `sun2xp export`: a recording as CSV files, which spreadsheets and programs for data read.
+//! `sun2xp export`: a recording as CSV files, for spreadsheets and data analysis programs.
 
 mod columns;
 mod output;

@@ -1,4 +1,4 @@
-//! `sun2xp health`: what a finger measures today, against what it measured when it was commissioned.
+//! `sun2xp health`: compares measurements of a finger today with those of its commissioning.
 
 pub mod comparison;
 
@@ -19,7 +19,8 @@ use sun2xp::model::FingerNumber;
 /// Exit status: 0 if nothing has changed beyond its limit, 1 if something has, 2 for wrong usage.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The configuration file. hand.commission.json beside it has the results of the commissioning.
+    /// The configuration file, for example hand.toml. The file hand.commission.json beside it then has the results of
+    /// the commissioning.
     #[arg(long, value_name = "FILE")]
     config: PathBuf,
     /// The finger.

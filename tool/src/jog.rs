@@ -48,7 +48,8 @@ pub struct Arguments {
     address: web::Address,
 }
 
-/// Opens the hand, and closes it when a key ends the program. With a page, closes it at SIGINT, SIGTERM or SIGHUP.
+/// Opens the hand, and closes it when a key ends the program. With a page, closes it at
+/// SIGINT, SIGTERM, SIGHUP or SIGQUIT.
 ///
 /// # Errors
 /// Returns an error if there is no terminal, if the configuration cannot be used, if the person does not confirm, or

@@ -37,7 +37,7 @@ pub struct Arguments {
 /// What the hand must be able to do.
 #[derive(clap::Args, Clone, Copy)]
 pub struct Wanted {
-    /// Force of the fingertip that the finger must give in every direction and pose for any time, N.
+    /// Force that the fingertip must exert continuously, in every direction and pose, N.
     #[arg(long, value_name = "N", default_value_t = 3.0, value_parser = positive)]
     force: f64,
     /// Stiffness of the fingertip, N/cm.

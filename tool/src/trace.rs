@@ -18,7 +18,7 @@ use sun2xp::telemetry::{Description, Message, Sample, View};
 /// Steps of the progress.
 const THOUSANDTHS: u64 = 1000;
 
-/// What a recording contains, in the order of time for each finger.
+/// What a recording contains, in chronological order for each finger.
 #[derive(Clone, Debug)]
 pub enum Item {
     /// A finger appears for the first time.
@@ -60,7 +60,7 @@ pub struct Mark {
     pub text: String,
 }
 
-/// The kind of a mark, in increasing seriousness.
+/// The kind of a mark, in increasing order of severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MarkKind {
     /// The finger is in another stage.
@@ -158,7 +158,7 @@ pub fn read_with(file: &Path, reach: &dyn Fn(f64), visit: Visit) -> Result<(Desc
     Ok((description, recording.is_complete()))
 }
 
-/// Finds the changes of a finger's stage.
+/// Detects the changes of a finger's stage.
 #[derive(Debug, Default)]
 struct Changes {
     stage: Option<Stage>,

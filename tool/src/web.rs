@@ -27,7 +27,7 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::sync::Arc;
 use std::thread;
 
-/// An address that is reserved for documentation, so that it is nobody's.
+/// An address that is reserved for documentation, so that no host has it.
 const DISTANT: (Ipv4Addr, u16) = (Ipv4Addr::new(192, 0, 2, 1), 9);
 
 /// Where the page is served.
@@ -42,8 +42,8 @@ pub struct Address {
     bind: IpAddr,
 }
 
-/// Serves the page until SIGINT, SIGTERM or SIGHUP. Prints its address. With a `control`, pages may move the hand, and
-/// they need the token on loopback too.
+/// Serves the page until SIGINT, SIGTERM, SIGHUP or SIGQUIT. Prints its address. With a `control`, pages may move the
+/// hand, and they need the token on loopback too.
 ///
 /// # Errors
 /// Returns an error if the address cannot be used.

@@ -110,8 +110,8 @@ impl RemoteConfiguration {
             return Err(("stale_ms", format!("remote.stale_ms = {} must be 1 to 60000", self.stale_ms)));
         }
         if self.tls.is_some() != (protocol == "tls") {
-            let reason = "remote.endpoint begins with `tls/` exactly if there is a table [remote.tls] with authority, \
-                          certificate and key: add the table, or use `tcp/`";
+            let reason = "a `tls/` endpoint needs a table [remote.tls] with authority, certificate and key, and a \
+                          `tcp/` endpoint must not have one: change remote.endpoint, or add or remove the table";
             return Err(("endpoint", reason.into()));
         }
         if protocol == "tcp" && !is_loopback(host) {

@@ -85,8 +85,8 @@ fn unreachable(configuration: &RemoteConfiguration, error: &str) -> String {
     format!("cannot connect to {endpoint} ({error}): {remedy}")
 }
 
-/// Sends a get, and returns the replies until all have come or the time is over. `most` is the number of replies after
-/// which it does not wait any longer. An empty list means that nobody was reached.
+/// Sends a get, and collects replies until all of them have arrived, until there are `most` replies, or until `limit`
+/// is over. An empty list means that nobody was reached.
 pub fn get(
     session: &Session,
     selector: &str,

@@ -12,8 +12,8 @@ pub const REPETITION: u64 = 20_000_000;
 /// planner sends without a pause.
 const LEAST_INTERVAL: u64 = 500_000;
 
-/// A State that is so much earlier than an Answer comes from a machine that was started again, ns. A State cannot be on
-/// its way for so long.
+/// If a State is earlier than an Answer by more than this, ns, the server's machine was started again. A State cannot
+/// be on its way for so long.
 const RESTARTED: u64 = 10_000_000_000;
 
 /// The ownership of the hand.

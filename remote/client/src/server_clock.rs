@@ -1,6 +1,7 @@
 //! The age of what the server has measured, without a clock that both ends share.
 
-/// The time in which the smallest delay is searched, ns. Two clocks that differ by 100 ppm diverge by 1 ms in it.
+/// Length of the window over which the smallest delay is determined, ns. Two clocks whose rates differ by 100 ppm
+/// diverge by 1 ms in one window.
 const WINDOW: u64 = 10_000_000_000;
 
 /// Estimates the difference of the server's clock and the clock of this process: the smallest difference between the

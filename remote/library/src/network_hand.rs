@@ -40,7 +40,7 @@ struct Connection {
 
 impl Stoppable for NetworkHand {
     fn stop_every_finger(&self) {
-        // Nobody is left to tell: the call that asked for this has returned.
+        // The result cannot be reported, because the call that requested the stop has returned.
         let _ = self.stop(0);
     }
 }
@@ -246,7 +246,7 @@ impl RemoteHand for NetworkHand {
         match Arc::try_unwrap(connection) {
             // The fingers go to their end state even if the server does not answer: the owner falls silent.
             Ok(connection) => drop(connection.hand.close()),
-            // A call in another thread still uses the connection, and gives the hand up when it ends. The fingers go to
+            // A call in another thread still uses the connection, and releases the hand when it ends. The fingers go to
             // their end state now.
             Err(shared) => drop(shared.hand.stop(None)),
         }

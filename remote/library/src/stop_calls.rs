@@ -1,4 +1,4 @@
-//! Carries out sun2xp_stop_all, which a signal handler may call: the call counts, and a thread sees the count.
+//! Carries out sun2xp_stop_all, which a signal handler may call. The call increments a counter, which a thread polls.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Weak};

@@ -36,7 +36,7 @@ pub struct Status {
     pub catch_ms: u32,
     /// `end_ms` of the server, ms: at least 1.
     pub end_ms: u32,
-    /// Clients that have asked for anything since the start.
+    /// Number of clients that have sent a permitted Request since the start.
     pub clients: u32,
     /// Time, ns, server's clock.
     pub time: u64,

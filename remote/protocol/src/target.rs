@@ -26,7 +26,8 @@ pub struct Target {
     pub sent: u64,
     /// The time of the newest State or Answer that the sender has received, server's clock.
     pub seen: u64,
-    /// The set points, in rising order of their fingers. Without parts, the Target only says that the owner lives.
+    /// The set points, in rising order of their fingers. Without parts, the Target only says that the owner
+    /// is alive.
     pub parts: Vec<Part>,
 }
 

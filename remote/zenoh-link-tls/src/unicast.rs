@@ -142,7 +142,7 @@ impl LinkUnicastTls {
 
     async fn close(&self) -> ZResult<()> {
         tracing::trace!("Closing TLS link: {}", self);
-        // CHANGED in sun2xp: shutdown flushes the TLS stream, says goodbye, and closes the TCP stream.
+        // CHANGED in sun2xp: shutdown flushes the TLS stream, sends close_notify, and closes the TCP stream.
         let res = zasynclock!(self.writer).shutdown().await;
         tracing::trace!("TLS link shutdown {}: {:?}", self, res);
         res.map_err(|e| zerror!(e).into())

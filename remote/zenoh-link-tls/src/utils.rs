@@ -346,7 +346,7 @@ impl<'a> TlsClientConfig<'a> {
             None => TLS_CLOSE_LINK_ON_EXPIRATION_DEFAULT,
         };
 
-        // CHANGED in sun2xp: upstream trusts the public authorities beside the configured one.
+        // CHANGED in sun2xp: upstream trusts the public authorities in addition to the configured one.
         let root_cert_store = match load_trust_anchors(config)? {
             Some(custom_root_cert) => custom_root_cert,
             None => RootCertStore {

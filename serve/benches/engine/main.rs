@@ -1,7 +1,7 @@
 //! Compares the engine of the remote hand, Zenoh, with plain TCP and with TCP and rustls, on loopback.
 //!
 //!     cargo bench --bench engine -- latency [--repeats 5] [--seconds 5] [--period-us 1000]
-//!     cargo bench --bench engine -- throughput [--repeats 5] [--messages 100000]
+//!     cargo bench --bench engine -- throughput [--repeats 5] [--messages 200000]
 //!
 //! The server of each engine is a process of its own. The engines are measured alternately. Without a name, both are
 //! measured.

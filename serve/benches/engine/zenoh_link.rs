@@ -68,7 +68,7 @@ fn publisher(session: &Session, key: &'static str, express: bool) -> Result<Publ
         .wait()
 }
 
-/// Returns the configuration of a session that finds nobody by itself.
+/// Returns the configuration of a session without discovery.
 fn configuration(mode: &str, side: &str, port: u16, certificates: Option<&Path>) -> Result<Config, Failure> {
     let protocol = if certificates.is_some() { "tls" } else { "tcp" };
     let mut configuration = Config::from_json5(&format!(

@@ -1,4 +1,4 @@
-//! How far the set point of a finger may be ahead of it.
+//! How far a set point may be ahead of its finger.
 
 use super::Fingers;
 use crate::goal::{Destination, Goal, matrix};

@@ -7,7 +7,7 @@ use nalgebra::Vector4;
 use std::io;
 use std::ops::{BitOr, BitOrAssign};
 
-/// The hardware of one finger, for example drives and load cells at a field bus. A program implements this trait and
+/// The hardware of one finger, for example drives and load cells on a field bus. A program implements this trait and
 /// opens the hand with [`Hand::open_with_io`](crate::Hand::open_with_io).
 ///
 /// The library calls [`start`](Self::start), then [`exchange`](Self::exchange) once a cycle, then

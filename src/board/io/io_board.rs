@@ -32,7 +32,7 @@ pub struct IoBoard {
     answers: [u8; ANSWERS],
     written: usize,
     read: usize,
-    /// The error of a start, until the host reads it.
+    /// The error of a start or stop that a Configure has requested, until the host reads it.
     failure: Option<PortError>,
     ready_at: u64,
     /// The process that opened the hand. A forked child inherits this value, but the hardware belongs to its parent.

@@ -1,4 +1,4 @@
-//! A handshake request of another thread, which the servo sends behind its Commands.
+//! A handshake request of another thread. The servo sends the request after its Commands.
 
 use crate::board::protocol::MAX_WIRE;
 

@@ -33,8 +33,8 @@ const RISING: f64 = 10.0;
 /// factor [`HASTE`], because the spring of the guide must first build up the torque.
 const LOOSE: f64 = 0.02;
 const HASTE: f64 = 3.0;
-/// Distance after every change of direction in which samples are ignored, rad, for a joint at full speed. The finger
-/// oscillates there, and the tendons do not yet slide along their whole length.
+/// Samples are ignored over this distance after every reversal of the motion, rad, for a joint at full speed. The
+/// finger oscillates there, and the tendons do not yet slide along their whole length.
 const RUN_UP: f64 = 0.2;
 /// A joint is blocked if its torque stays at the limit for this time, s.
 const BLOCKED: f64 = 0.5;

@@ -24,7 +24,7 @@ const WORKING: f64 = 0.42;
 /// Largest tension at which the stiffness is measured, as a fraction of t_max.
 const MEASURED: f64 = 0.6;
 /// Uncertainty of every stiffness. On the simulated finger the identified stiffness is accurate to 0.2 %, but no real
-/// tendon stretches exactly as this model.
+/// tendon stretches exactly as this model predicts.
 pub(super) const UNCERTAIN: f64 = 0.02;
 /// Tensions are divided by this value, N, so that all coefficients have similar sizes.
 const SCALE: f64 = 10.0;
@@ -75,8 +75,8 @@ impl TendonStiffness {
         Self { fit: LeastSquares::new(), null, winding: Winding::default(), first: None, seconds: 0.0 }
     }
 
-    /// Follows the finger. `conduit` is the friction of conduits as a fraction of the tension. Samples count only if
-    /// `under_way`.
+    /// Updates the directions in which the tendons slide, and adds the sample to the fit if `under_way` is true.
+    /// `conduit` is the friction of conduits as a fraction of the tension.
     pub fn add(&mut self, instruments: &Instruments, sample: &Sample, conduit: &Vector4<f64>, under_way: bool) {
         let travel = instruments.travel(sample.feedback);
         let tensions = instruments.tensions(sample.feedback);

@@ -16,8 +16,8 @@ pub(super) struct Winding {
 }
 
 impl Winding {
-    /// Follows the motors to `travel`, cm, at `tensions`, N. `conduit` is the friction as a fraction of the tension,
-    /// and `compliance` the compliance of the tendons, cm/N.
+    /// Updates the directions after the motors have moved to `travel`, cm, at `tensions`, N. `conduit` is the friction
+    /// as a fraction of the tension, and `compliance` is the compliance of the tendons, cm/N.
     pub fn follow(
         &mut self,
         travel: &Vector4<f64>,

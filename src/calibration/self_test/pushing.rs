@@ -9,7 +9,7 @@ use nalgebra::Vector4;
 
 /// Rest before each push, in which the readings are averaged, s.
 const REST: f64 = 0.025;
-/// A motor is at rest if it moves by less than this distance in that time, cm.
+/// A motor is at rest if it moves by less than this distance in the time [`REST`], cm.
 const AT_REST: f64 = 0.001;
 /// Longest wait for the motors to come to rest, s. Tight tendons unwind motors that have just been switched off.
 const LONGEST_WAIT: f64 = 0.3;
@@ -17,11 +17,12 @@ const LONGEST_WAIT: f64 = 0.3;
 const RISE: f64 = 25.0;
 /// Largest pull, in t_min.
 const HARDEST: f64 = 3.0;
-/// An encoder has moved if it has moved by more than this distance, cm at the tendon.
+/// An encoder counts as moved when its reading has changed by more than this distance, cm at the tendon.
 const MOVED: f64 = 0.004;
 /// Pull after an encoder has moved wrongly, in t_min.
 const PULL: f64 = 1.2;
-/// The motor then pulls for at most this time, s, and this distance, cm, because it may unwind its tendon.
+/// After an encoder has moved wrongly, the motor pulls for at most this time, s, and this distance, cm, because it may
+/// unwind its tendon.
 const LONGEST: f64 = 0.12;
 const FARTHEST: f64 = 0.12;
 /// A gauge has responded if it has changed by more than this, in t_min.

@@ -8,6 +8,6 @@ pub(super) struct Readings {
     pub travel: Vector4<f64>,
     /// Speed of each motor, cm/s.
     pub speed: Vector4<f64>,
-    /// Tensions by the gauges, N.
+    /// Tensions that the gauges show, N.
     pub tensions: Vector4<f64>,
 }

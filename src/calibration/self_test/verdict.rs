@@ -8,13 +8,13 @@ use nalgebra::{Vector3, Vector4};
 
 /// A gauge is dead if it rises by less than this part of the usual rise.
 const DEAD: f64 = 0.12;
-/// Two gauges count as swapped if they respond to each other's motor more strongly than the configured gauges do. Each
-/// response is divided by the largest response to the same motor, and the sum of the two differences, at most 2, must
-/// exceed this value.
+/// Two gauges count as swapped if each responds to the other's motor more strongly than that motor's own gauge does.
+/// Each response is divided by the largest response to the same motor, and the sum of the two differences, at most 2,
+/// must exceed this value.
 const LEADING: f64 = 0.15;
 /// A gauge is reported if its scale differs from the usual scale by more than this fraction.
 const SCALE: f64 = 0.13;
-/// Step of the prediction of a pulse, s. The links vibrate with at most 80 Hz.
+/// Step of the prediction of a pulse, s. The links vibrate at frequencies up to 80 Hz.
 const STEP: f64 = 0.000_25;
 /// N cm s^2 in one kg m^2.
 const CENTIMETRES: f64 = 100.0;

@@ -15,7 +15,7 @@ pub struct ContactEstimate {
     /// Whether the finger touches something. The force has exceeded the threshold, and has not fallen below the lower
     /// threshold since.
     pub touching: bool,
-    /// Speed of the tip perpendicular to the force, cm/s, while the finger touches something. The tip slides on the
-    /// object, or moves it.
+    /// Speed of the tip perpendicular to the force, cm/s, while the finger touches something. A speed above 0 means
+    /// that the tip slides on the object, or moves it.
     pub slide: f64,
 }

@@ -26,7 +26,7 @@ pub(in crate::control) struct ContactObserver {
     dynamics: LinkDynamics,
     observer: MomentumObserver,
     detection: Detection,
-    /// Largest change of a joint's torque that a tendon causes by rubbing on its pulleys, per tension, cm.
+    /// Largest change of a joint's torque that the friction of a tendon on its pulleys causes, per tension, cm.
     rubbing: Matrix3x4<f64>,
     mass_tolerance: f64,
     /// Shortest time between two samples, s.

@@ -78,9 +78,9 @@ impl Controller {
         state.report.torque_scale = torque_scale;
     }
 
-    /// Returns the factor, 0 to 1, by which the stiffness must be scaled, and writes it to the report. The pose
-    /// supports the sum of the scaled stiffness of both springs and the stiffness of the soft limits. `k_theta` is the
-    /// stiffness of the tip's spring, N cm/rad.
+    /// Returns the factor, 0 to 1, by which the stiffness must be scaled, and writes it to the report. With this factor
+    /// the pose supports the sum of the scaled stiffness of both springs and the stiffness of the soft limits.
+    /// `k_theta` is the stiffness of the tip's spring, N cm/rad.
     fn supported(&self, report: &mut Report, k_theta: &Matrix3<f64>, joint: Option<&JointSpring>, push: &Push) -> f64 {
         report.stiffness_scale = match joint {
             None => self.admissible.scale(k_theta, &push.stiffness),

@@ -37,7 +37,7 @@ pub struct Observation {
 }
 
 /// The largest number of observations in one cycle. No cycle has more: every detector makes at most one observation of
-/// each part.
+/// each kind for each part.
 const MOST: usize = 24;
 
 /// The observations of a cycle, in a list of fixed size, because the servo must not allocate.

@@ -18,7 +18,7 @@ const PAUSE: f64 = 0.05;
 /// Detects slip.
 #[derive(Clone, Debug)]
 pub(super) struct SlipDetector {
-    /// Largest ratio of the force along the surface to the force across it.
+    /// Largest ratio of the force along the surface to the force normal to it.
     friction: Option<f64>,
     /// Number of cycles for which a contact must exist before its normal is taken.
     settling: u32,

@@ -5,8 +5,8 @@ use crate::control::signals::Report;
 use crate::model::Part;
 use crate::model::configuration::ConfiguredEvents;
 
-/// A tension must return by this fraction of the bound before the detector observes it again. The fraction covers the
-/// noise of the gauges and the dither.
+/// A tension beyond a bound must move back inside the bound by this fraction of the bound before the detector observes
+/// it again. The fraction covers the noise of the gauges and the dither.
 const HYSTERESIS: f64 = 0.05;
 
 /// Smallest hysteresis, N.

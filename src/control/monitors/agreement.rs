@@ -14,7 +14,8 @@
 //! it in proportion to tensions and joint angles; `mismatch` learns by how much, and what it does not know yet is
 //! tolerated. Friction along a tendon makes the tension differ between the motor, the gauge and the joint, and this
 //! changes the stretch. The sign of this change depends on the direction of the last motion, so the change is tolerated
-//! in proportion to the tensions. A drift is not limited in proportion to tensions or joint angles.
+//! in proportion to the tensions. The error of a gauge that drifts has no bound in proportion to tensions or joint
+//! angles, so it eventually exceeds what is tolerated.
 
 use super::alarm::{Alarm, Symptom};
 use super::mismatch::{DEVIATIONS, Mismatch, Terms};

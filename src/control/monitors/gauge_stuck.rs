@@ -31,7 +31,7 @@ const OFFSET: f64 = 0.015;
 const UNLIKELY: f64 = -25.3;
 
 /// Lowest assumed probability that a sample of a gauge repeats the previous one. While the tension changes, a gauge
-/// hardly repeats a count. At rest it repeats counts more often, and must not be taken for a dead gauge.
+/// rarely repeats a count. At rest it repeats counts more often, and must not be taken for a dead gauge.
 const LEAST_REPEATS: f64 = 0.2;
 
 /// Largest fraction of repeating samples with which a gauge is known to flicker. A gauge that repeats its count more

@@ -2,7 +2,7 @@
 //!
 //! Each new set point adds a smooth step to the motion, and the steps overlap. The rate of a step is a quadratic
 //! B-spline, whose three parts each last as long as a period of the planner. The sum of the steps is therefore
-//! continuous up to its acceleration, and set points that come at equal times and distances give a constant rate.
+//! continuous up to its acceleration, and set points at equal intervals of time and distance give a constant rate.
 //! Nothing overshoots: the sum stays between the set points that were sent. The price is a delay of one and a half
 //! periods of the planner.
 //!

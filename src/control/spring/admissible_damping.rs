@@ -16,8 +16,8 @@ const SLOW: f64 = 1000.0;
 /// loop after steps of 5 mm and after pushes. They covered 500 to 4000 Hz and 0.3 to 6 N/cm, with and without friction.
 /// With too little damping the servo loses control of the finger. With too much damping the finger oscillates because
 /// of the delay of one cycle. The schemes of the report's figures have little damping besides this damper, so they
-/// admit no ratio below 1. A ratio of 1 is always admitted: it is the damping that the controller computes, and the
-/// bound of Kx covers its stability.
+/// admit no ratio below 1. A ratio of 1 is always admitted: it is the damping that the controller computes, and a
+/// finger with this damping is stable up to the bound of Kx.
 ///
 /// For a finger with other links or tendons, the stiffness is first converted to a stiffness of the default finger.
 /// Both stiffnesses are the same fraction of the stiffness that the tendons of their finger support.

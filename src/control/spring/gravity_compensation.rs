@@ -35,8 +35,8 @@ impl GravityCompensation {
         }
     }
 
-    /// Moves `gravity` to `target` by at most the largest change of a cycle. Both are in m/s^2. The first value takes
-    /// effect at once.
+    /// Moves `gravity` toward `target` by at most the largest change of a cycle. Both are in m/s^2. The first value
+    /// takes effect at once.
     pub fn approach(&self, gravity: &mut Option<Vector3<f64>>, target: &Vector3<f64>) {
         let now = gravity.get_or_insert(*target);
         if now != target {

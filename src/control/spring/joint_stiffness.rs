@@ -42,8 +42,9 @@ const LEADING: f64 = 0.5;
 /// at r = rho, and is zero if K has no stiffness along n.
 ///
 /// The exact law does not distinguish the two joint solutions of a tip position, which bend joint 2 to opposite sides.
-/// While joint 2 is bent to the other side than in theta_d, a spring between the joint angles and theta_d therefore
-/// replaces the spring of the exact law. It has no singular pose, and leads the finger through the straight pose.
+/// While joint 2 is bent to the opposite side from theta_d, a spring between the joint angles and theta_d therefore
+/// replaces the spring of the exact law. This joint spring has no singular pose, and leads the finger through the
+/// straight pose.
 #[derive(Clone, Debug)]
 pub struct JointStiffness {
     links: Links,
@@ -141,11 +142,12 @@ fn hold(stiffness: &Matrix6<f64>, jacobian: &Matrix6x3<f64>) -> f64 {
     way.dot(&(stiffness.fixed_view::<3, 3>(0, 0) * way)) * lacking
 }
 
-/// Returns whether joint 2 is bent to the other side than `desired`: 0 if it is not, and 1 if it is. If either angle is
-/// near the straight pose, the result is between 0 and 1, so that the torque has no jump. Both angles are in rad.
+/// Returns whether joint 2 is bent to the opposite side from `desired`: 0 if it is not, and 1 if it is. If either angle
+/// is near the straight pose, the result is between 0 and 1, so that the torque has no jump. Both angles are in rad.
 fn bent_to_the_other_side(desired: f64, joint: f64) -> f64 {
     let bent = desired.abs().min(STRAIGHT);
-    // The finger has left the straight pose when it is halfway to `desired`, or to the limit of the straight pose.
+    // The finger has left the straight pose when joint 2 is halfway to `desired`, or halfway to `STRAIGHT` if `desired`
+    // is beyond `STRAIGHT`.
     let missing = 0.5 * bent - joint * desired.signum();
     (missing / STRAIGHT).clamp(0.0, 1.0) * (bent / STRAIGHT)
 }

@@ -101,8 +101,8 @@ const TENSION_DITHER: f64 = 0.06;
 /// during most of a dither period, so that the finger settles within some periods after a push or a step.
 const PULLEY_EXCESS: f64 = 5.0;
 
-/// See [`Numbers::dither_reserve`]. Consider the tension of each tendon divided by the tendon's entry of the null
-/// vector. With more pretension, these quotients also differ less from each other.
+/// See [`Numbers::dither_reserve`]. More pretension has a second effect: the ratios of each tendon's tension to its
+/// entry of the null vector then differ less from each other.
 const DITHER_RESERVE: f64 = 16.0 / 3.0;
 
 /// See [`Numbers::dither_rise`].

@@ -12,7 +12,8 @@ const ORDER: usize = 5;
 /// Five equal first-order stages in series. The motor torque of an elastic finger depends on the fourth derivative of
 /// the reference (snap). A filter of order n makes the derivative n - 1 continuous.
 ///
-/// The filter acts on joint angles and not on the tip. So the joint rates follow without J^-1, which is unbounded.
+/// The filter acts on joint angles and not on the tip. So the joint rates are computed without J^-1, which is
+/// unbounded.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference {
     /// Fraction of the remaining difference by which a stage moves in a cycle.
@@ -84,8 +85,8 @@ impl Reference {
     }
 
     /// Advances the reference by one cycle with a set point that has its own motion. The reference is the set point
-    /// plus a deviation. There is a deviation if the reference was elsewhere before. It runs through the filter to
-    /// zero, so that the reference stays continuous up to its snap. A large deviation first shrinks at the speed of
+    /// plus a deviation. There is a deviation if the reference was elsewhere before. The filter reduces the deviation
+    /// to zero, so that the reference stays continuous up to its snap. A large deviation first shrinks at the speed of
     /// `slew`.
     ///
     /// `anchor` is the input of the filter. `along` has the outputs of the stages for a reference that equals the set

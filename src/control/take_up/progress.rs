@@ -13,7 +13,7 @@ pub(crate) struct Slack {
     pub(super) gauges: [Gauge; 4],
     /// Low-pass filtered tensions, N.
     pub(super) tensions: Vector4<f64>,
-    /// Tensions with the longer time constant, N.
+    /// Tensions, low-pass filtered with a longer time constant than `tensions`, N.
     pub(super) smoothed: Vector4<f64>,
     /// Time since the start of the phase, s.
     pub(super) seconds: f64,

@@ -30,16 +30,18 @@ const QUIET: f64 = 0.006;
 /// A tendon with more than this fraction of t_min is taut before its motor moves. The zero of a gauge that was not
 /// calibrated may be off by almost as much.
 const TAUT: f64 = 0.12;
-/// The same fraction if gravity acts on the finger. It is lower than `TAUT`, because a tendon with little tension may
-/// then hold the finger. It is not lower still, because the zero of a gauge drifts.
+/// If gravity acts on the finger, a tendon with more than this fraction of t_min is taut before its motor moves. The
+/// fraction is lower than `TAUT`, because a tendon with little tension may hold the finger against gravity. It is not
+/// lower still, because the zero of a gauge drifts.
 const HOLDS: f64 = 0.012;
 /// Tendons that all have more than this fraction of t_min at the start need no winding.
 const ALL_TAUT: f64 = 0.2;
 
 /// Pull in the paying-out direction with which a motor reverses at a taut tendon, in multiples of t_min.
 const REVERSAL: f64 = 16.0;
-/// Longest time of this pull, s, and the paid-out length at which it ends, m.
+/// Longest time for which a motor reverses, s.
 const LONGEST_REVERSAL: f64 = 0.004;
+/// Paid-out length at which a motor stops reversing, m.
 const REVERSED: f64 = 1e-5;
 /// Length that a motor pays out after its tendon has been taut, m.
 const GAP: f64 = 0.0004;

@@ -52,8 +52,8 @@ kinds! {
     6 ContactLost "CONTACT_LOST" None, [Force], "contact lost",
         "the fingertip no longer touches anything";
     7 Slip "SLIP" None, [Force], "slip",
-        "the force at the fingertip along the surface rises above finger.events.slip_friction times the force across \
-         it: the contact is about to slip";
+        "the force at the fingertip along the surface rises above finger.events.slip_friction times the force normal \
+         to it: the contact is about to slip";
     8 TensionBound "TENSION_BOUND" Some("tendon"), [Tension, Bound], "tension bound",
         "the tension of a tendon rises above finger.events.tension_above or falls below finger.events.tension_below";
     9 ForceBound "FORCE_BOUND" None, [Force, Bound], "force bound",

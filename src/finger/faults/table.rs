@@ -102,7 +102,7 @@ faults! {
         "a motor driver reports over-current, over-temperature or a short circuit",
         "a motor is hot, jammed or short-circuited",
         "Let the motors cool, check the motors and their wires, then recover the finger", [Recover];
-    22 SensorFault "SENSOR_FAULT" Fault Finger Status "sensor, by the board",
+    22 SensorFault "SENSOR_FAULT" Fault Finger Status "sensor, reported by the board",
         "the board cannot read an encoder or a gauge",
         "the cable of a sensor is unplugged or broken",
         "Check the cables of the sensors, then recover and zero the finger", [Recover, Zero];
@@ -226,8 +226,8 @@ faults! {
         "the program or its user wants this finger to be at rest, or detected a danger",
         "Make sure that the finger can move safely, then recover it", [Recover];
     51 SetPointExpired "SET_POINT_EXPIRED" Fault Finger Time "set point expired",
-        "the planner has sent nothing for longer than its last set point was valid, and finger.motion.on_expiry is \
-         \"end state\", or finger.motion.end_state_ms is over too",
+        "the planner has sent nothing for longer than its last set point was valid, and either \
+         finger.motion.on_expiry is \"end state\" or finger.motion.end_state_ms has passed as well",
         "the planner hangs, is stopped in a debugger, or plans for longer than its set points are valid",
         "Recover the finger and send set points in time, or raise finger.motion.valid_ms", [Recover];
     52 ReflexStop "REFLEX_STOP" Fault Finger Nothing "stopped by a reflex",

@@ -85,9 +85,8 @@ impl ReactionLimits {
         Vector3::from_fn(|joint, _| joints[joint].clamp(low[joint], high[joint]))
     }
 
-    /// Returns the anchor, rad, with which the tip presses with a force that is larger by `by`, but at most `most`, N.
-    /// The force of the spring is F = Kx (x_d - x). The anchor moves by Kx^-1 dF, with dF along `along`, or along F if
-    /// `along` is zero.
+    /// Returns the anchor, rad, that increases the force of the tip by `by`, N, to at most `most`, N. The force of the
+    /// spring is F = Kx (x_d - x). The anchor moves by Kx^-1 dF, with dF along `along`, or along F if `along` is zero.
     /// Returns none if the spring does not press in this direction, or if Kx has no inverse.
     fn grip(
         &self,

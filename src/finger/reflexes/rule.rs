@@ -55,12 +55,13 @@ pub enum Condition {
     },
     /// The board has not replied for this time, s.
     LinkLost(f64),
-    /// For this time, s, the planner has sent no set point that the finger followed.
+    /// The planner has sent no set point for this time, s. A set point counts even if the finger does not follow it
+    /// because of an inhibition. A set point that is discarded because it is of an earlier spring phase does not count.
     PlannerSilent(f64),
 }
 
 /// What a finger does when a rule fires. A set point that a reaction changes is in force until the planner sends
-/// another one. A path or a motion ends.
+/// another one. A path or a motion in progress ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reaction {

@@ -108,7 +108,8 @@ impl FingerServo {
                 motion.path = Following {
                     number: taken.number,
                     follower: Some(Follower::new(held.stiffness)),
-                    // The stiffness of a later path is known only from its own set point, which can only end it.
+                    // Only the set point of a later path tells whether that path changes the stiffness. The set point
+                    // can switch the change of the stiffness off, but not on, so the change is on until then.
                     stiffness: path.stiffness || taken.number != path.number,
                 };
             }

@@ -80,7 +80,7 @@ impl FingerServo {
         if waited_ms < self.limits.opening_ms {
             return;
         }
-        // The motors had enough cycles to wind the tendon in, so the tendon is the cause.
+        // If the motors had enough cycles to wind the tendon in, the tendon is the cause.
         let wound_ms = f64::from(self.stage_cycles) * self.limits.period_ms;
         self.fault(if wound_ms >= MOST_CYCLES * waited_ms {
             let slackest = self.report.cycle.slackest;

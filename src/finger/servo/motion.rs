@@ -28,7 +28,7 @@ impl FingerServo {
         }
     }
 
-    /// Takes a renewed validity, if there is one. A path does not extend it.
+    /// Takes a renewed validity, if there is one. The renewed validity begins at once, even if a path has not ended.
     pub(super) fn renew_validity(&mut self) {
         let Some(renewal) = self.mailbox.new_renewal() else { return };
         let ahead = renewal.number.wrapping_sub(self.report.set_point_number).cast_signed();

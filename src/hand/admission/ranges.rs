@@ -1,4 +1,5 @@
-//! The ranges of joint angles and Kx. The clients of a hand on another machine check their commands with them too.
+//! The ranges of joint angles and Kx. A client that uses a hand on another machine checks its commands with these
+//! ranges too.
 
 use crate::hand::SetPointError;
 use crate::model::configuration::OutOfRange;

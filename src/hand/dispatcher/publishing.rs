@@ -69,7 +69,7 @@ impl Publishing {
             Err(error) => {
                 print_notice(&format!(
                     "no process can attach to this hand, because its socket cannot be made: {error} (set \
-                     `telemetry.enabled = false` to do without)"
+                     `telemetry.enabled = false` to open the hand without it)"
                 ));
                 None
             }

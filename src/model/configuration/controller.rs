@@ -28,7 +28,7 @@ pub enum Law {
     /// tau = J^T Kx J (theta_d - theta), eqs. 3 and 6. It is a spring for small deflections.
     Report,
     /// tau = J^T Kx (x_d - x). It is a spring at any deflection. Because it does not distinguish two joint solutions
-    /// with the tip at x_d, a spring in joint space acts while joint 2 is bent to the other side than in theta_d.
+    /// with the tip at x_d, a spring in joint space acts while joint 2 is bent to the opposite side from theta_d.
     #[default]
     Exact,
 }
@@ -103,8 +103,8 @@ impl Default for ConfiguredController {
 
 impl ConfiguredController {
     /// Returns the tendon controller at `rate`, Hz. Unless one is configured, it is state feedback from 750 Hz up and
-    /// Figure 10 below. At 500 Hz state feedback is better in most respects, but loses control of a finger if the link
-    /// loses a tenth of the replies (`docs/stiffness.md`).
+    /// Figure 10 below. At 500 Hz state feedback is better in most respects, but loses control of a finger if a tenth
+    /// of the replies are lost (`docs/stiffness.md`).
     #[must_use]
     pub fn scheme(&self, rate: f64) -> Scheme {
         self.scheme.unwrap_or(if rate >= 750.0 { Scheme::StateFeedback } else { Scheme::Figure10 })

@@ -20,7 +20,7 @@ pub struct ConfiguredEvents {
     pub tension_below: Option<f64>,
     /// Upper bound of the force at the fingertip, N.
     pub force_above: Option<f64>,
-    /// Upper bound of the ratio of the force along the surface of an object to the force across it. If the bound is
+    /// Upper bound of the ratio of the force along the surface of an object to the force normal to it. If the bound is
     /// below the coefficient of friction, the ratio reaches it before the fingertip slips.
     pub slip_friction: Option<f64>,
 }

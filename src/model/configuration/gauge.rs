@@ -22,8 +22,8 @@ pub enum GaugeReference {
     /// The gauges: identification keeps the mean of their configured gains.
     #[default]
     Gauges,
-    /// The motors: identification assumes that each pulls with its commanded torque minus its friction. This must hold
-    /// only for the average of the four motors.
+    /// The motors: identification assumes that each pulls with its commanded torque minus its friction. It is
+    /// sufficient that this is true for the average of the four motors.
     Motors,
 }
 

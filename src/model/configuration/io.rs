@@ -1,4 +1,4 @@
-//! Fingers whose hardware the program provides. No key of the configuration file makes a finger one of them.
+//! Fingers whose hardware the program provides. The configuration file has no key for such fingers.
 
 use super::ConfiguredFinger;
 

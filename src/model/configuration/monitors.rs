@@ -9,8 +9,8 @@ pub struct ConfiguredMonitors {
     /// Torque that may be out of balance at a motor that does not turn, N cm. A larger torque means that the motor is
     /// stalled. The value must exceed the static friction of the motor.
     pub stall_torque: [f64; 4],
-    /// In addition, this part of the pull or of the tension, whichever is larger, may be out of balance. It covers the
-    /// error of the torque constant, and friction that is proportional to the tension.
+    /// Fraction of the pull or of the tension, whichever is larger, that may be out of balance in addition to
+    /// `stall_torque`. It covers the error of the torque constant, and friction that is proportional to the tension.
     pub stall_fraction: f64,
     /// Disagreement of gauges and encoders that is always tolerated, N of mean tension.
     pub disagreement: f64,

@@ -19,7 +19,7 @@ pub struct ConfiguredMotion {
     /// The reaction to a set point that has expired.
     pub on_expiry: ExpiryReaction,
     /// Time for which a finger holds its pose after its set point has expired, ms. Then it faults, and its board goes
-    /// to the end state. Without it the finger holds its pose without end.
+    /// to the end state. Without it the finger holds its pose indefinitely.
     pub end_state_ms: Option<f64>,
     /// Stiffness in every direction with which a finger holds its pose after its set point has expired, N/cm.
     pub expired_stiffness: f64,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// A named set of defaults for the other keys of `[finger.simulation]`. What the controller assumes stays the same, so
-/// a finger with another set than `Nominal` differs from its configuration. Calibration measures the differences.
+/// a finger with a set other than `Nominal` differs from its configuration. Calibration measures the differences.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]

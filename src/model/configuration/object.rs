@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The shape of an object. Its centre of mass is in its middle, and its mass is uniform.
+/// The shape of an object. Its density is uniform, so its centre of mass is at its geometric centre.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
@@ -30,9 +30,9 @@ pub struct ConfiguredObject {
     pub mass: f64,
     /// Coefficient of friction at the fingertips and on the table.
     pub friction: f64,
-    /// Stiffness of a contact, across and along the surface, N/cm.
+    /// Stiffness of a contact, normal to the surface and along it, N/cm.
     pub stiffness: f64,
-    /// Position of the middle at the start, in the palm's frame, cm.
+    /// Position of the centre at the start, in the palm's frame, cm.
     pub position: [f64; 3],
     /// Distance of a table from the palm's origin, cm, measured along gravity, or along the palm's z axis if the hand
     /// has no gravity. Without it there is no table.

@@ -90,7 +90,7 @@ fn motions_at_inner_knots(start: &Start, knots: &[Knot]) -> Vec<AtKnot> {
             near -= arriving.far * factor;
             constant -= arriving.far * offset;
         }
-        // The matrix is regular, because the spline with the smallest jerk is unique.
+        // The matrix is invertible, because the spline with the smallest jerk is unique.
         let inverse = near.try_inverse().unwrap_or_else(Matrix2::zeros);
         offsets.push(inverse * constant);
         factors.push(inverse * -leaving.far);
@@ -112,7 +112,7 @@ fn arriving(way: &Vector3<f64>, length: f64) -> EndMotion {
     }
 }
 
-/// Jerk and snap at the beginning of such a piece.
+/// Jerk and snap at the beginning of a piece of degree 5 that covers the distance `way` in `length` s.
 fn leaving(way: &Vector3<f64>, length: f64) -> EndMotion {
     reversed(arriving(&-way, length))
 }

@@ -4,7 +4,7 @@ use super::ranges::unusable;
 use crate::model::Shown;
 use crate::model::configuration::{ConfiguredTelemetry, Unusable};
 
-/// Largest length of a hand's name. The name of the socket must have room for it, the user's number and a suffix.
+/// Largest length of a hand's name. The name of the socket must have room for it, the user ID and a suffix.
 const LONGEST_NAME: usize = 32;
 
 impl ConfiguredTelemetry {
@@ -18,7 +18,7 @@ impl ConfiguredTelemetry {
             return Ok(());
         }
         let reason = format!(
-            "\"{}\" is not a name of a hand: use 1 to {LONGEST_NAME} letters without accents, digits, - and _",
+            "\"{}\" is not a valid name of a hand: use 1 to {LONGEST_NAME} characters from A-Z, a-z, 0-9, - and _",
             Shown(&self.name)
         );
         unusable("name", reason)

@@ -16,7 +16,8 @@ impl SimulatedFinger {
         if self.pads.exist() {
             let turn = self.plant.links().tip_rotation(&self.plant.joints()).inverse();
             let force = turn * self.plant.force_on_tip();
-            // An external force comes from no surface, so nothing slips along it.
+            // A tip that touches no fixed surface can slip only on the shared object. Without such an object, `sliding`
+            // is zero: an external force comes from no surface, so nothing slips.
             let on_surface = self.plant.contact_force().norm() > 0.0;
             let velocity = if on_surface { self.plant.tip_velocity() } else { self.sliding };
             self.pads.step(self.clock, &TipContact { force, velocity: turn * velocity });

@@ -84,15 +84,15 @@ void advance_plant(struct plant *plant, int64_t nanoseconds)
     find_tensions(plant);
 }
 
-/* Encoder zero is the straight finger under the tension of the start. */
+/* The encoder reads zero when the finger is straight and its tendons have the tensions of the start. */
 int32_t encoder(const struct plant *plant, int i)
 {
     double angle = plant->motor[i] - home_tension[i] / stiffness / pulley;
     return (int32_t)floor(angle * COUNTS_A_REVOLUTION / (2 * pi));
 }
 
-/* Includes converter noise, one count up or down: the library takes a gauge whose count never changes for a dead
-   one. */
+/* Includes converter noise, one count up or down: the library considers a gauge dead if its count never
+   changes. */
 unsigned gauge(const struct plant *plant, int i)
 {
     static uint32_t random = 1;

@@ -9,7 +9,7 @@ const WIDTH: usize = 100;
 /// Indentation of the list, columns.
 const INDENT: usize = 2;
 
-/// An order as one writes it, and what it does.
+/// The syntax of an order, and what the order does.
 type Entry = (&'static str, &'static str);
 
 const ACTIONS: [Entry; 10] = [
@@ -40,7 +40,7 @@ const DEFECTS: [Entry; 19] = [
     ("dead-gauge FINGER GAUGE [COUNT]", "freeze a gauge at COUNT, or at its current count"),
     ("drift-gauge FINGER GAUGE SPEED", "let a gauge drift, N/s"),
     ("swap-motors FINGER A B", "swap the cables of two motors; also swap-encoders and swap-gauges"),
-    ("swap-tendons FINGER A B", "lead two tendons to each other's motor"),
+    ("swap-tendons FINGER A B", "route two tendons to each other's motor"),
     ("reverse-motor FINGER MOTOR", "connect a motor backwards; also reverse-encoder and reverse-gauge"),
     ("gauge-gain FINGER GAUGE RATIO", "multiply the gain of a gauge"),
     ("dead-motor FINGER MOTOR", "disconnect a motor; also dead-encoder"),

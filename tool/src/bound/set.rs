@@ -44,7 +44,7 @@ struct Member {
     uncovered_from_wall: Option<f64>,
     /// Fraction of the poses in which the servo scales Kx down.
     scaled: f64,
-    /// The smallest factor by which it does so.
+    /// The smallest factor by which the servo scales Kx down.
     least_scale: f64,
 }
 
@@ -104,8 +104,8 @@ pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -
     let nominal = plants.first().ok_or("the set of plants is empty")?;
     if nominal.uncovered as f64 > USELESS * nominal.samples as f64 {
         return Err(format!(
-            "finger {number}: controller leaves the finger unstable at every stiffness in {} of {} poses: remove the \
-             gains from this table, or choose another scheme",
+            "finger {number}: the controller leaves the finger unstable at every stiffness in {} of {} poses: remove \
+             the gains from the table `controller`, or choose another scheme",
             nominal.uncovered, nominal.samples
         )
         .into());

@@ -25,7 +25,7 @@ pub fn board(desk: &mut Desk) -> Result<Outcome, Failure> {
     }
     outcome.found(seen.name);
     if desk.person.ask(Act::PressEmergencyStop)? == Answer::Cannot {
-        outcome.found("no emergency stop was tried");
+        outcome.found("the emergency stop was not tested");
         return Ok(outcome);
     }
     let pressed = desk.machine.board()?;

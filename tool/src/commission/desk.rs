@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use std::io;
 use sun2xp::model::configuration::ConfiguredFinger;
 
-/// How often the sensors are read before the person is asked.
+/// Number of failed readings in a row after which the person is asked.
 const READINGS: usize = 4;
 
 /// What every step works with.

@@ -1,4 +1,4 @@
-//! The order of parts: which encoder or gauge responds at the place of each number.
+//! The order of sensors: which encoder responds to each motor, or which gauge responds to each tendon.
 
 use super::outcome::Outcome;
 use super::wrong::Wrong;

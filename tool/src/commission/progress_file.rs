@@ -109,7 +109,7 @@ impl CommissionedFinger {
         self.vitals = vitals.clone();
     }
 
-    /// Adds a step that has not passed. It counts no longer as passed, even if it had before.
+    /// Adds a step that has not passed. It no longer counts as passed, even if it had passed before.
     pub fn fail(&mut self, step: Step, outcome: &Outcome, when: &str) {
         let wrong = outcome.wrong.iter().filter(|wrong| !wrong.compensated());
         let text = wrong.map(|wrong| format!("{wrong}. {}", wrong.remedy()).trim_end_matches([' ', '.']).to_owned());

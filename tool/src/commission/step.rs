@@ -59,10 +59,10 @@ impl Step {
     /// What the tool does in this step.
     pub fn does(self) -> &'static str {
         match self {
-            Self::Board => "Says hello to the board, and tries its emergency stop. The motors are off.",
+            Self::Board => "Queries the identity of the board, and tests its emergency stop. The motors are off.",
             Self::Encoders => {
                 "Reads the encoders while you turn each motor by hand. The motors are off. If encoders are swapped, \
-                 each motor turns a little after a question."
+                 the tool asks you, and then turns each motor a little."
             }
             Self::Gauges => {
                 "Reads the gauges without load, and while you hang known weights on each tendon. The motors are off."

@@ -22,7 +22,7 @@ pub struct Terminal {
     yes: bool,
     /// Nothing is printed, because standard output is for other programs.
     pub quiet: bool,
-    /// How often something that has failed is tried again without a question, if `yes` is set.
+    /// Number of times that something that has failed is tried again without a question, if `yes` is set.
     pub retries: u32,
     /// The steps of this session.
     steps: Vec<Step>,

@@ -166,7 +166,7 @@ fn zeros(all: &mut Vec<Complaint>, before: &Vitals, configured: &ConfiguredFinge
         for gauge in 0..4 {
             let newton = (today[gauge] - before[gauge]) * configured.gauge.newton_per_count[gauge];
             if newton.abs() > ZERO {
-                let advice = "Overloaded, loose or drifting: zero it again, and replace it if it drifts on";
+                let advice = "Overloaded, loose or drifting: zero it again, and replace it if it keeps drifting";
                 let part = format!("zero of gauge {}", gauge + 1);
                 let (before, today) = ("0 N".into(), format!("{newton:+.1} N"));
                 all.push(Complaint { kind: "gauge_zero", part, before, today, advice });

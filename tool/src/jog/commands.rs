@@ -136,7 +136,7 @@ pub fn desired_stiffness(hand: &Hand, finger: i32) -> Result<[[f64; 3]; 3], Hand
     Ok(std::array::from_fn(|row| std::array::from_fn(|column| stiffness[(row, column)])))
 }
 
-/// Returns whether a finger has a real port. A number that no finger has belongs to no real finger.
+/// Returns whether a finger has a real port. Returns false if there is no finger with this number.
 pub fn is_real(configuration: &Configuration, finger: i32) -> bool {
     let index = usize::try_from(finger).ok().and_then(|number| number.checked_sub(1));
     index.and_then(|index| configuration.fingers.get(index)).is_some_and(|finger| !finger.simulated())

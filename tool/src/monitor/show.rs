@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use sun2xp::realtime::now;
 
-/// Interval of the pictures: 15 in a second.
+/// Interval between two frames: 15 frames per second.
 const INTERVAL: Duration = Duration::from_millis(66);
 
 /// What a key has done.

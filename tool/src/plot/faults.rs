@@ -103,7 +103,7 @@ impl Plot for Faults {
 }
 
 impl Faults {
-    /// The marks of the list: all, or the most serious ones if there are too many, in the order of time.
+    /// The marks of the list, in chronological order: all, or the most serious ones if there are too many.
     fn listed(&self) -> Vec<(f64, &Happened)> {
         let mut listed: Vec<(f64, &Happened)> = self.happened.iter().map(|(time, mark)| (*time, mark)).collect();
         if listed.len() > MOST_LINES {

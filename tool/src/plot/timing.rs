@@ -1,4 +1,4 @@
-//! Histograms of the wake-ups and of the ends of the cycles, and the wake-ups in the order of time.
+//! Histograms of the wake-ups and of the ends of the cycles, and the wake-ups over time.
 
 use super::axis::Axis;
 use super::figure::{Figure, Sign, subtitle};
@@ -144,7 +144,7 @@ fn outline(bins: &[(i32, usize)]) -> Vec<[f64; 2]> {
     points
 }
 
-/// The wake-ups in the order of time. The largest value of every pixel is visible.
+/// The wake-ups over time. The largest value of every pixel is visible.
 fn course(fingers: &[(usize, &Times)], time: Axis, period: f64) -> Panel {
     let mut marks = vec![Mark::Level { y: period, stroke: PERIOD, label: String::new() }];
     let mut largest = 0f32;

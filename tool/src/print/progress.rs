@@ -1,4 +1,4 @@
-//! Progress of long work, on standard error: a bar on a terminal, and a line now and then elsewhere.
+//! Progress of long work, on standard error: a bar on a terminal, otherwise a line every few seconds.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
@@ -13,7 +13,7 @@ const FIRST_LINE: Duration = Duration::from_secs(1);
 /// Time between two lines.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
 
-/// Time between two pictures of the bar, so that it moves while a step takes long.
+/// Time between two redraws of the bar, so that it moves while a step takes long.
 const PICTURE: Duration = Duration::from_millis(100);
 
 /// The progress of one piece of work. It disappears from a terminal when it is dropped. All methods may be called from

@@ -10,10 +10,10 @@ use sun2xp::model::ShownPath;
 /// Time between two lines in a pipe.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
 
-/// Time between two pictures on a terminal.
+/// Time between two redraws on a terminal.
 const PICTURE: Duration = Duration::from_millis(100);
 
-/// Shows how a recording goes on. It disappears from a terminal when it is dropped.
+/// Shows the progress of a recording. It disappears from a terminal when it is dropped.
 pub struct Display {
     bar: Option<ProgressBar>,
     duration: Option<Duration>,

@@ -1,4 +1,4 @@
-//! Replay of a recording (MCAP), which may be longer than the memory.
+//! Replay of a recording (MCAP), which may be larger than the memory.
 
 use super::in_file;
 use super::report::{FingerReport, FirstDifference, Report};

@@ -7,7 +7,7 @@ use std::ops::Range;
 use sun2xp::finger::ControlRecord;
 use sun2xp::model::Counted;
 
-/// Most gaps that are listed. Further ones are counted.
+/// Largest number of gaps that are listed. Further gaps are only counted.
 const MOST_GAPS: usize = 20;
 
 /// The output of `--json`.

@@ -7,7 +7,8 @@ use sun2xp::control::{Activity, SetPoint};
 use sun2xp::finger::CycleRecord;
 use sun2xp::model::Shown;
 
-/// Most stages that are counted by name. The name of a fault contains its values, so a long recording may have many.
+/// Largest number of stages that are counted by name. The name of a fault contains its values, so a long recording may
+/// have many.
 const MOST_STAGES: usize = 64;
 
 /// Counts of one finger's cycles.

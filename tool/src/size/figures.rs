@@ -90,11 +90,11 @@ impl Finger<'_> {
         let continuous = self.tension(&motor.continuous_torque).inf(&peak);
         Ok(vec![
             Figure::least(
-                "force of the tip, for any time",
+                "force of the tip, continuous",
                 self.mechanics.force(&continuous),
                 wanted,
                 "N",
-                "motors with more continuous torque, a smaller motor radius, or less finger.tendon.minimum",
+                "motors with more continuous torque, a smaller motor radius, or a lower finger.tendon.minimum",
             ),
             Figure::least(
                 "force of the tip, for some seconds",

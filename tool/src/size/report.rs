@@ -29,7 +29,7 @@ impl Report {
             let mark = match (figure.has, figure.sufficient) {
                 (None, _) => Cell::new(Look::Dim, "choose"),
                 (_, true) => Cell::new(Look::Good, "good"),
-                (_, false) => Cell::new(Look::Bad, "WANTING"),
+                (_, false) => Cell::new(Look::Bad, "INSUFFICIENT"),
             };
             let number = |value: Option<f64>| value.map(three_digits).unwrap_or_default().into();
             let advice = if figure.has.is_none() || !figure.sufficient { figure.advice } else { "" };

@@ -31,7 +31,7 @@ struct Order {
     answers: Option<UnboundedSender<Answer>>,
 }
 
-/// What became of a command.
+/// The result of a command.
 #[derive(Debug, Serialize)]
 pub struct Answer {
     #[serde(rename = "type")]

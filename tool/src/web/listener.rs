@@ -22,7 +22,7 @@ const CONNECTIONS: usize = 64;
 /// browsers answer every ping.
 pub const SILENCE: Duration = Duration::from_secs(30);
 
-/// Time after which the listener tries again if the system has no more files.
+/// Time after which the listener tries again if the system has no more file descriptors.
 const RETRY: Duration = Duration::from_millis(100);
 
 /// A listener that limits the number of open connections. A further connection waits until another one is closed.

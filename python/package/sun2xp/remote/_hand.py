@@ -91,7 +91,7 @@ class RemoteHand(Reading):
             self._request("release", 0, epoch)
 
     def close(self) -> None:
-        """Releases the hand if this client commands it, and ends the reception. Every finger of a released hand goes to
+        """Releases the hand if this client commands it, and stops receiving. Every finger of a released hand goes to
         its end state."""
         if self._closed:
             return

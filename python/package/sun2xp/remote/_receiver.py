@@ -24,8 +24,8 @@ _KEPT_EVENTS = 4096
 #: Largest difference between the rates of two clocks.
 _DRIFT = 1e-3
 
-#: An Answer that is so much earlier than the newest State comes from a machine that was started again, ns. It cannot
-#: have been on its way for so long.
+#: If an Answer is earlier than the newest State by more than this, ns, the server's machine was started again. The
+#: Answer cannot have been on its way for so long.
 _RESTARTED = 10_000_000_000
 
 Records = numpy.typing.NDArray[numpy.void]
@@ -87,7 +87,7 @@ class Receiver:
         self._newest[finger] = records[-1]
 
     def notify(self) -> None:
-        """Makes waits look at what has changed."""
+        """Wakes the waiting threads, so that they check their conditions again."""
         with self.changed:
             self.changed.notify_all()
 

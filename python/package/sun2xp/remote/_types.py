@@ -131,7 +131,7 @@ class Status:
     lead_force: float
     #: Stiffness with which the server holds a finger, N/cm.
     soft_stiffness: float
-    #: Number of clients that have asked for anything since the start.
+    #: Number of clients that have sent a permitted Request since the start.
     clients: int
     counts: Counts
 

@@ -1,4 +1,4 @@
-/* Sends nonsense between good commands, and looks at nothing. */
+/* Sends nonsense between good commands, and checks no result. */
 #include <stdio.h>
 #include <unistd.h>
 #include "Sun2Xp.h"

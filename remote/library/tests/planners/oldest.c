@@ -1,4 +1,4 @@
-/* No include, no prototypes, float arrays, sleeps, and no look at a return value. */
+/* No include, no prototypes, float arrays, sleeps, and return values that are ignored. */
 float Pos[3], Kx[9];
 
 main()

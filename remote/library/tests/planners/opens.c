@@ -1,4 +1,4 @@
-/* Says what OpenHand says. */
+/* Prints the result, the errno and the error text of OpenHand. */
 #include <errno.h>
 #include <stdio.h>
 #include "Sun2Xp.h"

@@ -1,4 +1,5 @@
-/* Calls that do not reach a hand on another machine: each says -16 and ENOTSUP, and changes nothing. */
+/* Calls that do not reach a hand on another machine: each returns -16, sets errno to
+   ENOTSUP, and changes nothing. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* Three fingers close and open like a hand, by a table. */
+/* Three fingers close and open together. Tables contain the poses. */
 #include "Sun2Xp.c"
 #include <stdio.h>
 #include <unistd.h>

@@ -53,7 +53,7 @@ impl SlackTakeUp {
         slack.targets.speed = steps / self.period;
 
         let taut = std::array::from_fn(|tendon| self.is_taut(slack, tendon));
-        // A tendon that holds the finger against gravity does not pull it.
+        // A tendon that holds the finger against gravity counts as pulling only if it is taut.
         let pulls = (0..4).any(|tendon| {
             taut[tendon] || !slack.holds[tendon] && slack.gauges[tendon].is_above_noise(slack.smoothed[tendon])
         });
@@ -65,7 +65,7 @@ impl SlackTakeUp {
         }
     }
 
-    /// Begins again to wind in the tendons that seemed to be taut but are slack.
+    /// Restarts winding in the tendons that seemed to be taut but are slack.
     fn touch_again(&self, slack: &mut Slack, taut: [bool; 4], travel: &Vector4<f64>) {
         if !slack.gauges.iter().all(Gauge::is_tared) {
             // All tendons seemed to be taut at the start, so the gauges were not read.

@@ -74,7 +74,7 @@ impl Wrong {
             Self::GaugeScale(gauge, _) if self.suspect() => format!(
                 "gauge.newton_per_count is corrected. But the tolerance of parts is smaller, so the cause is probably \
                  the wiring of gauge {gauge} or a wrong mass: check the masses, the supply of its bridge, the gain of \
-                 its amplifier, and for a broken wire of the bridge. After a repair do the step gauges again"
+                 its amplifier, and the wires of the bridge. After a repair do the step gauges again"
             ),
             Self::GaugeScale(..) => "Nothing: gauge.newton_per_count is corrected".into(),
             Self::GaugeZero(..) => "Nothing: gauge.zero is corrected".into(),
@@ -126,7 +126,7 @@ impl Wrong {
                     .into()
             }
             Self::Computer(_) => {
-                "Until that is removed, later steps may stop with lost replies, and readings may be missing".into()
+                "Until the cause is removed, later steps may stop with lost replies, and readings may be missing".into()
             }
             Self::NotPushed => "Push the tip before you press Enter".into(),
             Self::NotWeighed(tendon) => format!("Hang at least one weight on tendon {tendon}"),
