@@ -59,6 +59,17 @@ fn a_caught_finger_waits_while_an_acquire_recovers_another_one() {
 }
 
 #[test]
+fn a_path_ends_as_soon_as_another_client_acquires() {
+    let mut rig = Rig::new("");
+    rig.acquire("alice");
+    rig.wait_until("path", &[path(2, 1, 30.0, FAR)], |rig| rig.report(2).set_point_number > 0);
+    let number = rig.report(2).set_point_number;
+    rig.acquire_only("bob");
+    rig.wait_in_silence("end of the path", |rig| rig.report(2).set_point_number > number);
+    assert!(!is_near(&rig.report(2).set_point.joints, &FAR.into(), 0.05));
+}
+
+#[test]
 fn the_end_of_a_path_is_a_set_point_to_which_a_caught_finger_returns() {
     let mut rig = Rig::new("");
     rig.acquire("alice");
