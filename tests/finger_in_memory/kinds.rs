@@ -169,3 +169,31 @@ fn a_motor_above_its_continuous_torque_is_limited_and_then_stopped() {
     bench.cycles(2);
     assert!(bench.with_finger(|finger| finger.status().has(Status::ENDED)));
 }
+
+/// The windings stay warm while the finger recovers, and cool during a long pause.
+#[test]
+fn a_motor_stays_warm_over_a_recovery() {
+    let mut bench = Bench::with(|configuration| {
+        configuration.fingers[0].motor.continuous_torque = [0.8; 4];
+        configuration.fingers[0].motor.thermal_time = 1.0;
+    });
+    let periods_to_the_fault = |bench: &mut Bench| {
+        let begin = bench.report().losses.cycles;
+        let push = |bench: &Bench, force: f64| {
+            bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(0.0, 0.0, force)));
+        };
+        push(bench, -2.5);
+        bench.faults(FaultKind::OverheatedMotor);
+        push(bench, 0.0);
+        bench.report().losses.cycles - begin
+    };
+    let cold = periods_to_the_fault(&mut bench);
+    bench.repair();
+    bench.opens();
+    let warm = periods_to_the_fault(&mut bench);
+    bench.cycles(10_000);
+    bench.repair();
+    bench.opens();
+    let cooled = periods_to_the_fault(&mut bench);
+    assert!(4 * warm < 3 * cold && 4 * cooled > 3 * cold, "{cold}, {warm} and {cooled} periods");
+}
