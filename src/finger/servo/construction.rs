@@ -92,8 +92,7 @@ impl FingerServo {
     ) -> Result<(Self, Mailbox), Unusable> {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[number.index()]);
         let adjustable = Adjustable::new(configuration, number)?;
-        let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
-        let link = LinkWatch::new(hand, finger.simulated());
+        let (feedback, link) = (found(configured), LinkWatch::new(hand, finger.simulated()));
         let initial = SetPoint { law: finger.controller.law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
         let report = FingerReport::opening(initial);
         let (planners, servo, mut memory) = mailbox(report, &adjustable, &configuration.gravity(number).into());
@@ -142,4 +141,9 @@ impl FingerServo {
         };
         Ok((this, planners))
     }
+}
+
+/// The sensor values that the board has reported in its handshake.
+pub(super) fn found(configured: &Configured) -> Feedback {
+    Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges }
 }

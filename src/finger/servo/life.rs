@@ -1,7 +1,8 @@
 //! The stages of a finger from open to close, and the transitions between them.
 
+use super::construction::found;
 use super::{FingerServo, STOPS_AFTER_FAULT};
-use crate::control::{Activity, Feedback, MotorCommand, SetPoint};
+use crate::control::{Activity, MotorCommand, SetPoint};
 use crate::finger::{Fault, FaultKind, Order, RestoredBoard, Stage};
 use crate::model::Part;
 use nalgebra::Vector4;
@@ -103,7 +104,7 @@ impl FingerServo {
         self.alarm.forget(stops);
         self.mailbox.forget_stops(*stops);
         self.mailbox.discard_groups();
-        self.feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
+        self.feedback = found(configured);
         self.status = configured.status;
         let reset = matches!(self.report.stage, Stage::Faulted(fault) if fault.kind == FaultKind::BoardReset);
         self.touch.recover(reset);
