@@ -57,7 +57,7 @@ impl FingerServo {
     /// number of periods that will be skipped after this cycle.
     fn periods_without_reply(&self, skipped: u64) -> u64 {
         // `sample_age` already counts this cycle's period and the skipped ones.
-        if self.answered { 0 } else { self.sample_age - 1 - skipped }
+        if self.answered { 0 } else { self.sample_age.saturating_sub(1 + skipped) }
     }
 
     /// Begins a spring phase that continues with the set point in force. The numbers of set points that were sent in
