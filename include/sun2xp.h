@@ -1691,7 +1691,7 @@ int sun2xp_reset_timing(sun2xp_hand *hand, int finger);
 #define SUN2XP_FAULT_EMERGENCY_STOP_CALL    19 /* emergency stop, call */
 #define SUN2XP_FAULT_SUPPLY_FAULT           20 /* motor supply */
 #define SUN2XP_FAULT_DRIVER_FAULT           21 /* motor driver */
-#define SUN2XP_FAULT_SENSOR_FAULT           22 /* sensor, by the board */
+#define SUN2XP_FAULT_SENSOR_FAULT           22 /* sensor, reported by the board */
 #define SUN2XP_FAULT_BOARD_RESET            23 /* board reset */
 #define SUN2XP_FAULT_COMMAND_REFUSED        24 /* command refused */
 #define SUN2XP_FAULT_PORT_VANISHED          25 /* port vanished */
