@@ -63,7 +63,7 @@
        EDOM       SUN2XP_ERROR_LIMIT           a matrix that is not symmetric, or has a negative eigenvalue
        EIO        SUN2XP_ERROR_FAULTED         the finger has stopped by itself
        EBUSY      SUN2XP_ERROR_BUSY            hand or finger is being opened, closed, calibrated or recovered
-       ETIMEDOUT  SUN2XP_ERROR_TIMED_OUT       a time limit is over
+       ETIMEDOUT  SUN2XP_ERROR_TIMED_OUT       a time limit has expired
        ENOTSUP    SUN2XP_ERROR_NOT_SUPPORTED   the call needs a simulated finger or object, or a hand of this machine
        ESHUTDOWN  SUN2XP_ERROR_EXITING         the process is exiting (chapter 5)
        others     the errno of the system, or the errno that describes the reason best
@@ -242,7 +242,7 @@ typedef struct sun2xp_hand sun2xp_hand;
 #define SUN2XP_ERROR_PORT 11                /* A port or board does not work. */
 #define SUN2XP_ERROR_SYSTEM 12              /* The system refuses a thread, a file or another resource. */
 #define SUN2XP_ERROR_NO_MEMORY 13           /* There is not enough memory. */
-#define SUN2XP_ERROR_TIMED_OUT 14           /* The time limit is over. */
+#define SUN2XP_ERROR_TIMED_OUT 14           /* The time limit has expired. */
 #define SUN2XP_ERROR_CALIBRATION 15         /* A calibration failed. */
 #define SUN2XP_ERROR_NOT_SUPPORTED 16       /* The hand lacks what the call needs, such as a simulated finger or
                                                object. */
@@ -308,11 +308,14 @@ const char *sun2xp_error_text(const sun2xp_hand *hand);
 #define SUN2XP_LOG_REFUSAL 1                /* A call was refused. */
 #define SUN2XP_LOG_WARNING 2                /* The library continues, but not as the user may expect. */
 
-/* A function that takes messages: severity (SUN2XP_LOG_...), one line of text, and the argument of sun2xp_set_log. */
+/*
+ A function that receives messages: severity (SUN2XP_LOG_...), one line of text, and the argument of
+ sun2xp_set_log.
+ */
 typedef void (*sun2xp_log)(int severity, const char *text, void *user);
 
 /*
- sun2xp_set_log - take the messages of the library
+ sun2xp_set_log - receive the messages of the library
 
    callback   function to call with each message; null: messages go to standard error again
    user       third argument of each call of the function
@@ -348,7 +351,7 @@ int sun2xp_set_log(sun2xp_log callback, void *user);
 const char *sun2xp_version(void);
 
 /*
- sun2xp_version_number - the version as a number that rises
+ sun2xp_version_number - the version as a number that increases with each version
 
  Returns 10000 times the major, plus 100 times the minor, plus the patch number.
  SUN2XP_VERSION_NUMBER is the same number for the header.
@@ -378,7 +381,8 @@ unsigned int sun2xp_abi_version(void);
 
  Opens the ports, starts the servos and brings the tendons under tension. Returns when every finger has
  answered and holds its present pose at the configured initial stiffness. Takes at most about a second
- for a simulated hand. A program may open 16 hands.
+ for a simulated hand. A program may have 16 hands of sun2xp_open
+ open at the same time.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1016,7 +1020,7 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
    EINVAL   no such finger; no such until; seconds is negative or NaN
    EIO      a finger is faulted
    EBUSY    a finger is limp, is being calibrated, or is closed
-   ETIMEDOUT  the time is over; sun2xp_error_text names a finger that has not arrived or settled
+   ETIMEDOUT  the time has expired; sun2xp_error_text names a finger that has not arrived or settled
 
  Threads: any.
 
@@ -1408,9 +1412,9 @@ struct sun2xp_object {
     size_t size;                            /* sizeof (struct sun2xp_object), set before the call. */
     int touching;                           /* Number of fingers that touch the object. */
     double time;                            /* Simulated time since sun2xp_open, s. */
-    double position[3];                     /* Position of the middle: x, y, z, cm. */
+    double position[3];                     /* Position of the centre: x, y, z, cm. */
     double rotation[3][3];                  /* Rotation from the object's frame to the palm's, row by row. */
-    double velocity[3];                     /* Velocity of the middle, cm/s. */
+    double velocity[3];                     /* Velocity of the centre, cm/s. */
     double angular_velocity[3];             /* Angular velocity, rad/s. */
     double force[3][3];                     /* True force of each finger on the object, N; [0]: finger 1. */
 };
@@ -1421,7 +1425,7 @@ struct sun2xp_object {
    object   result, some milliseconds old at most; set object->size before the call
 
  All simulated fingers touch one object if hand.simulated_object is configured: a ball or a box with
- mass, friction and gravity, on a table or not. hand.gravity is its gravity.
+ mass and friction. It can lie on a table. hand.gravity also acts on the object.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1727,8 +1731,8 @@ int sun2xp_reset_timing(sun2xp_hand *hand, int finger);
 /*
  Result of sun2xp_fault.
 
- sun2xp_fault_text says which kind of part a fault has. A part is 0 if the fault concerns the whole
- finger.
+ The text of sun2xp_fault_text says which kind of part a fault concerns, for example a tendon. A part is 0
+ if the fault concerns the whole finger.
  */
 struct sun2xp_fault {
     size_t size;                            /* sizeof (struct sun2xp_fault), set before the call. */
@@ -1791,8 +1795,8 @@ const char *sun2xp_fault_text(int number);
 
  With hand.end_state = "release", the default, the torque goes to zero at once. With "hold" the motors
  keep their last torque, up to hand.hold_torque_limit, for hand.hold_time_ms, by default 2 s and at most
- a minute. Configure "hold" only for objects that must not be dropped: no call releases the torque
- earlier. Only the emergency stop input of the board, or cutting the board's power, does.
+ a minute. Configure "hold" only for objects that must not be dropped, because no call releases the torque
+ earlier. Only the emergency stop input of the board, or cutting the board's power, releases it earlier.
 
  sun2xp_stop_all is not a safety function: it needs this process, this machine and the cable.
 
@@ -1991,7 +1995,7 @@ struct sun2xp_event {
  Takes the earliest event of all fingers since sun2xp_open that no call has taken yet. Events come in the
  order of their times, except if a servo is late by more than two periods. Each finger keeps its newest
  4096 events. If they are not taken in time, the oldest are lost, and event->lost counts them. A callback
- of sun2xp_on_event takes nothing away from this call.
+ of sun2xp_on_event takes no events: this call returns them too.
 
  Returns 1 if there was an event, 0 if there was none, or a negative number with
    EPERM    forked child
@@ -2051,8 +2055,8 @@ int sun2xp_wait_event(sun2xp_hand *hand, struct sun2xp_event *event, double seco
  The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 
  When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
- called again. If a callback makes one of these calls, the call does not wait. A previous callback that
- runs then is not called again after it has returned.
+ called again. If a callback makes one of these calls, the call does not wait. If the previous
+ callback is then still running, it is not called again after it has returned.
 
  Returns 0, or a negative number with
    EPERM    forked child

@@ -59,7 +59,7 @@ def test_a_point_at_the_time_0_is_a_pose_to_take_at_once():
         (NAMES[:2], "finger1_joint2 is missing"),
         ([*NAMES, "finger2_joint0"], "there is no joint finger2_joint0"),
         ([NAMES[0], *NAMES], "named twice"),
-        ([], "there is no joint named"),
+        ([], "there is no joint in joint_names"),
     ],
 )
 def test_other_names_are_refused(names, text):

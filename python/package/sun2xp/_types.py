@@ -186,11 +186,11 @@ class ObjectState:
 
     #: Simulated time since the boards have started, s.
     time: float
-    #: Position of the middle, cm: shape (3,).
+    #: Position of the centre of mass, cm: shape (3,).
     position: Array
     #: Rotation from the object's frame to the palm's: shape (3, 3).
     rotation: Array
-    #: Velocity of the middle, cm/s: shape (3,).
+    #: Velocity of the centre of mass, cm/s: shape (3,).
     velocity: Array
     #: Angular velocity, rad/s: shape (3,).
     angular_velocity: Array
