@@ -381,8 +381,8 @@ unsigned int sun2xp_abi_version(void);
 
  Opens the ports, starts the servos and brings the tendons under tension. Returns when every finger has
  answered and holds its present pose at the configured initial stiffness. Takes at most about a second
- for a simulated hand. A program may have 16 hands of sun2xp_open
- open at the same time.
+ for a simulated hand. At most 16 hands of sun2xp_open can be
+ open at once.
 
  Returns 0, or a negative number with
    EPERM    forked child

@@ -51,7 +51,8 @@ impl Manual {
             let (text, after) = after.split_once("\n */\n").expect("every comment ends");
             let declaration = after.lines().next().unwrap_or_default();
             let callee = declaration.split_once('(').and_then(|(call, _)| call.rsplit([' ', '*']).next());
-            let Some(call) = callee.filter(|_| declaration.ends_with(");")) else { continue };
+            let is_call = declaration.ends_with(");") && !declaration.starts_with("typedef");
+            let Some(call) = callee.filter(|_| is_call) else { continue };
             let text = text.lines().map(|line| line.strip_prefix(' ').unwrap_or(line)).collect::<Vec<_>>().join("\n");
             entries.push(Entry { call: call.to_string(), declaration: declaration.to_string(), text });
         }
