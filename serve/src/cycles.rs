@@ -161,14 +161,14 @@ fn keep_newest(records: &mut Vec<Record>, most: usize) -> usize {
         let longest = (0..FINGERS).max_by_key(|&finger| counts[finger] - dropped[finger]).unwrap_or(0);
         dropped[longest] += 1;
     }
-    let mut left = dropped;
+    let before = records.len();
     records.retain(|record| {
-        let left = &mut left[record.finger.index()];
+        let left = &mut dropped[record.finger.index()];
         let keeps = *left == 0;
         *left = left.saturating_sub(1);
         keeps
     });
-    dropped.iter().sum()
+    before - records.len()
 }
 
 /// The stage as it is sent.

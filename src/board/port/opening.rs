@@ -15,8 +15,8 @@ impl Port {
     /// Returns an error if `path` is not a serial port, if this user may not open it, or if another program has it
     /// open. Returns an error if the driver does not support `baud` or refuses another setting.
     pub fn open(path: &Path, baud: u32) -> Result<Self, PortError> {
-        let (descriptor, path_buffer, process) = (open(path)?, path.to_owned(), std::process::id());
-        let mut port = Self { descriptor, path: path_buffer, ready_at: 0, process, locked: false };
+        let (descriptor, process) = (open(path)?, std::process::id());
+        let mut port = Self { descriptor, path: path.to_owned(), ready_at: 0, process, locked: false };
         port.lock()?;
         let set_up = |source| PortError::SetUp { path: path.to_owned(), source };
         let offered = port.configure(baud).map_err(set_up)?;

@@ -3,8 +3,11 @@
 use super::browser::alone;
 use super::chrome::Browser;
 use super::control::jog;
+use super::program::Program;
 use super::tools::available;
 use serde_json::{Value, json};
+use std::sync::MutexGuard;
+use tempfile::TempDir;
 
 /// Notes the commands of the page in `sent`.
 const NOTE_COMMANDS: &str = "
@@ -20,6 +23,18 @@ const NOTE_COMMANDS: &str = "
 /// Finds the button with a text. Buttons of another panel may have the same text, so the first one counts.
 fn button(text: &str) -> String {
     format!("[...document.querySelectorAll('#control button')].find((one) => one.textContent === '{text}')")
+}
+
+/// Opens the page of a hand that it may move; none without a browser. Nothing else uses a browser meanwhile.
+fn page() -> Option<(MutexGuard<'static, ()>, Program, TempDir, Browser)> {
+    if !available("chromium", "the page in a browser") {
+        return None;
+    }
+    let alone = alone();
+    let (program, folder) = jog(&["--control"]);
+    let browser = Browser::start(1280, 800);
+    browser.open(&program.url);
+    Some((alone, program, folder, browser))
 }
 
 fn key(value: &str) -> Value {
@@ -47,13 +62,7 @@ fn commands(browser: &Browser) -> Vec<String> {
 
 #[test]
 fn the_space_bar_stops_the_hand_wherever_the_focus_is() {
-    if !available("chromium", "the page in a browser") {
-        return;
-    }
-    let _alone = alone();
-    let (program, _folder) = jog(&["--control"]);
-    let browser = Browser::start(1280, 800);
-    browser.open(&program.url);
+    let Some((_alone, _program, _folder, browser)) = page() else { return };
     // A click leaves the focus on a button. The page may build its buttons once more until it is connected.
     let focus = format!("const close = {}; close?.focus(); return close === document.activeElement", button("Close"));
     browser.wait_for(&focus);
@@ -70,13 +79,7 @@ fn the_space_bar_stops_the_hand_wherever_the_focus_is() {
 
 #[test]
 fn a_held_button_ends_when_another_finger_is_selected() {
-    if !available("chromium", "the page in a browser") {
-        return;
-    }
-    let _alone = alone();
-    let (program, _folder) = jog(&["--control"]);
-    let browser = Browser::start(1280, 800);
-    browser.open(&program.url);
+    let Some((_alone, _program, _folder, browser)) = page() else { return };
     browser.wait_for(&format!("return !!{}", button("+z")));
     browser.run(NOTE_COMMANDS);
     mouse(&browser, "+z", &[json!({ "type": "pointerDown", "button": 0 })]);
