@@ -2,9 +2,10 @@
 one sleeps while another process burns Python. One run measures the three in turns. Prints the table of docs/python.md.
 
     python wake_up.py [--rounds 10] [--seconds 10]
+    taskset --cpu-list 0 python wake_up.py --servo-core 1
 
-The planner that burns Python does so in as many threads as there are cores, and another of its threads reads and sends
-1000 times a second. The other process burns Python in as many threads. It has no hand, so its interpreter lock cannot
+With the second command the servos run on core 1 and everything else on core 0. The planner that burns Python does so in
+as many threads as it has cores, and another of its threads reads and sends 1000 times a second. The other process burns Python in as many threads. It has no hand, so its interpreter lock cannot
 affect the servos. It shows the effect of cores that are in use. The figures are medians over all fingers and rounds.
 Run it on a quiet machine with real-time scheduling.
 """
@@ -16,6 +17,7 @@ import subprocess
 import sys
 import threading
 import time
+from typing import Optional
 
 import sun2xp
 
@@ -32,8 +34,13 @@ def burn(stop: threading.Event) -> None:
 
 
 def burners(stop: threading.Event) -> list:
-    """Returns as many burning threads as there are cores."""
-    return [threading.Thread(target=burn, args=(stop,)) for _ in range(os.cpu_count() or 1)]
+    """Returns as many burning threads as this process has cores."""
+    return [threading.Thread(target=burn, args=(stop,)) for _ in os.sched_getaffinity(0)]
+
+
+def configuration(servo_core: Optional[int]) -> str:
+    """Returns the configuration that binds the servos to a core, or none."""
+    return "" if servo_core is None else "".join(f"[finger.{finger}]\ncore = {servo_core}\n" for finger in (1, 2, 3))
 
 
 def plan(hand: sun2xp.Hand, stop: threading.Event, counts: list) -> None:
@@ -74,6 +81,7 @@ def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--rounds", type=int, default=10)
     arguments.add_argument("--seconds", type=float, default=10.0)
+    arguments.add_argument("--servo-core", type=int, help="core of the servos; by default the kernel chooses")
     arguments.add_argument("--burn", action="store_true", help=argparse.SUPPRESS)
     arguments = arguments.parse_args()
     # With the default of 5 ms, each burning thread keeps the interpreter lock for 5 ms, and the planning thread cannot
@@ -86,7 +94,7 @@ def main() -> None:
     loads = [SLEEPS, OTHER, PLANNER]
     found = {load: [] for load in loads}
     planned = 0
-    with sun2xp.simulated() as hand:
+    with sun2xp.simulated(text=configuration(arguments.servo_core)) as hand:
         status = hand.status(1)
         for round in range(arguments.rounds):
             # The order changes, so that a slow change of the machine does not look like an effect.

@@ -1,4 +1,4 @@
-"""Messages of the library in the module logging."""
+"""Messages of the library go to the Python module `logging`."""
 
 import logging
 import os

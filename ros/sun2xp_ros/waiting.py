@@ -14,7 +14,7 @@ class _Waiting:
 
 
 class WaitingTrajectories:
-    """Begins trajectories at their stamps, unless the finger gets another command before."""
+    """Begins each trajectory at its stamp, without the fingers that have got another command by then."""
 
     def __init__(self, node: Any) -> None:
         self._node = node
@@ -42,5 +42,5 @@ class WaitingTrajectories:
 
     def _end(self, one: _Waiting) -> None:
         self._waiting.remove(one)
-        # A timer of ROS is called again and again.
+        # A ROS timer is periodic, so it is destroyed.
         self._node.destroy_timer(one.timer)

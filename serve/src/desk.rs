@@ -186,7 +186,8 @@ impl Desk {
     /// Ends the ownership at `now`, ns. The fingers go to their end state as if the owner had fallen silent.
     pub fn abandon(&mut self, now: u64) {
         self.ownership.end();
-        // A finger that is still being recovered has no validity.
+        // The set point of a finger that is still being recovered has no validity that could end. The desk therefore
+        // stops the fingers that still move after this time.
         let end = u64::from(self.limits.end_ms) * MILLISECOND + GRACE;
         (self.silence, self.stop_at) = (None, Some(now + end));
     }
@@ -258,7 +259,7 @@ impl Desk {
         Silence::after_acquire(now, self.limits.catch_ms, self.limits.end_ms)
     }
 
-    /// Returns an Answer of this time.
+    /// Returns an Answer with the time `now`, ns.
     #[must_use]
     pub fn answer(&self, code: Code, text: String, epoch: u64, now: u64) -> Answer {
         Answer { code, catch_ms: self.limits.catch_ms, epoch, time: now, number: 0, text }

@@ -35,10 +35,9 @@ pub struct sun2xp_error {
 ///   hand    a hand, open or closed; null: any hand
 ///   error   result; set error->size before the call
 ///
-/// Every thread has its own refusals. For each hand, the thread remembers only the last refusal. It does so
-/// for the four hands that have refused its calls most recently. The refusal of a call without a usable
-/// handle belongs to no hand, and only hand = null returns it. A call that succeeds does not change the
-/// refusals.
+/// Every thread has its own refusals. A thread remembers the last refusal of each of the four hands that
+/// have refused its calls most recently. The refusal of a call without a usable handle belongs to no
+/// hand, and only hand = null returns it. A call that succeeds does not change the refusals.
 ///
 /// Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
 ///

@@ -114,8 +114,8 @@ int main(void)
     REFUSED(sun2xp_adjust(HAND, 1, "tendon.minimum = 6"), ENOMEM, "memory");
     REFUSED(sun2xp_write_black_box(HAND, 1, "no_memory.jsonl"), ENOMEM, "memory");
     REFUSED(sun2xp_zero(HAND, 1), ENOMEM, "memory");
-    /* Meanwhile the library's own threads do their periodic work: every 50 ms, every second, and until a black box
-       is full. */
+    /* Meanwhile the library's own threads do their periodic work, every 50 ms and every second. The pause is also
+       longer than a black box takes to become full. */
     PAUSE_MS(3500);
     quick_calls();
     CHECK(sun2xp_stop_all() == 0);

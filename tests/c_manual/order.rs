@@ -6,8 +6,8 @@ use super::manual::Manual;
 use std::collections::BTreeMap;
 use std::process::Command;
 
-/// Errnos that tests/c/order.c cannot try, because they exclude the others: those of boards, of calibrations and
-/// recoveries in progress, and some of the system's.
+/// Errnos that tests/c/order.c cannot try, because they cannot occur together with the other errnos: those of boards,
+/// of calibrations and recoveries in progress, and some of the system's.
 const NOT_TRIED: &[(&str, &[&str])] = &[
     ("OpenHand", &["EACCES", "EIO", "ETIMEDOUT", "EPERM", "ENOMEM"]),
     ("CloseHand", &["EBUSY"]),
@@ -53,7 +53,7 @@ fn calls_report_the_first_refusal_of_their_entries() {
             entry.errnos().into_iter().skip(1).find(|errno| !reported.contains(errno) && !untried.contains(errno));
         assert_eq!(
             forgotten, None,
-            "tests/c/order.c should try this refusal of {}, unless it excludes the others: NOT_TRIED",
+            "tests/c/order.c should try this refusal of {}. If it cannot occur with the others, add it to NOT_TRIED",
             entry.call
         );
     }

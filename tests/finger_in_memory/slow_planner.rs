@@ -213,7 +213,7 @@ fn a_finger_without_a_command_can_stop_after_a_time_too() {
     bench.faults(FaultKind::SetPointExpired);
 }
 
-/// Set points that are discarded during an inhibition have numbers that later set points get again.
+/// The numbers of set points that are discarded during an inhibition are used again for later set points.
 #[test]
 fn a_renewal_of_a_discarded_set_point_does_not_shorten_a_later_one() {
     let mut bench = Bench::new();

@@ -25,7 +25,7 @@ fn tip(hand: &Hand, finger: i32) -> Vector3<f64> {
     ConfiguredFinger::default().links().tip(&hand.position(finger).expect("position").into())
 }
 
-/// The position of the fingertip over 200 ms in which it moved by less than 0.02 cm.
+/// Waits until the fingertip has moved by at most 0.02 cm for 200 ms. Returns its position.
 fn resting_tip(hand: &Hand, finger: i32) -> Vector3<f64> {
     let (mut from, mut since) = (tip(hand, finger), Instant::now());
     wait_until("at rest", || {
@@ -108,8 +108,8 @@ fn slack_tendons_are_taken_up_when_the_hand_is_opened_again() {
     // The finger holds the pose in which it was found, and continues from there.
     let held = hand.report(2).expect("report").set_point.joints;
     assert!((Vector3::from(hand.position(2).expect("position")) - held).amax() < 0.02);
-    // Every tendon is slack here, and the first one that becomes tight turns the joints by 0.09 to 0.13 rad, depending
-    // on how the push has left the motors.
+    // The finger was found with slack tendons. The first tendon that becomes tight turns the joints by 0.09 to
+    // 0.13 rad, depending on the motor angles after the push.
     assert!((held - Vector3::from_column_slice(&found.joints)).amax() < 0.16, "found at {found:?}, held at {held}");
     goes(&hand, 2, TARGET);
     goes(&hand, 2, START);

@@ -25,7 +25,7 @@ def started():
 
 
 def answer_of(board, wire):
-    """The frame that the board sends within 0.3 ms of the last byte, or None."""
+    """The frame that the board sends within 0.6 ms of the last byte, or None."""
     board.registers.sent.clear()
     board.registers.byte_cycles = 840
     last = board.send(wire, 2_000_000)
@@ -50,7 +50,8 @@ def check(board, step):
 
 
 def possible(step):
-    """Sensor faults cannot be injected within the millisecond that a step has."""
+    """Whether the model can run this step. Steps without a wait follow each other within 1 ms, which is too short to
+    inject a sensor fault."""
     return step.get("wait_ms", 0) <= LONGEST and step.get("faults", 0) & ~(STOP | SUPPLY | DRIVER) == 0
 
 

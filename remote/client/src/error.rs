@@ -73,8 +73,9 @@ pub enum RemoteError {
     },
     /// The client has heard nothing of the hand for so long that it does not send the set point.
     #[error(
-        "nothing was heard of the hand {hand} for {age_ms} ms, and remote.stale_ms is {stale_ms}, so the set point is \
-         not sent: check the line to {endpoint} and the server, and send a new set point when the position can be read"
+        "for {age_ms} ms, nothing was received from the hand {hand}, and remote.stale_ms is {stale_ms}, so the set \
+         point is not sent: check the line to {endpoint} and the server, and send a new set point when the position \
+         can be read"
     )]
     Silent {
         /// The name of the hand.

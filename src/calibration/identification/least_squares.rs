@@ -30,7 +30,8 @@ impl<const N: usize> LeastSquares<N> {
         let scaled =
             SMatrix::<f64, N, N>::from_fn(|row, column| self.matrix[(row, column)] * scale[row] * scale[column]);
         let cholesky = scaled.cholesky()?;
-        // The smallest squared pivot of the scaled matrix: the part of a column that the other columns do not explain.
+        // The smallest squared pivot of the scaled matrix: the part of a column that the columns before it do not
+        // explain.
         let least = cholesky.l().diagonal().map(|pivot| pivot * pivot).min();
         let a = cholesky.solve(&self.vector.component_mul(&scale)).component_mul(&scale);
         let left = (self.squares - a.dot(&self.vector)).max(0.0);

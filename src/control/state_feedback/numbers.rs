@@ -216,7 +216,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
 ];
 
 impl Numbers {
-    /// Returns the numbers at `rate`, Hz. Numbers that are not configured come from the table.
+    /// Returns the numbers at `rate`, Hz. Numbers that are not configured come from the table or from the constants.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
         let tuned = at(&TABLE, rate);
         let numbers = Self {

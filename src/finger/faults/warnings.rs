@@ -3,7 +3,7 @@
 use super::{Fault, FaultKind};
 use crate::model::Part;
 
-/// Number of warnings that can take turns without counting again.
+/// Number of warnings that can alternate and still count only once each.
 const TAKING_TURNS: usize = 4;
 
 /// The warnings that were noted last. Several conditions may persist and be noted in turn.

@@ -30,8 +30,8 @@ const BEYOND_LIMITS: f64 = 0.5;
 const WARNING_MS: f64 = 1000.0;
 
 impl Adjustable {
-    /// Constructs the data that the configuration describes. The result has the number of a finger's first controller,
-    /// 0.
+    /// Constructs the data that the configuration describes. The `number` of the result is 0, the number of a finger's
+    /// first controller.
     ///
     /// # Errors
     /// Returns an error if no controller can be constructed from the configuration.
@@ -65,7 +65,8 @@ impl Limits {
 }
 
 impl FingerServo {
-    /// Makes the servo wait for hardware that advances with its exchanges, as built-in simulated fingers do.
+    /// Makes the servo wait for the reply of hardware that advances by one period in every exchange. Servos of built-in
+    /// simulated fingers wait too.
     pub fn in_step(mut self, hand: &ConfiguredHand) -> Self {
         self.link = LinkWatch::new(hand, true);
         self.supervision = Supervision::new(hand.rate, self.link.most(), self.board.gauge_bits);

@@ -7,7 +7,8 @@ use sun2xp::groups::FingerCommand;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::{Hand, HandError, Stage};
 
-/// Largest change of a joint angle in one command to a real finger, rad: 3 degrees.
+/// Largest change of a joint angle in one command to a real finger, rad: 3 degrees. A command for the tip may change a
+/// joint angle by three times as much.
 pub const REAL_JOINT_STEP: f64 = 0.0524;
 
 /// Largest motion of a fingertip in one command to a real finger, cm.

@@ -26,7 +26,7 @@ pub enum Pressed {
     Quit,
 }
 
-/// How a command differs from `sun2xp monitor`.
+/// What a subcommand, such as `sun2xp jog`, adds to the views of `sun2xp monitor`.
 pub struct Controls<Keys, Tick, Urgent> {
     /// Handles a key.
     pub keys: Keys,

@@ -22,7 +22,7 @@ const GAP: f64 = 84.0;
 /// Number of bins in a factor of ten.
 const BINS: f64 = 20.0;
 
-/// The times of one finger: when, wake-up and end of the cycle, us.
+/// The times of the cycles of one finger: the time of the cycle, s, its wake-up and its end, us.
 #[derive(Default)]
 struct Times(Vec<(f64, f32, f32)>);
 
@@ -74,7 +74,7 @@ impl Plot for Timing {
     }
 }
 
-/// The number of cycles by their time, both logarithmic, so that single late cycles are visible.
+/// A histogram of one of the times of the cycles. Both axes are logarithmic, so that single late cycles are visible.
 fn histogram(name: &str, fingers: &[(usize, &Times)], of: fn(&(f64, f32, f32)) -> f32, period: f64) -> Panel {
     let sorted = fingers.iter().map(|&(index, times)| {
         let mut values: Vec<f32> = times.0.iter().map(of).filter(|time| time.is_finite()).collect();

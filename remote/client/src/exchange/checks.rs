@@ -113,9 +113,9 @@ impl Exchange {
         let status = self.view.status().ok_or_else(|| self.nothing_heard())?;
         match self.view.silence(now) {
             Some(silence) if silence > LONGEST_SILENCE => Err(RemoteError::NotConnected(format!(
-                "nothing was heard of the hand {} for {:.1} s: check the line to {} and the server",
-                self.hand,
+                "for {:.1} s, nothing was received from the hand {}: check the line to {} and the server",
                 silence as f64 * 1e-9,
+                self.hand,
                 self.endpoint
             ))),
             _ => Ok(status),

@@ -205,7 +205,7 @@ fn set_points_are_not_sent_into_silence() {
     assert!(send(&mut exchange, good(1), 110 * MS).is_ok());
     let (kind, text) = refused(send(&mut exchange, good(1), 111 * MS));
     assert_eq!(kind, RemoteErrorKind::NotConnected);
-    assert!(text.starts_with("nothing was heard of the hand left for 101 ms"), "{text}");
+    assert!(text.starts_with("for 101 ms, nothing was received from the hand left"), "{text}");
     assert_eq!(exchange.status(3010 * MS).map(|status| status.catch_ms).ok(), Some(100));
     assert_eq!(exchange.status(3011 * MS).expect_err("old").kind(), RemoteErrorKind::NotConnected);
 }

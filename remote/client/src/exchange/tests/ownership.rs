@@ -26,7 +26,7 @@ fn a_server_that_was_started_again_is_noticed() {
     assert!(refused(send(&mut exchange, good(1), 30 * MS)).1.contains("the server has ended its ownership"));
 }
 
-/// The server has answered an acquire before its first State since its start arrives.
+/// The server was started again. Its Answer to an acquire arrives before its first State.
 #[test]
 fn an_epoch_of_a_server_that_was_started_again_is_kept() {
     let mut exchange = owner();
