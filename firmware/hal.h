@@ -43,7 +43,8 @@ bool hal_touch(unsigned finger, unsigned element, uint16_t *count);
    zeros must remove the torque, whatever state the drivers are in. */
 void hal_set_currents(unsigned finger, const int32_t microamperes[MOTORS]);
 
-/* Inputs: the bits of STATUS_FAULTS (core/protocol.h) that are present now. */
+/* Inputs: the bits of STATUS_FAULTS (core/protocol.h) that are present now. A fault that has come and ended since the
+   last call may be reported too, once. */
 uint16_t hal_faults(unsigned finger);
 
 /* Sets the pin that carries the toggle bit. Does nothing on a board without this pin. */

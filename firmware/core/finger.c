@@ -111,7 +111,9 @@ static bool passed(uint32_t since, uint32_t now, uint16_t milliseconds)
     return elapsed < 0x80000000u && elapsed > 1000u * (uint32_t)milliseconds;
 }
 
-void finger_tick(struct finger *finger, uint32_t now)
+/* Returns the faults that are present. A fault is stored and takes the torque off. The hardware may report a short
+   fault only once, so no other function may read the faults. */
+static uint16_t take_faults(struct finger *finger)
 {
     uint16_t faults = hal_faults(finger->index) & STATUS_FAULTS;
     if (faults != 0) {
@@ -120,6 +122,12 @@ void finger_tick(struct finger *finger, uint32_t now)
         if (finger->state != FINGER_IDLE)
             finger->state = FINGER_ENDED;
     }
+    return faults;
+}
+
+void finger_tick(struct finger *finger, uint32_t now)
+{
+    take_faults(finger);
     if (finger->state == FINGER_ENABLED && passed(finger->commanded_at, now, finger->terms.watchdog_ms)) {
         finger->latched |= STATUS_WATCHDOG_TRIPPED;
         end(finger, now);
@@ -192,7 +200,7 @@ void finger_configure(struct finger *finger, const struct frame *request, struct
 {
     struct configure terms;
     read_configure(request, &terms);
-    uint16_t faults = hal_faults(finger->index) & STATUS_FAULTS;
+    uint16_t faults = take_faults(finger);
     uint16_t wrong = wrong_field(finger->traits, &terms);
     if (finger->state == FINGER_ENABLED) {
         finger_refuse(finger, request, REASON_RUNNING, 0, answer);
