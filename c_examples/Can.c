@@ -42,25 +42,29 @@ static void start_far_end(const char *program, const char *place, pid_t *process
     }
 }
 
-/* Waits for one frame with encoder counts and one with tensions. */
+/* Waits for a frame with encoder counts and then one with tensions, in the order in which the drives send them. A late
+   frame of the exchange before may come first: tensions without counts before them are ignored, and later counts
+   replace earlier ones. */
 static int receive_sample(struct drives *drives, struct sun2xp_io_sample *sample, double deadline)
 {
-    int numbers[4], missing = 2, identifier, i;
+    int numbers[4], has_counts = 0, identifier, i;
 
-    while (missing > 0) {
+    for (;;) {
         identifier = can_receive(&drives->bus, numbers, deadline);
         if (identifier < 0)
             return ETIMEDOUT;
         if (identifier == CAN_EMERGENCY + drives->finger)
             sample->faults |= SUN2XP_IO_WATCHDOG;
-        for (i = 0; i < 4; i++) {
-            if (identifier == CAN_ENCODERS + drives->finger)
+        if (identifier == CAN_ENCODERS + drives->finger) {
+            for (i = 0; i < 4; i++)
                 drives->encoders[i] += (short)(numbers[i] - drives->encoders[i]);
-            if (identifier == CAN_TENSIONS + drives->finger)
-                sample->tensions[i] = TENSION_UNIT * (numbers[i] & 0xFFFF);
+            has_counts = 1;
         }
-        missing -= identifier == CAN_ENCODERS + drives->finger || identifier == CAN_TENSIONS + drives->finger;
+        if (identifier == CAN_TENSIONS + drives->finger && has_counts)
+            break;
     }
+    for (i = 0; i < 4; i++)
+        sample->tensions[i] = TENSION_UNIT * (numbers[i] & 0xFFFF);
     memcpy(sample->encoders, drives->encoders, sizeof drives->encoders);
     return 0;
 }

@@ -9,6 +9,10 @@ const REAL_STEP = 0.045;
 const TIP_STEP_CM = 0.08;
 const AXES = ["x", "y", "z"];
 const MESSAGE_MS = 6000;
+/// A stop is answered within a few milliseconds.
+const STOP_ANSWER_MS = 500;
+/// The answer to a stop.
+const STOPPED = "all fingers are stopped";
 
 /// The functions that end the presses of the held buttons.
 const holds = new Set();
@@ -57,7 +61,7 @@ export class Control {
   /// `send(message)` sends a command. `desired(finger)` returns the joint angles of the set point in force.
   /// `opened(width)` is called with the width of the panel, pixels, or 0.
   constructor(form, toggle, { send, desired, opened }) {
-    Object.assign(this, { form, toggle, send, desired, opened, finger: null, wanted: null });
+    Object.assign(this, { form, toggle, send, desired, opened, finger: null, wanted: null, stopping: false });
     form.addEventListener("submit", (event) => event.preventDefault());
     toggle.addEventListener("click", () => this.open(form.hidden));
     setInterval(() => this.step(), SEND_MS);
@@ -233,10 +237,30 @@ export class Control {
 
   order(command, values) {
     if (["move_tip", "open", "close", "stop", "recover"].includes(command)) this.wanted = null;
-    this.send({ command, ...values });
+    const sent = this.send({ command, ...values });
+    if (command !== "stop") return;
+    this.stopping = true;
+    if (!sent) this.warn();
+    else setTimeout(() => this.stopping && this.warn(), STOP_ANSWER_MS);
+  }
+
+  /// Sends a stop that has no answer again, as soon as there is a connection.
+  link(connected) {
+    if (!this.stopping) return;
+    if (connected) this.order("stop");
+    else this.warn();
+  }
+
+  warn() {
+    this.open(true);
+    if (!this.message) return;
+    clearTimeout(this.forget);
+    this.message.textContent = "The stop has NOT reached the hand. It is sent again when sun2xp answers.";
+    this.message.className = "message refused";
   }
 
   answer({ done, text }) {
+    if (text === STOPPED) this.stopping = false;
     if (!this.message) return;
     this.message.textContent = text;
     this.message.className = done ? "message" : "message refused";

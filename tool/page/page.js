@@ -44,6 +44,7 @@ let linked = { socket: false, hand: false, reason: "" };
 const stream = new Stream({
   link(connected, reason) {
     linked = { socket: connected, hand: connected && linked.hand, reason };
+    control.link(connected);
   },
   hand: begin,
   gone({ reason }) {

@@ -35,7 +35,10 @@ export class Stream {
     this.receivers[message.type]?.(message);
   }
 
+  /// Returns whether the connection is open. A message that is sent as the connection breaks may still be lost.
   send(message) {
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+    const open = this.socket.readyState === WebSocket.OPEN;
+    if (open) this.socket.send(JSON.stringify(message));
+    return open;
   }
 }

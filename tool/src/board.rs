@@ -87,7 +87,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let orders = orders_in(&arguments.orders)?;
     let mut configuration = match &arguments.config {
-        Some(file) => hand::read_configuration(file)?,
+        Some(file) => hand::Configured::read(file)?.configuration,
         None => Configuration::default(),
     };
     if let Some(seed) = arguments.seed {

@@ -109,7 +109,7 @@ fn kind(number: u16) -> String {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let configuration = match &arguments.config {
-        Some(path) => hand::read_configuration(path)?,
+        Some(path) => hand::Configured::read(path)?.configuration,
         None => Configuration::default(),
     };
     let patterns = if arguments.ports.is_empty() { &configuration.hand.search_ports } else { &arguments.ports };

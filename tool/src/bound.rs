@@ -121,7 +121,7 @@ fn rate(text: &str) -> Result<f64, String> {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut configuration = match &arguments.config {
-        Some(path) => hand::read_configuration(path)?,
+        Some(path) => hand::Configured::read(path)?.configuration,
         None => hand::find_configuration()?.configuration,
     };
     if let Some(scheme) = arguments.scheme {

@@ -25,8 +25,9 @@ use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
 /// Signs: every motor turns a little in both directions.
 ///
 /// Zero: the tendons are slackened and the gauges read. Then the encoders are zeroed by the method
-/// `finger.zeroing.method`. Without that key, they are zeroed against the stops of the finger if `finger.zeroing` gives
-/// their angles, or else at a pose in which you hold the finger. A finger that is not held in the pose is refused.
+/// `finger.zeroing.method`. Without that key, they are zeroed against the stops of the finger if the finger is
+/// simulated or `finger.zeroing` gives the angles of its stops, or else at a pose in which you hold the finger. A
+/// finger that is not held in the pose is refused.
 ///
 /// Identify: the finger moves its joints in both directions and between their stops, and presses against its lower
 /// stops. The whole range of its joints must be free of objects.
@@ -61,7 +62,7 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let configured = Configured::read(&arguments.config)?;
+    let configured = Configured::read(&arguments.config)?.local()?;
     let fingers = Fingers::of(&arguments.fingers)?.in_hand(&configured.configuration.hand)?;
     configured.announce(fingers);
     let tasks = arguments.tasks();

@@ -36,7 +36,7 @@ use session::Session;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use step::Step;
-use sun2xp::hand::Configured;
+use sun2xp::hand::{Configured, Fingers};
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::model::{FingerNumber, ShownPath};
 use terminal::Terminal;
@@ -100,14 +100,15 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     if !arguments.config.exists() {
         new_file::create(&arguments.config, arguments.finger, &arguments.ports)?;
     }
-    let configured = Configured::read(&arguments.config)?;
+    let configured = Configured::read(&arguments.config)?.local()?;
     let configured = match configured.configuration.hand.fingers.contains(arguments.finger) {
         true => configured,
         false => {
             new_finger::add(&arguments.config, &configured.configuration, arguments.finger, &arguments.ports)?;
-            Configured::read(&arguments.config)?
+            Configured::read(&arguments.config)?.local()?
         }
     };
+    configured.announce(Fingers::one(arguments.finger));
     let finger = configured.configuration.fingers[arguments.finger.index()].clone();
     let mut weights: Vec<f64> = arguments.weights.iter().map(|mass| mass * GRAVITY).collect();
     weights.sort_by(f64::total_cmp);
@@ -145,7 +146,8 @@ pub struct Examined {
 
 /// Measures a commissioned finger again, without changing a file.
 pub fn examine(file: &Path, finger: FingerNumber, yes: bool, quiet: bool) -> Result<Examined, Failure> {
-    let configured = Configured::read(file)?;
+    let configured = Configured::read(file)?.local()?;
+    configured.announce(Fingers::one(finger));
     let beside = path_beside(file);
     let known = ProgressFile::read(&beside)?.fingers.remove(&finger.get()).unwrap_or_default();
     let advice = format!("run sun2xp commission --config {} --finger {finger} first", ShownPath(file));

@@ -55,7 +55,7 @@ pub fn urdf(configuration: &Configuration) -> String {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let configuration = match &arguments.config {
-        Some(file) => hand::read_configuration(file)?,
+        Some(file) => hand::Configured::read(file)?.configuration,
         None => hand::find_configuration()?.configuration,
     };
     let text = match arguments.format {

@@ -73,7 +73,7 @@ fn not_negative(text: &str) -> Result<f64, String> {
 
 pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     let configuration = match &arguments.config {
-        Some(file) => hand::read_configuration(file)?,
+        Some(file) => hand::Configured::read(file)?.configuration,
         None => hand::find_configuration()?.configuration,
     };
     let (costs, source) = match &arguments.costs {

@@ -96,7 +96,7 @@ fn titles() -> String {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let interrupt = Interrupt::watch()?;
-    let configured = Configured::read(&arguments.config)?;
+    let configured = Configured::read(&arguments.config)?.local()?;
     let finger = configured.configuration.fingers[arguments.finger as usize - 1].clone();
     let fingers = Fingers::only(arguments.finger)?;
     configured.announce(fingers);

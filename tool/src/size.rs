@@ -68,7 +68,7 @@ fn finger(text: &str) -> Result<FingerNumber, String> {
 
 pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     let configuration = match &arguments.config {
-        Some(file) => hand::read_configuration(file)?,
+        Some(file) => hand::Configured::read(file)?.configuration,
         None => hand::find_configuration()?.configuration,
     };
     let finger = &configuration.fingers[arguments.finger.index()];

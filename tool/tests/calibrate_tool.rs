@@ -48,6 +48,14 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
+#[test]
+fn the_file_of_a_hand_on_another_machine_is_refused_and_stays() {
+    let desk = Desk::new("[remote]\nendpoint = \"tcp/127.0.0.1:9\"\nhand = \"left\"\n");
+    let output = desk.calibrate(&["--finger", "1", "--yes"], "");
+    assert!(!output.status.success() && said(&output).contains("has a table [remote]"), "{}", said(&output));
+    assert!(desk.unchanged());
+}
+
 fn contains(text: &str, parts: &[&str]) {
     for part in parts {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");

@@ -66,7 +66,8 @@ const LINE_FAULTS: [Entry; 10] = [
     ("replug", "create a new port and answer with its path"),
 ];
 
-/// Returns the names of all orders.
+/// Returns the first word of each entry. Orders that only a description names, such as `swap-encoders`, are not
+/// included.
 pub fn names() -> impl Iterator<Item = &'static str> {
     let entries = ACTIONS.iter().chain(&DEFECTS).chain(&LINE_FAULTS);
     entries.filter_map(|(usage, _)| usage.split_whitespace().next())

@@ -88,7 +88,8 @@ fn with(text: &str, finger: i32, changed: &[Changed], comment: &dyn Fn(&str) -> 
         let section = table(own, section)?;
         section.set_implicit(false);
         let kept = section.key(key).and_then(|key| key.leaf_decor().prefix()?.as_str().map(without_mark));
-        section.insert(key, Item::Value(value.clone()));
+        let value = with_layout_of(section.get(key).and_then(Item::as_value), value.clone());
+        section.insert(key, Item::Value(value));
         if let Some(mut key) = section.key_mut(key) {
             let kept = kept.unwrap_or_default();
             let gap = if kept.is_empty() || kept.ends_with('\n') { "" } else { "\n" };
@@ -98,6 +99,25 @@ fn with(text: &str, finger: i32, changed: &[Changed], comment: &dyn Fn(&str) -> 
     let text = document.to_string();
     parse_configuration(&text).map_err(|error| format!("the results do not fit the configuration file: {error}"))?;
     Ok(text)
+}
+
+/// Returns a new value with the comments and spaces of the value that it replaces. Comments inside an array are kept if
+/// the new array has the same length.
+pub fn with_layout_of(old: Option<&Value>, new: Value) -> Value {
+    let mut value = match (old, new) {
+        (Some(Value::Array(old)), Value::Array(new)) if old.len() == new.len() => {
+            let mut kept = old.clone();
+            for (place, number) in new.into_iter().enumerate() {
+                kept.replace(place, number);
+            }
+            Value::Array(kept)
+        }
+        (_, new) => new,
+    };
+    if let Some(old) = old {
+        *value.decor_mut() = old.decor().clone();
+    }
+    value
 }
 
 /// Removes the comments of earlier runs.
@@ -163,6 +183,9 @@ mod tests {
         let new = changed(|finger| finger.gauge.zero = [200.123_456_7; 4], text);
         assert!(new.contains("# from the data sheet\n# commission 2026"), "{new}");
         assert!(new.contains("zero = [200.123, 200.123, 200.123, 200.123]"), "{new}");
+        let text = "[finger.2.gauge]\nzero = [ 1.0, 2.0, # upper\n  3.0, 4.0 ]   # 12 May\n";
+        let new = changed(|finger| finger.gauge.zero = [5.0, 6.0, 7.0, 8.0], text);
+        assert!(new.contains("zero = [ 5.0, 6.0, # upper\n  7.0, 8.0 ]   # 12 May\n"), "{new}");
         let new = changed(|finger| finger.motor.sign[0] = -1, "finger.2 = { port = \"simulated\" }\n");
         assert!(new.contains("port = \"simulated\"") && new.contains("sign = [-1, 1, 1, 1]"), "{new}");
     }

@@ -99,11 +99,15 @@ impl Desk<'_> {
                 Ok(outcome) if outcome.passed() => return done,
                 Ok(outcome) => failed(outcome)?,
                 // Nobody is there to ask.
-                Err(failure) if failure.is::<NoAnswer>() || failure.is::<io::Error>() => return done,
+                Err(failure) if nobody_answers(failure) => return done,
                 Err(failure) => {
                     let mut outcome = Outcome::default();
                     outcome.wrong(Wrong::Stopped(failure.to_string()));
                     failed(&outcome)?;
+                    // The person has been asked already.
+                    if failure.is::<NoAnswer>() {
+                        return done;
+                    }
                     self.person.show(&format!("the step has stopped: {failure}"));
                 }
             }
@@ -112,4 +116,10 @@ impl Desk<'_> {
             }
         }
     }
+}
+
+/// Whether a step has ended because nobody answers, or because the person leaves.
+fn nobody_answers(failure: &Failure) -> bool {
+    let left = matches!(failure.downcast_ref(), Some(NoAnswer::Left | NoAnswer::InputEnded));
+    left || failure.is::<io::Error>()
 }

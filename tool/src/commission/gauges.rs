@@ -15,7 +15,7 @@ const READING: f64 = 1.0;
 const LIVES: f64 = 0.2;
 /// Largest noise of a gauge, N rms.
 const NOISE: f64 = 0.3;
-/// Largest residual of the line as a part of the largest weight.
+/// Largest residual of the line as a part of the heaviest weight that hung on the tendon.
 const RESIDUAL: f64 = 0.02;
 /// A scale that differs by more than this is reported.
 const SCALE: f64 = 0.05;
@@ -34,6 +34,8 @@ struct Weighed {
     /// Index of the gauge that shows the weights.
     gauge: usize,
     line: Line,
+    /// The heaviest weight that hung on the tendon, N.
+    heaviest: f64,
 }
 
 /// Whether a count is at an end of the converter's range, so that the true one may be beyond it.
@@ -49,9 +51,9 @@ pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
         return Ok(outcome);
     }
     let empty = desk.read(READING)?;
-    let (mut order, mut lines) = ([0; 4], [None; 4]);
+    let (mut order, mut lines) = ([0; 4], [None, None, None, None]);
     for tendon in 1..=4 {
-        let Weighed { gauge, line } = match weigh(desk, tendon, &empty)? {
+        let weighed = match weigh(desk, tendon, &empty)? {
             Ok(weighed) => weighed,
             Err(wrong) => {
                 desk.person.show(&wrong.to_string());
@@ -61,27 +63,27 @@ pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
         };
         desk.person.show(&format!(
             "gauge {}: {:.5} N per count, {:.3} N rms from the line",
-            gauge + 1,
-            line.slope,
-            line.residual
+            weighed.gauge + 1,
+            weighed.line.slope,
+            weighed.line.residual
         ));
+        let gauge = weighed.gauge;
         order[tendon - 1] = gauge + 1;
-        lines[gauge] = Some(line);
+        lines[gauge] = Some(weighed);
     }
     let seen = order;
     name_the_missing(&mut outcome, &mut order, Wrong::GaugeDead);
-    for (gauge, line) in lines.iter().enumerate() {
-        if let Some(line) = line {
-            judge(desk, &mut outcome, gauge, line, &empty);
-            outcome.found(format!(
-                "gauge {}: {:.5} N per count, zero at {:.1} counts, residual {:.3} N, noise {:.3} N rms",
-                gauge + 1,
-                line.slope,
-                line.zero,
-                line.residual,
-                empty.noise[gauge] * line.slope.abs()
-            ));
-        }
+    for weighed in lines.iter().flatten() {
+        let Weighed { gauge, line, .. } = weighed;
+        judge(desk, &mut outcome, weighed, &empty);
+        outcome.found(format!(
+            "gauge {}: {:.5} N per count, zero at {:.1} counts, residual {:.3} N, noise {:.3} N rms",
+            gauge + 1,
+            line.slope,
+            line.zero,
+            line.residual,
+            empty.noise[*gauge] * line.slope.abs()
+        ));
     }
     name_the_order(&mut outcome, seen, order);
     let weights = desk.weights.iter().map(|newton| format!("{newton:.2}")).collect::<Vec<_>>().join(", ");
@@ -131,14 +133,14 @@ fn weigh(desk: &mut Desk, tendon: usize, empty: &Reading) -> Result<Result<Weigh
     let points: Vec<(f64, f64)> = readings.iter().filter(inside).map(point).collect();
     let all = || Line::through(&readings.iter().map(point).collect::<Vec<_>>());
     let line = Line::through(&points).or_else(all);
-    Ok(line.map(|line| Weighed { gauge, line }).ok_or(Wrong::GaugeDead(tendon)))
+    Ok(line.map(|line| Weighed { gauge, line, heaviest }).ok_or(Wrong::GaugeDead(tendon)))
 }
 
 /// Takes scale and zero of a gauge from its line. `empty` is the reading without load.
-fn judge(desk: &mut Desk, outcome: &mut Outcome, gauge: usize, line: &Line, empty: &Reading) {
+fn judge(desk: &mut Desk, outcome: &mut Outcome, weighed: &Weighed, empty: &Reading) {
+    let Weighed { gauge, ref line, heaviest } = *weighed;
     let number = gauge + 1;
     let configured = &mut desk.finger.gauge;
-    let heaviest = desk.weights.last().copied().unwrap_or_default();
     let noise = empty.noise[gauge] * line.slope.abs();
     if at_end(empty.gauges[gauge], empty.noise[gauge]) {
         outcome.wrong(Wrong::GaugeAtEnd(number, empty.gauges[gauge], line.zero));

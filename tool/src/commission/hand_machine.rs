@@ -118,7 +118,14 @@ impl Machine for HandMachine {
         sleep(Duration::from_millis(100));
         let first = hand.record(finger, None)?.newest;
         sleep(Duration::from_secs_f64(seconds));
+        // A faulted finger has no new cycles, and its last one would look like parts that do not react.
+        if let Some(fault) = hand.fault(finger)?.stopped {
+            return Err(format!("finger {finger}: {fault}").into());
+        }
         let kept = hand.record(finger, None)?;
+        if kept.newest <= first {
+            return Err("the board has sent no measurement".into());
+        }
         let first = first.max(kept.oldest);
         // The black box may overwrite the oldest cycles meanwhile.
         let cycles: Vec<_> =
@@ -183,5 +190,19 @@ impl Machine for HandMachine {
     fn computer(&mut self) -> Result<Vec<String>, Failure> {
         self.off();
         Ok(doctor::complaints(&self.configuration, EXAMINATION)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reading_of_a_stopped_finger_names_the_fault() {
+        let mut machine = HandMachine::new(Configuration::default(), FingerNumber::ONE);
+        machine.read(0.2).expect("read");
+        machine.hand.as_ref().expect("open").stop(1).expect("there");
+        let error = machine.read(0.2).expect_err("the finger has stopped").to_string();
+        assert!(error.starts_with("finger 1: "), "{error}");
     }
 }

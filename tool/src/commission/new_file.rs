@@ -2,9 +2,9 @@
 
 use super::port_search::{Answer, search};
 use crate::failure::{Failure, wrong_usage};
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::Path;
-use sun2xp::files::replace_file;
+use sun2xp::files::create_file;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::model::{FingerNumber, ShownPath};
 
@@ -15,10 +15,24 @@ pub fn create(file: &Path, finger: FingerNumber, ports: &[String]) -> Result<(),
     let chosen = search(patterns, defaults.fingers[finger.index()].baud, finger, &[])
         .map_err(|reason| wrong_usage(format!("{} does not exist, and {reason}", ShownPath(file))))?;
     let text = text(finger, &chosen.answer, ports);
-    replace_file(file, |output| output.write_all(text.as_bytes()))
-        .map_err(|error| format!("cannot create {}: {error}", ShownPath(file)))?;
+    place(file, &text)?;
     writeln!(io::stdout(), "{} Created {}.", chosen.text(), ShownPath(file))?;
     Ok(())
+}
+
+/// Creates the file. Another process may have created it during the search. Its file stays.
+fn place(file: &Path, text: &str) -> Result<(), Failure> {
+    let shown = ShownPath(file);
+    let name = file.file_name().and_then(|name| name.to_str());
+    let name = name.ok_or_else(|| format!("cannot create {shown}: its name is not UTF-8: choose another name"))?;
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match create_file(folder, [name.to_string()], |output| output.write_all(text.as_bytes())) {
+        Ok(_) => Ok(()),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+            Err(format!("another process has created {shown} meanwhile: run the tool again").into())
+        }
+        Err(error) => Err(format!("cannot create {shown}: {error}").into()),
+    }
 }
 
 fn text(finger: FingerNumber, answer: &Answer, ports: &[String]) -> String {
@@ -31,4 +45,20 @@ fn text(finger: FingerNumber, answer: &Answer, ports: &[String]) -> String {
         "# Created by sun2xp commission. docs/configuration.md describes every key.\n[hand]\nfingers = [{finger}]\n\
          {search}\n[finger.{finger}]\nboard = \"{number}\"\naddress = {address}\n{counts}"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_file_that_appears_during_the_search_stays() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("hand.toml");
+        place(&file, "first").expect("created");
+        let refused = place(&file, "second").expect_err("there is a file").to_string();
+        assert!(refused.ends_with("meanwhile: run the tool again"), "{refused}");
+        assert_eq!(fs::read_to_string(&file).expect("a file"), "first");
+    }
 }

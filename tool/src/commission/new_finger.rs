@@ -1,6 +1,6 @@
 //! A further finger in a configuration file: searches for its board.
 
-use super::configuration_file::{LARGEST, table};
+use super::configuration_file::{LARGEST, table, with_layout_of};
 use super::port_search::{Answer, Taken, search};
 use crate::failure::{Failure, wrong_usage};
 use std::io::{self, Write};
@@ -9,7 +9,7 @@ use sun2xp::files::{UpdateError, update_file};
 use sun2xp::hand::parse_configuration;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::model::{FingerNumber, ShownPath};
-use toml_edit::{Array, DocumentMut, value};
+use toml_edit::{Array, DocumentMut, Item, Table, Value};
 
 /// Searches these ports, or those of `hand.search_ports`, and adds the finger with its board to the file.
 pub fn add(file: &Path, hand: &Configuration, finger: FingerNumber, ports: &[String]) -> Result<(), Failure> {
@@ -40,20 +40,20 @@ fn with(text: &str, finger: FingerNumber, answer: &Answer, ports: &[String]) -> 
     let mut document: DocumentMut = text.parse()?;
     let hand = table(document.as_table_mut(), "hand")?;
     let numbers = configuration.hand.fingers.with(finger).numbers();
-    set(hand, "fingers", value(numbers.map(i64::from).collect::<Array>()));
+    set(hand, "fingers", numbers.map(i64::from).collect::<Array>());
     let known = &configuration.hand.search_ports;
     if ports.iter().any(|port| !known.contains(port)) {
         let new = ports.iter().filter(|port| !known.contains(port));
-        set(hand, "search_ports", value(known.iter().chain(new).map(String::as_str).collect::<Array>()));
+        set(hand, "search_ports", known.iter().chain(new).map(String::as_str).collect::<Array>());
     }
     let own = table(table(document.as_table_mut(), "finger")?, &finger.to_string())?;
     own.set_implicit(false);
-    set(own, "board", value(answer.number().to_string()));
-    set(own, "address", value(i64::from(answer.found.address)));
+    set(own, "board", answer.number().to_string());
+    set(own, "address", i64::from(answer.found.address));
     if let Some(counts) = answer.counts_per_revolution() {
         let encoder = table(own, "encoder")?;
         encoder.set_implicit(false);
-        set(encoder, "counts_per_revolution", value([i64::from(counts); 4].into_iter().collect::<Array>()));
+        set(encoder, "counts_per_revolution", [i64::from(counts); 4].into_iter().collect::<Array>());
     }
     let text = document.to_string();
     parse_configuration(&text).map_err(|error| format!("the finger does not fit the configuration file: {error}"))?;
@@ -61,9 +61,22 @@ fn with(text: &str, finger: FingerNumber, answer: &Answer, ports: &[String]) -> 
 }
 
 /// Sets a key, and keeps the comments at it.
-fn set(table: &mut toml_edit::Table, key: &str, item: toml_edit::Item) {
+fn set(table: &mut Table, key: &str, value: impl Into<Value>) {
+    let value = with_layout_of(table.get(key).and_then(Item::as_value), value.into());
     match table.get_mut(key) {
-        Some(old) => *old = item,
-        None => drop(table.insert(key, item)),
+        Some(old) => *old = Item::Value(value),
+        None => drop(table.insert(key, Item::Value(value))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_comment_behind_a_value_is_kept() {
+        let mut document: DocumentMut = "fingers = [1]  # left bench\n".parse().expect("a document");
+        set(document.as_table_mut(), "fingers", [1i64, 2].into_iter().collect::<Array>());
+        assert_eq!(document.to_string(), "fingers = [1, 2]  # left bench\n");
     }
 }

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display, Formatter};
 use sun2xp::groups::FingerCommand;
-use sun2xp::model::configuration::Configuration;
+use sun2xp::model::configuration::{Configuration, OutOfRange};
 use sun2xp::{Hand, HandError, Stage};
 
 /// Largest change of a joint angle in one command to a real finger, rad: 3 degrees. A command for the tip may change a
@@ -60,6 +60,13 @@ pub enum Refused {
         asked: String,
         most: String,
     },
+    /// A joint of a real finger is so far beyond its limits that one step does not bring it back.
+    BeyondLimits {
+        finger: i32,
+        joint: usize,
+        /// The desired angle in force, degrees.
+        angle: f64,
+    },
     /// No finger runs, so none can be opened or closed.
     NoneRuns,
 }
@@ -72,6 +79,11 @@ impl Display for Refused {
                 formatter,
                 "finger {finger} is a real finger, and a command moves it by at most {most}, but {asked} were asked \
                  for: send smaller steps"
+            ),
+            Self::BeyondLimits { finger, joint, angle } => write!(
+                formatter,
+                "joint {joint} of finger {finger} is at {angle:.1} degrees, too far beyond its limits for one step of \
+                 a real finger: stop the hand, move the finger into its limits by hand, and recover it"
             ),
             Self::NoneRuns => formatter.write_str("no finger runs: recover the fingers first"),
         }
@@ -146,7 +158,7 @@ pub fn is_real(configuration: &Configuration, finger: i32) -> bool {
 fn send_joints(hand: &Hand, configuration: &Configuration, finger: i32, joints: [f64; 3]) -> Result<String, Refused> {
     let desired = desired_joints(hand, finger)?;
     if is_real(configuration, finger) {
-        let degrees = largest_difference(joints, desired).to_degrees();
+        let degrees = largest_difference(admitted(configuration, finger, joints), desired).to_degrees();
         let most = REAL_JOINT_STEP.to_degrees();
         within(finger, degrees, most, "degrees")?;
     }
@@ -189,10 +201,16 @@ fn move_all(
             let desired = desired_joints(hand, finger)?;
             let (low, high) = configured.joint_limits();
             let most = if configured.simulated() { f64::INFINITY } else { REAL_JOINT_STEP };
-            let joints = std::array::from_fn(|joint| {
-                let step = (degrees[joint].to_radians() - desired[joint]).clamp(-most, most);
-                (desired[joint] + step).clamp(low[joint], high[joint])
-            });
+            let mut joints = [0.0; 3];
+            for (joint, next) in joints.iter_mut().enumerate() {
+                let target = degrees[joint].to_radians().clamp(low[joint], high[joint]);
+                // The finger may hold a pose beyond its limits. The limits must not make the step larger.
+                let angle = towards(desired[joint], target, most);
+                if !(low[joint]..=high[joint]).contains(&angle) {
+                    return Err(Refused::BeyondLimits { finger, joint, angle: desired[joint].to_degrees() });
+                }
+                *next = angle;
+            }
             commands.push(FingerCommand::new(finger).joints(joints));
         }
     }
@@ -201,6 +219,23 @@ fn move_all(
     }
     hand.send_group(&commands)?;
     Ok(format!("the hand {verb}"))
+}
+
+/// Returns the angles that the hand uses for these joint angles, rad: those within the limits, if it clamps.
+fn admitted(configuration: &Configuration, finger: i32, joints: [f64; 3]) -> [f64; 3] {
+    let index = usize::try_from(finger).ok().and_then(|number| number.checked_sub(1));
+    match index.and_then(|index| configuration.fingers.get(index)) {
+        Some(configured) if configuration.hand.out_of_range == OutOfRange::Clamp => {
+            let (low, high) = configured.joint_limits();
+            std::array::from_fn(|joint| joints[joint].clamp(low[joint], high[joint]))
+        }
+        _ => joints,
+    }
+}
+
+/// Moves an angle towards a target by at most this much.
+fn towards(from: f64, target: f64, most: f64) -> f64 {
+    if (target - from).abs() <= most { target } else { from + most.copysign(target - from) }
 }
 
 fn within(finger: i32, asked: f64, most: f64, unit: &str) -> Result<(), Refused> {

@@ -34,7 +34,7 @@ pub fn preformatted(page: &mut Roff, lines: &[&str]) {
     page.control("fi", []);
 }
 
-/// Appends lines that keep their breaks and spaces, in bold type.
+/// Appends lines that keep their breaks but not their indentation, in bold type.
 pub fn prototype(page: &mut Roff, lines: &[&str]) {
     page.control("nf", []);
     for line in lines {

@@ -21,7 +21,8 @@ const ROWS: [(&str, Colour); 4] =
 /// The row of the lost replies.
 const LOST: usize = 3;
 
-/// Height of a line of the list below, pixels, and the largest number of lines.
+/// Height of a line of the list below, pixels, and the largest number of marks in the list. A mark may have several
+/// lines. If there are more marks, a line with the number of the others takes the place of the last one.
 const LINE: f64 = 23.0;
 const MOST_LINES: usize = 18;
 
@@ -246,7 +247,7 @@ fn list(svg: &mut Svg, [left, top]: [f64; 2], listed: &[(f64, &Happened)], texts
         }
     }
     if left_out > 0 {
-        let text = format!("{left_out} less serious ones are not listed: sun2xp export writes all of them");
+        let text = format!("{left_out} less serious or later ones are not listed: sun2xp export writes all of them");
         svg.text([left + 118.0, y], &text, Font { bold: false, colour: SOFT_INK, ..HEADING });
     }
 }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 const FONTS: [&[u8]; 2] =
     [include_bytes!("../../font/DejaVuSans.ttf"), include_bytes!("../../font/DejaVuSans-Bold.ttf")];
 
-/// Returns the picture of an SVG document, with its width and height in pixels.
+/// Returns an SVG document as PNG. The picture has the width and height of the document in pixels.
 pub fn draw(svg: &str) -> Result<Vec<u8>, Failure> {
     let mut options = Options { font_family: "DejaVu Sans".into(), ..Options::default() };
     for font in FONTS {

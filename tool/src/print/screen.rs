@@ -9,7 +9,8 @@ const NARROWEST: usize = 40;
 /// The abilities of an output.
 #[derive(Clone, Copy, Debug)]
 pub struct Screen {
-    /// Number of columns of the terminal. `None` if the output is not a terminal: then lines have any length.
+    /// Number of columns of the terminal. It is `None` if the output is not a terminal, or if the terminal is narrower
+    /// than [`NARROWEST`]. Lines then have any length.
     pub width: Option<usize>,
     /// Whether tables have lines.
     pub lines: bool,

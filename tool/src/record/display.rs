@@ -10,8 +10,8 @@ use sun2xp::model::ShownPath;
 /// Time between two lines in a pipe.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
 
-/// Time between two redraws on a terminal.
-const PICTURE: Duration = Duration::from_millis(100);
+/// Time between two steps of the spinner on a terminal.
+const BETWEEN_STEPS: Duration = Duration::from_millis(500);
 
 /// Shows the progress of a recording. It disappears from a terminal when it is dropped.
 pub struct Display {
@@ -29,7 +29,7 @@ impl Display {
             if let Ok(style) = ProgressStyle::with_template("{spinner:.red} {prefix:.bold}  {msg}") {
                 bar.set_style(style.tick_chars("●○ "));
             }
-            bar.enable_steady_tick(5 * PICTURE);
+            bar.enable_steady_tick(BETWEEN_STEPS);
             bar
         });
         let display = Self { bar, duration, next_line: Duration::ZERO };

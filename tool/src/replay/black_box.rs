@@ -14,6 +14,9 @@ pub fn replay(file: &Path) -> Result<Report, Failure> {
     let replayed = recording.replay_with(|index| progress.reach(index as u64));
     drop(progress);
     let replayed = replayed.map_err(|error| in_file(file, error))?;
+    if replayed.cycles == 0 {
+        return Err(in_file(file, "it contains no cycles that can be replayed"));
+    }
     let mut finger = FingerReport::new(recording.origin.finger, recording.origin.hand.rate);
     recording.cycles.iter().for_each(|cycle| finger.contents.add(cycle));
     (finger.replayed, finger.different) = (replayed.cycles as u64, replayed.different as u64);

@@ -25,16 +25,11 @@ impl Fastest {
     pub fn of(hand: &Configuration, costs: &Costs, sensor: &Sensor) -> Self {
         let limit = |rate: u32| limit(&off_line_schedule(hand, rate.into(), costs, sensor));
         let (lowest, highest) = (RATES.start().ceil() as u32, RATES.end().floor() as u32);
-        // With a longer period, every deadline is later and nothing else changes, so bisection is valid.
-        let (mut met_at, mut missed_at) = (lowest - 1, highest + 1);
-        while missed_at - met_at > 1 {
-            let rate = met_at + (missed_at - met_at) / 2;
-            if limit(rate).is_none() { met_at = rate } else { missed_at = rate }
-        }
-        Self {
-            rate: (met_at >= lowest).then_some(met_at),
-            limit: if met_at == highest { None } else { limit(missed_at) },
-        }
+        // A slower rate leaves time for more tactile events, which may exceed a deadline that a faster rate meets. So
+        // bisection is not valid.
+        let rate = (lowest..=highest).rev().find(|&rate| limit(rate).is_none());
+        let missed_at = rate.map_or(lowest, |rate| rate + 1);
+        Self { rate, limit: if missed_at > highest { None } else { limit(missed_at) } }
     }
 }
 

@@ -3,7 +3,7 @@
 //! and ports.
 
 use serde::{Deserialize, Serialize, Serializer};
-use sun2xp::board::{USABLE_SHARE, exchange_microseconds, tactile_microseconds, tactile_requests};
+use sun2xp::board::{USABLE_SHARE, exchange_microseconds, tactile_microseconds};
 use sun2xp::finger::REPLY_WINDOW;
 use sun2xp::hand::{Wrong, deserialize};
 use sun2xp::model::FingerNumber;
@@ -141,29 +141,32 @@ fn task(hand: &Configuration, fingers: &[FingerNumber], period: f64, costs: &Cos
         waiting: needed(longest_exchange(hand, fingers, sensor, period)),
         after: needed(
             fingers.len() as f64 * (costs.read + costs.compute + sensor.compute)
-                + touches(hand, fingers, 1e6 / period) as f64 * costs.read,
+                + touches(hand, fingers, sensor, 1e6 / period) as f64 * costs.read,
         ),
     }
 }
 
 /// The number of tactile events that a thread fetches in every period at a rate, Hz.
-pub fn touches(hand: &Configuration, fingers: &[FingerNumber], rate: f64) -> usize {
-    lines(hand, fingers).map(|(finger, sharing)| touches_on_line(hand, fingers, finger, sharing, rate)).sum()
+pub fn touches(hand: &Configuration, fingers: &[FingerNumber], sensor: &Sensor, rate: f64) -> usize {
+    lines(hand, fingers).map(|line| touches_on_line(hand, fingers, line, sensor, rate)).sum()
 }
 
-/// The number of tactile events on the port of `finger`, which has `sharing` fingers.
+/// The number of tactile events on the port of `finger`, which has `sharing` fingers. The servo requests only those for
+/// which the exchange leaves time.
 fn touches_on_line(
     hand: &Configuration,
     fingers: &[FingerNumber],
-    finger: FingerNumber,
-    sharing: usize,
+    (finger, sharing): (FingerNumber, usize),
+    sensor: &Sensor,
     rate: f64,
 ) -> usize {
     let configured = &hand.fingers[finger.index()];
     let on_port = |other: &&FingerNumber| **other == finger || hand.fingers[other.index()].shares_port(configured);
     let with_elements = fingers.iter().filter(on_port);
     let with_elements = with_elements.filter(|other| !hand.fingers[other.index()].touch.elements.is_empty()).count();
-    tactile_requests(configured.baud, sharing, rate).min(with_elements)
+    let left = USABLE_SHARE * 1e6 / rate - exchange_microseconds(configured.baud, sharing, sensor.bytes);
+    // The time may be negative. The conversion to an integer returns 0 then.
+    ((left / tactile_microseconds(configured.baud)).floor() as usize).min(with_elements)
 }
 
 /// The ports of a thread. Each item is one finger on a port and the number of the thread's fingers on that port. Every
@@ -184,7 +187,7 @@ fn longest_exchange(hand: &Configuration, fingers: &[FingerNumber], sensor: &Sen
     lines(hand, fingers)
         .map(|(finger, sharing)| {
             let baud = hand.fingers[finger.index()].baud;
-            let touches = touches_on_line(hand, fingers, finger, sharing, 1e6 / period);
+            let touches = touches_on_line(hand, fingers, (finger, sharing), sensor, 1e6 / period);
             exchange_microseconds(baud, sharing, sensor.bytes) + touches as f64 * tactile_microseconds(baud)
         })
         .fold(0.0, f64::max)

@@ -55,8 +55,10 @@ impl Schedule {
     fn new(hand: &Configuration, costs: &Costs, sensor: Sensor) -> Self {
         let rate = hand.hand.rate;
         let threads = off_line_schedule(hand, rate, costs, &sensor).into_iter();
-        let with_touch =
-            |scheduled: Scheduled| Thread { tactile_events: touches(hand, &scheduled.fingers, rate), scheduled };
+        let with_touch = |scheduled: Scheduled| Thread {
+            tactile_events: touches(hand, &scheduled.fingers, &sensor, rate),
+            scheduled,
+        };
         Self { sensor, threads: threads.map(with_touch).collect(), fastest: Fastest::of(hand, costs, &sensor) }
     }
 

@@ -77,6 +77,23 @@ fn the_space_bar_stops_the_hand_wherever_the_focus_is() {
     assert_eq!(commands(&browser), ["stop"]);
 }
 
+/// The connection breaks as the stop is sent. The page connects again after half a second.
+#[test]
+fn a_stop_that_is_lost_with_the_connection_is_sent_again() {
+    let Some((_alone, _program, _folder, browser)) = page() else { return };
+    browser.wait_for(&format!("return !!{}", button("Close")));
+    browser.run(
+        "const send = WebSocket.prototype.send;
+        WebSocket.prototype.send = function (text) {
+          if (window.lost || JSON.parse(text).command !== 'stop') return send.call(this, text);
+          window.lost = true;
+          this.close();
+        };",
+    );
+    browser.act(&key(" "));
+    browser.wait_for("return window.lost && document.getElementById('link').textContent.includes('stopped')");
+}
+
 #[test]
 fn a_held_button_ends_when_another_finger_is_selected() {
     let Some((_alone, _program, _folder, browser)) = page() else { return };

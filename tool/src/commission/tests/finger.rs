@@ -126,6 +126,8 @@ pub struct Helper {
     pub patience: usize,
     /// Whether the person says that the motors were turned the right way.
     pub right_way: bool,
+    /// The true weight, N, of what the person hangs for a weight.
+    pub hung: fn(f64) -> f64,
     /// What the person cannot do.
     pub cannot: Option<fn(Act) -> bool>,
     /// What the person was asked after failures.
@@ -146,6 +148,7 @@ impl Helper {
             holds: true,
             patience: 0,
             right_way: true,
+            hung: |newton| newton,
             cannot: None,
             questions: Vec::new(),
             acts: Vec::new(),
@@ -189,7 +192,7 @@ impl Person for Helper {
                 world.plant.turn_motor(tendon, self.turned);
             }
             Act::Loosen => (0..4).for_each(|motor| world.plant.turn_motor(motor, -3.0)),
-            Act::Hang(tendon, newton) => world.plant.hang(mistaken(tendon) - 1, newton),
+            Act::Hang(tendon, newton) => world.plant.hang(mistaken(tendon) - 1, (self.hung)(newton)),
             Act::Unhang(tendon) => world.plant.hang(mistaken(tendon) - 1, 0.0),
             Act::HoldStill => {
                 world.plant.take_up_by_hand();

@@ -87,6 +87,24 @@ fn a_step_that_stops_with_an_error_is_noted() {
     assert_eq!(noted, [Wrong::Stopped("the board has sent no measurement".into())]);
 }
 
+/// The person has ended the step after four failed readings.
+#[test]
+fn a_step_that_is_given_up_is_noted() {
+    let (world, belief) = world(|_| ());
+    let (mut machine, mut person) = (Bench(world.clone()), Helper::new(&world));
+    world.borrow_mut().lost.0 = 4;
+    let (weights, vitals) = (vec![GRAVITY], Vitals::default());
+    let mut desk = Desk { machine: &mut machine, person: &mut person, finger: belief, weights, vitals };
+    let mut noted = Vec::new();
+    let stopped = desk.complete(Step::Gauges, |outcome| {
+        noted.extend(outcome.wrong.clone());
+        Ok(())
+    });
+    assert!(stopped.is_err());
+    assert_eq!(noted, [Wrong::Stopped("the board has sent no measurement".into())]);
+    assert_eq!(person.questions.len(), 1, "{:?}", person.questions);
+}
+
 /// A hand may be in the way of the finger.
 #[test]
 fn nothing_moves_if_the_person_cannot_prepare_it() {
@@ -112,6 +130,20 @@ fn a_gauge_without_a_weight_is_not_reported_as_dead() {
     let (outcome, _) = step(Step::Gauges, &world, &mut person, &belief);
     let open: Vec<_> = outcome.wrong.into_iter().filter(|wrong| !wrong.compensated()).collect();
     assert_eq!(open, [Wrong::NotWeighed(3)]);
+}
+
+/// The weights that do not hang must not widen the tolerance of the line.
+#[test]
+fn a_bent_gauge_is_named_although_the_heaviest_weight_does_not_hang() {
+    let (world, belief) = world(|_| ());
+    let (mut machine, mut person) = (Bench(world.clone()), Helper::new(&world));
+    person.cannot = Some(|act| matches!(act, Act::Hang(_, newton) if newton > 2.0 * GRAVITY));
+    // The heavier of the two others is wrong by 2 N.
+    person.hung = |newton| if newton > 0.75 * GRAVITY { newton + 2.0 } else { newton };
+    let (weights, vitals) = (vec![0.5 * GRAVITY, GRAVITY, 5.0 * GRAVITY], Vitals::default());
+    let mut desk = Desk { machine: &mut machine, person: &mut person, finger: belief, weights, vitals };
+    let outcome = desk.complete(Step::Gauges, |_| Ok(())).expect("carried out");
+    assert!(outcome.wrong.iter().any(|wrong| matches!(wrong, Wrong::GaugeNotLinear(1, _))), "{outcome:?}");
 }
 
 /// A motor without torque does not show whether the motors are swapped too.

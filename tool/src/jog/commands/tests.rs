@@ -156,6 +156,30 @@ fn a_real_finger_moves_in_small_steps() {
     assert!((way - REAL_JOINT_STEP).abs() < 1e-6, "{way}");
 }
 
+/// A finger that rests on a stop beyond its limits holds this pose after opening.
+#[test]
+fn a_real_finger_beyond_its_limits_does_not_jump_to_them() {
+    for out_of_range in [OutOfRange::Refuse, OutOfRange::Clamp] {
+        let mut configuration = Configuration::default();
+        configuration.hand.fingers = sun2xp::hand::Fingers::only(1).expect("a finger");
+        configuration.hand.out_of_range = out_of_range;
+        let finger = &mut configuration.fingers[0];
+        finger.joints.minimum_degrees[1] = 45.0;
+        finger.simulation.stop_margin_degrees = 20.0;
+        let hand = Hand::open(configuration.clone()).expect("the simulated hand opens");
+        // The commands take the finger for a real one.
+        configuration.fingers[0].port = "/dev/ttyUSB0".into();
+        let before = desired_joints(&hand, 1).expect("there");
+        assert!(before[1] < 33.0f64.to_radians(), "{before:?}");
+        for command in [Command::Open, Command::Close, Command::MoveJoints { finger: 1, by: [0.0, 0.02, 0.0] }] {
+            refused(command.execute(&hand, &configuration));
+        }
+        let text = refused(Command::Close.execute(&hand, &configuration));
+        assert!(text.starts_with("joint 1 of finger 1 is at ") && text.contains("move the finger into"), "{text}");
+        assert_eq!(desired_joints(&hand, 1).expect("there"), before);
+    }
+}
+
 #[test]
 fn commands_have_names_in_json() {
     let push = Command::Push { finger: 1, force: [0.0, 0.0, -1.0] };

@@ -74,13 +74,18 @@ fn touch_takes_the_time_that_the_line_has_left() {
     let element = TouchElement { position: [0.0; 3], normal: [0.0, 0.0, 1.0], newton_per_count: 0.001, zero: 0 };
     hand.fingers[1].touch.elements = vec![element];
     let schedule = off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default());
-    let touched: Vec<usize> = schedule.iter().map(|thread| touches(&hand, &thread.fingers, 1000.0)).collect();
+    let touched: Vec<usize> =
+        schedule.iter().map(|thread| touches(&hand, &thread.fingers, &Sensor::default(), 1000.0)).collect();
     assert_eq!(touched, [0, 1, 0]);
     assert_eq!((schedule[0].response, schedule[1].response), (Some((660.0, 680.0)), Some((860.0, 885.0))));
     assert!((schedule[1].line - 0.75).abs() < 1e-9);
     // At 1100 Hz no time is left, so the servo sends no requests, and touch makes no cycle later.
-    assert_eq!(touches(&hand, &[FingerNumber::TWO], 1100.0), 0);
+    assert_eq!(touches(&hand, &[FingerNumber::TWO], &Sensor::default(), 1100.0), 0);
     assert_eq!(Fastest::of(&hand, &COSTS, &Sensor::default()).rate, Some(1454));
+    // 16 more bytes take 160 us. They leave no time for a request at 1000 Hz, and are 80 % of a period at 1126.8 Hz.
+    let sensor = Sensor { bytes: 16, compute: 0.0 };
+    assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &sensor)[1].limit, None);
+    assert_eq!(Fastest::of(&hand, &COSTS, &sensor).rate, Some(1126));
 }
 
 /// Such costs exceed the range of the nanoseconds, and must not become short times.
