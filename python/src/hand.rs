@@ -46,7 +46,7 @@ impl Shared {
     }
 }
 
-/// An open hand: three fingers, numbered 1 to 3, whose servo threads run without Python.
+/// An open hand: up to three fingers, with the numbers in `fingers`, whose servo threads run without Python.
 ///
 /// Open one with `sun2xp.open()` or `sun2xp.simulated()`. All methods may be called from several threads.
 #[pyclass(frozen, subclass, module = "sun2xp")]

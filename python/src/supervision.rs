@@ -54,7 +54,7 @@ impl Hand {
     }
 
     /// Runs a calibration: "signs", "zero" or "identify". Calls `progress` 50 times a second with what is done, 0 to 1,
-    /// and the current activity.
+    /// and the current activity. If `progress` or the handler of a signal raises an exception, the finger is stopped.
     fn _calibrate<'py>(
         &self,
         py: Python<'py>,
@@ -69,16 +69,16 @@ impl Hand {
         };
         let mut calibrating = self.slow(py, |hand| Calibrating::begin(hand, finger, task))?;
         loop {
-            match self.slow(py, |hand| calibrating.poll(hand))? {
+            let state = match self.slow(py, |hand| calibrating.poll(hand))? {
                 CalibrationState::Done(findings) => return found(py, &findings),
-                CalibrationState::InProgress(Progress { step, part, .. }) => {
-                    progress.map_or(Ok(()), |progress| progress.call1((part, step.to_string())).map(drop))?;
-                }
-                // The library has no other states.
-                _ => {}
+                other => other,
+            };
+            if let Err(exception) = pause(py, &state, progress) {
+                // Without polls, the finger would go on between its stops, and then stay limp. If the hand was closed
+                // meanwhile, the finger is in its end state.
+                let _ = self.0.with(|hand| hand.stop(finger));
+                return Err(exception);
             }
-            py.detach(|| std::thread::sleep(SLICE));
-            py.check_signals()?;
         }
     }
 
@@ -98,6 +98,15 @@ impl Hand {
 #[pyfunction]
 pub fn stop_all() {
     sun2xp::stop_all();
+}
+
+/// Reports the progress of a calibration, and waits until the next poll.
+fn pause(py: Python<'_>, state: &CalibrationState, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+    if let (CalibrationState::InProgress(Progress { step, part, .. }), Some(progress)) = (state, progress) {
+        progress.call1((*part, step.to_string()))?;
+    }
+    py.detach(|| std::thread::sleep(SLICE));
+    py.check_signals()
 }
 
 fn found<'py>(py: Python<'py>, findings: &Findings) -> PyResult<Bound<'py, PyAny>> {

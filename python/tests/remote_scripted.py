@@ -41,10 +41,18 @@ class _Timeless(Sender):
 class Scripted:
     """The network and the server of one hand."""
 
+    forked = False
+
     def __init__(self):
         self.client, self.endpoint, self.sender = "planner", "nowhere", _Timeless()
         #: The server's clock, the number of the newest State, and the number of the epoch in force.
         self.now, self.states, self.number = BEGIN, 0, 0
+        #: What the Status says: the arguments of `status`.
+        self.status = {}
+        #: The code of every Answer.
+        self.code = 0
+        #: The action of every Request, and None for every get of the Status; and the number of gets without a reply.
+        self.gets, self.unanswered = [], 0
         #: The sequence number and the parts of every Target.
         self.targets = []
         self.records = numpy.zeros(3, _messages.RECORD)
@@ -55,11 +63,15 @@ class Scripted:
         self.hand.acquire()
 
     def get(self, key, payload, _timeout):
+        self.gets.append(None if payload is None else key.split("/")[2])
+        if self.unanswered:
+            self.unanswered -= 1
+            return []
         if payload is None:
-            return [(key, status())]
+            return [(key, status(**self.status))]
         if payload[2] == _messages.ACTIONS["acquire"]:
             self.number += 1
-        return [(key, self.answer(0, self.number))]
+        return [(key, self.answer(self.code, self.number))]
 
     def put(self, _key, payload):
         _, _, sequence, _, _, parts = read_target(payload)

@@ -15,6 +15,7 @@ def test_a_position_is_reached_and_held(hand):
     with pytest.raises(sun2xp.TimedOut):
         hand.send_position(2, [0.2, 0.6, 0.9])
         hand.wait(2, timeout=0)
+    hand.wait(numpy.int64(2), timeout=30)
 
 
 def test_a_tip_is_sent_in_centimetres(hand):

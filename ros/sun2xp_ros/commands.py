@@ -83,19 +83,21 @@ class Commands:
             self._begin(message, demanded)
 
     def _begin_at_stamp(self, message: JointTrajectory, fingers: Collection[int]) -> None:
-        self._take("trajectory", partial(self._begin, message, fingers))
+        self._take("trajectory", partial(self._begin, message, fingers, waited=True))
 
-    def _begin(self, message: JointTrajectory, fingers: Collection[int]) -> None:
+    def _begin(self, message: JointTrajectory, fingers: Collection[int], *, waited: bool = False) -> None:
         """Sends the paths of these fingers."""
-        demanded = paths(message, self._prefix, self._fingers, self._now())
+        demanded = paths(message, self._prefix, self._fingers, self._now(), waited=waited)
         demanded = [path for path in demanded if path.finger in fingers]
-        for place, path in enumerate(demanded):
+        for path in demanded:
             try:
                 self._follow(path)
             except sun2xp.Error:
-                # A path moves one finger only. If a finger refuses its path, the fingers that have already accepted
-                # theirs hold their poses, so no finger executes the trajectory.
-                self._hold([before.finger for before in demanded[:place]])
+                # A path moves one finger only. If a finger refuses its path, the others must execute neither this
+                # trajectory nor the one before it, because the fingers of a trajectory move together.
+                others = [other.finger for other in demanded if other is not path]
+                self._waiting.forget(others)
+                self._take("stop of the other fingers", partial(self._hold, others))
                 raise
         self._waiting.forget(fingers)
 

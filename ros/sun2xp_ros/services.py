@@ -60,10 +60,10 @@ class Services:
         return "is zeroed"
 
     def _recover(self, finger: int) -> str:
-        if self._hand.status(finger).stage != "faulted":
-            return "has no fault"
+        stage = self._hand.status(finger).stage
+        # Just after a stop the stage may not show the fault yet. The call waits for it.
         self._hand.recover(finger)
-        return "has recovered"
+        return "has recovered" if stage == "faulted" else "has no fault"
 
     def _stop(self, finger: int) -> str:
         self._hand.stop(finger)

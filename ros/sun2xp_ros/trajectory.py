@@ -40,7 +40,7 @@ def begins_in(message: Any, now: float) -> float:
     return max(stamp - now, 0.0) if stamp else 0.0
 
 
-def paths(message: Any, prefix: str, fingers: Sequence[int], now: float) -> List[Path]:
+def paths(message: Any, prefix: str, fingers: Sequence[int], now: float, *, waited: bool = False) -> List[Path]:
     """Returns the paths of a trajectory with at least one point. A path begins at once, so a trajectory whose stamp is
     in the future must be sent at its stamp. Its times are those from the stamp.
 
@@ -49,6 +49,8 @@ def paths(message: Any, prefix: str, fingers: Sequence[int], now: float) -> List
         prefix: the prefix of the names of joints.
         fingers: the fingers that the hand has.
         now: the time of the ROS clock, s. A trajectory without a stamp begins now.
+        waited: whether the trajectory has waited for its stamp. A timer is always a little late, but it must not make a
+            pose to take at once a pose of the past.
     """
     columns = _columns(message.joint_names, prefix, fingers)
     positions = [list(point.positions) for point in message.points]
@@ -57,11 +59,13 @@ def paths(message: Any, prefix: str, fingers: Sequence[int], now: float) -> List
             raise Unusable(f"point {place} has {len(angles)} positions for {len(message.joint_names)} joints")
     stamp = seconds(message.header.stamp)
     late = max(now - stamp, 0.0) if stamp else 0.0
-    times = numpy.array([seconds(point.time_from_start) - late for point in message.points])
+    since_stamp = numpy.array([seconds(point.time_from_start) for point in message.points])
+    times = since_stamp - late
     # Planners often send the present state as the point at the time 0. A path begins there anyway.
     ahead = times >= SHORTEST
     if not ahead.any():
-        if late:
+        is_step = waited and since_stamp.max() < SHORTEST
+        if late and not is_step:
             ago = max(-times.max(), 0.0)
             raise Unusable(f"the trajectory ended {ago:.3f} s ago: send it earlier, or without a stamp")
         times, positions = times[:0], positions[-1:]

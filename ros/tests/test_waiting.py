@@ -1,12 +1,15 @@
 """Trajectories that wait for their stamps, and the times of measurements, without a hand and without nodes."""
 
 import time
+import types
 
 import pytest
+import sun2xp
 from builtin_interfaces.msg import Time as Stamp
 from rclpy.time import Time
 from sun2xp_ros.commands import Commands
 from sun2xp_ros.moment import Moment
+from sun2xp_ros.services import Services
 from test_trajectory import NAMES, message
 
 
@@ -56,6 +59,8 @@ class Hand:
 
     def __init__(self):
         self.calls = []
+        #: The finger that refuses paths; 0 if none does.
+        self.refusing = 0
 
     def palm_pose(self, _finger):
         return self
@@ -66,10 +71,18 @@ class Hand:
         return [0.0, 0.0, 0.0]
 
     def send_path(self, finger, times, joints):
+        if finger == self.refusing:
+            raise sun2xp.Fault(f"finger {finger} is faulted", number=9, finger=finger)
         self.calls.append(("path", finger, times.tolist()))
 
     def send_position(self, finger, _joints):
         self.calls.append(("position", finger))
+
+    def status(self, _finger):
+        return types.SimpleNamespace(stage="running")
+
+    def recover(self, finger):
+        self.calls.append(("recover", finger))
 
 
 @pytest.fixture
@@ -86,6 +99,43 @@ def test_a_trajectory_begins_at_its_stamp(one):
     assert hand.calls == []
     node.advance_to(10.0)
     assert hand.calls == [("path", 1, [1.0, 2.0]), ("path", 3, [1.0, 2.0])] and not node.timers
+
+
+def test_a_pose_to_take_at_once_is_sent_although_every_timer_is_late(one):
+    node, hand, _ = one
+    node.takes["joint_trajectory"](message([0.0], stamp=10))
+    node.advance_to(10.003)
+    assert hand.calls == [("position", 1), ("position", 3)] and not node.logger.lines
+
+
+def test_a_trajectory_that_ends_before_a_late_timer_is_refused(one):
+    node, hand, _ = one
+    node.takes["joint_trajectory"](message([0.0, 0.5], stamp=10))
+    node.advance_to(10.6)
+    assert hand.calls == [] and "ended 0.100 s ago" in node.logger.lines[0]
+
+
+@pytest.mark.parametrize(("refusing", "other"), [(1, 3), (3, 1)])
+def test_if_one_finger_refuses_its_path_the_others_stop(one, refusing, other):
+    node, hand, _ = one
+    take = node.takes["joint_trajectory"]
+    take(message([1.0], stamp=10))
+    hand.refusing = refusing
+    take(message([1.0]))
+    assert hand.calls[-1] == ("position", other) and f"finger {refusing} is faulted" in node.logger.lines[0]
+    # The other finger has got a command, so its part of the trajectory that waits is dropped.
+    hand.refusing, hand.calls = 0, []
+    node.advance_to(10.0)
+    assert hand.calls == [("path", refusing, [1.0])]
+
+
+def test_a_finger_is_recovered_although_its_stage_does_not_show_the_stop_yet():
+    hand, node = Hand(), types.SimpleNamespace(create_service=lambda *_arguments, **_options: None)
+    services = Services(node, hand, (1, 3), lambda _finger: None)
+    try:
+        assert services._recover(3) == "has no fault" and hand.calls == [("recover", 3)]
+    finally:
+        services.close()
 
 
 def test_a_later_command_replaces_a_trajectory_that_waits(one):

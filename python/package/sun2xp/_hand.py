@@ -16,14 +16,14 @@ Progress = Callable[[float, str], None]
 
 
 class Hand(_sun2xp.Hand):
-    """An open hand: three fingers, numbered 1 to 3, whose servo threads run without Python.
+    """An open hand: up to three fingers, with the numbers in `fingers`, whose servo threads run without Python.
 
     Open one with `sun2xp.open()` or `sun2xp.simulated()`. A process can have several. All methods may be called from
     several threads. Methods that wait release the interpreter lock, and Ctrl-C ends them. Leaving a `with` block closes
     the hand.
 
-    All methods raise Closed if the hand is closed, Refused if there is no such finger or if an argument is wrong, and
-    Fault if the finger is faulted and the method needs it to run.
+    All methods except `close` raise Closed if the hand is closed, Refused if there is no such finger or if an argument
+    is wrong, and Fault if the finger is faulted and the method needs it to run.
     """
 
     def events(self) -> Events:
@@ -57,7 +57,8 @@ class Hand(_sun2xp.Hand):
         """
         if fingers is None:
             fingers = self.fingers
-        self._wait([fingers] if isinstance(fingers, int) else list(fingers), condition, timeout)
+        # The integers of numpy are no int.
+        self._wait(list(fingers) if isinstance(fingers, Iterable) else [fingers], condition, timeout)
 
     def configuration(self, finger: int) -> Dict[str, Any]:
         """The finger's configuration in force, with calibrations and adjustments: the keys of `[finger]`."""
@@ -68,7 +69,11 @@ class Hand(_sun2xp.Hand):
         return black_box(self, finger)
 
     def zero(self, finger: int, progress: Optional[Progress] = None, *, store: bool = True) -> Zeros:
-        """Zeros gauges and encoders of a finger. Its joints move between their stops, if `zeroing.method` says so.
+        """Zeros gauges and encoders of a finger. With the zeroing method "stops", its joints move between
+        their stops.
+
+        An exception of `progress` or of the handler of a signal, such as Ctrl-C, stops the finger. The finger is then
+        faulted, and `recover` makes it a spring with the previous calibration.
 
         Args:
             progress: called with the part that is done and the current activity.
@@ -81,12 +86,13 @@ class Hand(_sun2xp.Hand):
 
     def identify(self, finger: int, progress: Optional[Progress] = None, *, store: bool = True) -> Identified:
         """Measures gauge gains, friction and tendon stiffness of a finger, which must have been zeroed. Its joints move
-        between their stops, and it presses. Arguments and errors are those of `zero`."""
+        between their stops, and the finger presses against its lower stops. Arguments and errors are those of
+        `zero`."""
         return self._calibrated(finger, "identify", progress, store)
 
     def find_signs(self, finger: int, progress: Optional[Progress] = None, *, store: bool = True) -> Signs:
-        """Finds the directions in which motors, encoders and gauges of a finger count. The finger stays limp. Arguments
-        and errors are those of `zero`."""
+        """Finds the directions in which motors, encoders and gauges of a finger count. Afterwards the finger
+        is limp: its motors are off. Arguments and errors are those of `zero`."""
         return self._calibrated(finger, "signs", progress, store)
 
     def _calibrated(self, finger: int, task: str, progress: Optional[Progress], store: bool) -> Any:

@@ -72,7 +72,7 @@ def read_recording(path: Union[str, os.PathLike[str]], fingers: Iterable[int] = 
 
     Args:
         path: the file.
-        fingers: only these fingers. A minute of a finger at 1000 Hz takes 45 MB of memory.
+        fingers: the fingers to read; all if empty. A minute of a finger at 1000 Hz takes 45 MB of memory.
 
     Raises:
         Error: the file cannot be read, or is neither a recording nor a black box.

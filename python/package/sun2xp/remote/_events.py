@@ -10,7 +10,7 @@ from ._receiver import Receiver
 
 class RemoteEvents:
     """A queue of all events of a remote hand, from `RemoteHand.events`. Iteration waits for each event, and ends when
-    the hand is closed.
+    the hand or the queue is closed.
 
     Every queue gets all events. A queue that is not read keeps the newest 4096. The times of events are those of the
     server's clock.
@@ -19,6 +19,7 @@ class RemoteEvents:
     def __init__(self, receiver: Receiver) -> None:
         self._receiver = receiver
         self._queue = receiver.queue()
+        self._closed = False
 
     def __iter__(self) -> Iterator[Event]:
         while (event := self.wait()) is not None:
@@ -31,10 +32,12 @@ class RemoteEvents:
 
     def wait(self, timeout: Optional[float] = None) -> Optional[Event]:
         """Waits for the next event for at most `timeout` s, or without a limit, and takes it. Returns None after this
-        time, and if the hand is closed."""
-        self._receiver.wait_for(lambda: self._queue, timeout)
+        time, and if the hand or the queue is closed."""
+        self._receiver.wait_for(lambda: self._queue or self._closed, timeout)
         return self.take()
 
     def close(self) -> None:
-        """Ends the queue, which gets no further events."""
+        """Ends the queue, which gets no further events, and the waits of other threads for it."""
         self._receiver.forget(self._queue)
+        self._closed = True
+        self._receiver.notify()

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import functools
 import time
-from typing import Iterable, List, Optional, Sequence, Union
+from typing import Iterable, List, Optional, Sequence, Tuple, Union
 
 import numpy.typing
 
 from .._errors import Error, ErrorNumber, Fault, Refused, TimedOut
 from .._types import SetPoint
 from . import _messages, _parts
-from ._errors import error_of
+from ._errors import FAULTED, NoAnswer, error_of
 from ._messages import STAGES, Answer, Part
-from ._network import ANSWER_TIME, ATTEMPTS, PAUSE, Network
+from ._network import ANSWER_TIME, Network
 from ._owner import Owner
 from ._reading import Reading
 
@@ -77,6 +77,8 @@ class RemoteHand(Reading):
         Raises:
             NotOwner: another client commands the hand.
         """
+        # The server may have been started again with other limits.
+        self.status()
         answer = self._request("acquire", 0, timeout=_RECOVERY_TIME, take_over=take_over, recover=recover)
         with self._network.sender.lock:
             self._owner.begin(answer)
@@ -93,7 +95,7 @@ class RemoteHand(Reading):
     def close(self) -> None:
         """Releases the hand if this client commands it, and stops receiving. Every finger of a released hand goes to
         its end state."""
-        if self._closed:
+        if self.closed:
             return
         self._closed = True
         try:
@@ -236,6 +238,16 @@ class RemoteHand(Reading):
             text = self._ask_status().fingers[finger].fault_text or f"finger {finger} has fault {number}"
             raise Fault(text, number=ErrorNumber.FAULTED, finger=finger, fault=number, remedy="hand.recover(finger)")
 
+    def _stopped(self, finger: int) -> Tuple[int, int]:
+        """Returns the finger that an Answer means, and the number of its fault. 0 for the finger: the first finger that
+        has stopped. A number that is not known is 0."""
+        try:
+            fingers = self._ask_status().fingers
+        except NoAnswer:
+            fingers = {}
+        stopped = [number for number in sorted(fingers) if fingers[number].fault and finger in (0, number)]
+        return (stopped[0], fingers[stopped[0]].fault) if stopped else (finger, 0)
+
     def _send(self, parts: List[Part]) -> None:
         self._network.sender.send([(self._owner, parts)])
 
@@ -260,24 +272,15 @@ class RemoteHand(Reading):
         if action != "release":
             self._check(*([finger] if finger else []))
         payload = _messages.write_request(action, finger, epoch, **flags)
-        for _, reply in self._answers(f"{self._prefix}{action}/{self._network.client}", payload, timeout):
+        # If it were repeated, a calibration that has ended meanwhile would begin again.
+        ask = self._network.get if action in ("calibrate", "identify") else self._answers
+        for _, reply in ask(f"{self._prefix}{action}/{self._network.client}", payload, timeout):
             answer = _messages.read_answer(reply)
             if answer is not None:
                 self._receiver.answered(answer.time)
-                error = error_of(answer, finger)
+                finger, fault = self._stopped(finger) if answer.code == FAULTED else (finger, 0)
+                error = error_of(answer, finger, fault)
                 if error is not None:
                     raise error
                 return answer
         raise self._no_answer(action)
-
-    def _answers(self, key: str, payload: bytes, timeout: float) -> List[tuple]:
-        """Asks again if a request has reached nobody: just after a client has connected, Zenoh may not know the way to
-        the server yet."""
-        begun = time.monotonic()
-        answers = self._network.get(key, payload, timeout)
-        for _ in range(ATTEMPTS - 1):
-            if answers or time.monotonic() - begun >= timeout:
-                break
-            time.sleep(PAUSE)
-            answers = self._network.get(key, payload, timeout)
-        return answers

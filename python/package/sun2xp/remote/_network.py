@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import atexit
+import ctypes
 import json
+import os
 import re
 import threading
 import weakref
@@ -12,7 +14,7 @@ from typing import Any, Callable, Dict, List, Optional
 from .._errors import ConfigurationError, Error, ErrorNumber
 from . import _messages
 from ._certificate import common_name
-from ._errors import NoAnswer
+from ._errors import NoAnswer, forked
 from ._owner import Sender
 from ._types import Status, Tls, status
 
@@ -22,9 +24,13 @@ LOOPBACK = "tcp/127.0.0.1:7447"
 #: Longest time in which a server answers, s.
 ANSWER_TIME = 2.0
 
-#: Attempts of a request that reaches nobody, and the pause between them, s.
+#: Attempts of a get that reaches nobody, and the pause between them, s.
 ATTEMPTS = 3
 PAUSE = 0.2
+
+#: A get that reaches nobody ends within this time, s. If a get ends later without a reply, the connection was lost, and
+#: the server may have carried out the request.
+NOBODY = 0.5
 
 #: Pauses between the attempts to connect, at first and after a loss of the connection, ms.
 _RETRY = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
@@ -107,6 +113,8 @@ class Network:
     def __init__(self, endpoint: str = LOOPBACK, *, client: Optional[str] = None, tls: Optional[Tls] = None) -> None:
         self.endpoint = endpoint
         self.client = checked_client(client, tls)
+        #: Whether this process is a child of the one that has connected.
+        self.forked = False
         self._zenoh = _zenoh()
         try:
             text = json.dumps(configuration(endpoint, tls))
@@ -143,6 +151,8 @@ class Network:
     def get(self, key: str, payload: Optional[bytes], timeout: float) -> List[tuple]:
         """Returns the keys and payloads of all answers to a get. The get ends when all have answered, or after
         `timeout` s. Ctrl-C ends it."""
+        if self.forked:
+            raise forked()
         answers: List[tuple] = []
         ended = threading.Event()
 
@@ -203,13 +213,35 @@ class Network:
 
     def close(self) -> None:
         """Closes the hands, and then the connection. The fingers of the hands that this client owns go to their end
-        states."""
+        states. A child of `os.fork` leaves the connection of its parent alone."""
+        if self.forked:
+            return
         for hand in list(self._hands):
             hand.close()
         self.sender.close()
         if not self.session.is_closed():
             self.session.close()
         _open_networks.discard(self)
+
+    def _leave(self) -> None:
+        """Gives the connection up in a child of `os.fork`. The child has no thread of Zenoh, and a lock that another
+        thread had at the fork stays locked."""
+        self.forked = True
+        # The destructors of Zenoh would wait for its threads, so nothing of this connection is ever freed.
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))
+        self.sender.leave()
+        for hand in self._hands:
+            hand._receiver.leave()
+
+
+def _leave_all() -> None:
+    for network in list(_open_networks):
+        network._leave()
+    _open_networks.clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_leave_all)
 
 
 @atexit.register

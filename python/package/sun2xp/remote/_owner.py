@@ -178,6 +178,13 @@ class Sender:
             for owner, _ in commands:
                 owner.publish(sent)
 
+    def leave(self) -> None:
+        """Ends all Targets in a child of `os.fork`, which has no thread. The thread may have had the lock."""
+        self.lock, self._thread = threading.RLock(), None
+        for owner in self._owners:
+            owner.end()
+        self._owners = []
+
     def close(self) -> None:
         """Ends the thread."""
         self._ends.set()

@@ -12,6 +12,12 @@ from .._types import Array, SetPoint
 from ._messages import JOINTS, MOST_POSES, NO_PLACE, PATH, TIP, Part
 from ._types import FingerStatus
 
+#: A limit that is sent as `float32` may be rounded beyond the limit. The hand takes it.
+_ROUNDING = float(numpy.finfo(numpy.float32).eps)
+
+#: The asymmetry of Kx that counts as rounding, relative to its largest entry. The hand has the same tolerance.
+_ASYMMETRY = 1e-3
+
 
 def group(set_points: Sequence[SetPoint], fingers: Dict[int, FingerStatus]) -> List[Part]:
     """Returns the parts of a group. Their command numbers are not set.
@@ -64,7 +70,8 @@ def path(
 def _joints(finger: int, angles: Any, shape: tuple, status: FingerStatus) -> Array:
     array = _array("joint angles", angles, shape)
     low, high = status.joints
-    if (array < low).any() or (array > high).any():
+    rounding = _ROUNDING * numpy.maximum(abs(low), abs(high))
+    if (array < low - rounding).any() or (array > high + rounding).any():
         limits = f"{low.round(4).tolist()} to {high.round(4).tolist()} rad"
         raise _refused(f"{array.tolist()} rad is outside the limits of finger {finger}: {limits}", ErrorNumber.LIMIT)
     return array
@@ -72,10 +79,10 @@ def _joints(finger: int, angles: Any, shape: tuple, status: FingerStatus) -> Arr
 
 def _symmetric(finger: int, kx: Any, status: FingerStatus) -> List[float]:
     array = _array("Kx", kx, (3, 3))
-    if not numpy.allclose(array, array.T, rtol=0, atol=1e-6 * max(1.0, abs(array).max())):
+    if not numpy.allclose(array, array.T, rtol=0, atol=_ASYMMETRY * abs(array).max()):
         raise _refused(f"Kx of finger {finger} is not symmetric: {array.tolist()}")
-    largest = numpy.linalg.eigvalsh(array)[-1]
-    if largest > status.stiffness:
+    largest = numpy.linalg.eigvalsh((array + array.T) / 2)[-1]
+    if largest > status.stiffness * (1 + 8 * _ROUNDING):
         text = f"Kx of finger {finger} has {largest:.3g} N/cm, and {status.stiffness:.3g} N/cm are admitted"
         raise _refused(text, ErrorNumber.LIMIT)
     return array.ravel().tolist()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any, List, Optional, Union
 
 import numpy
@@ -9,10 +10,10 @@ import numpy
 from .._errors import Closed, ErrorNumber, Refused
 from .._types import Array
 from . import _messages
-from ._errors import NoAnswer
+from ._errors import NoAnswer, forked
 from ._events import RemoteEvents
 from ._messages import STAGES
-from ._network import ANSWER_TIME, Network
+from ._network import ANSWER_TIME, ATTEMPTS, NOBODY, PAUSE, Network
 from ._receiver import Receiver, Records
 from ._types import FingerState, FingerStatus, Status, Tip, status
 
@@ -37,8 +38,8 @@ class Reading:
 
     @property
     def closed(self) -> bool:
-        """Whether `close` was called."""
-        return self._closed
+        """Whether `close` was called, or this process was forked from the one that has opened the hand."""
+        return self._closed or self._network.forked
 
     @property
     def missing(self) -> tuple:
@@ -101,6 +102,8 @@ class Reading:
         return RemoteEvents(self._receiver)
 
     def _check(self, *fingers: int) -> None:
+        if self._network.forked:
+            raise forked()
         if self._closed:
             raise Closed("the hand is closed", number=ErrorNumber.NO_HAND)
         for finger in fingers:
@@ -114,11 +117,22 @@ class Reading:
         return self._receiver.newest(finger, self._stale)
 
     def _ask_status(self) -> Status:
-        for _, payload in self._network.get(f"{self._prefix}status", None, ANSWER_TIME):
+        for _, payload in self._answers(f"{self._prefix}status", None, ANSWER_TIME):
             message = _messages.read_status(payload)
             if message is not None:
                 return status(message)
         raise self._no_answer("the status")
+
+    def _answers(self, key: str, payload: Optional[bytes], timeout: float) -> List[tuple]:
+        """Asks again if a get has reached nobody: just after a client has connected, Zenoh may not know the way to the
+        server yet."""
+        for _ in range(ATTEMPTS - 1):
+            begun = time.monotonic()
+            answers = self._network.get(key, payload, timeout)
+            if answers or time.monotonic() - begun > NOBODY:
+                return answers
+            time.sleep(PAUSE)
+        return self._network.get(key, payload, timeout)
 
     def _no_answer(self, asked: str) -> NoAnswer:
         where = f"{self._network.endpoint} as {self._network.client}"

@@ -142,6 +142,10 @@ class Receiver:
         with self.changed:
             self._queues = [other for other in self._queues if other is not queue]
 
+    def leave(self) -> None:
+        """Ends the waits in a child of `os.fork`. A thread of the parent may have had the lock."""
+        self.changed, self.closed = threading.Condition(), True
+
     def close(self) -> None:
         """Ends the waits of other threads."""
         with self.changed:

@@ -96,7 +96,7 @@ class FingerStatus:
     #: Number of the fault, and the beginning of its text; 0 and "" if there is none.
     fault: int
     fault_text: str
-    #: Number of warnings in force.
+    #: Warnings since the hand was opened; a warning that persists counts once.
     warnings: int
     #: Cycles since open, skipped periods, lost replies and corrupt replies.
     cycles: int
