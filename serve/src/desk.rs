@@ -144,6 +144,12 @@ impl Desk {
         Some(*silence)
     }
 
+    /// Returns whether an acquire by this client is admitted.
+    #[must_use]
+    pub fn may_acquire(&self, client: &ClientName, take_over: bool) -> bool {
+        self.ownership.other_owner(client, take_over).is_none()
+    }
+
     /// Makes a client the owner at `now`, ns, with this epoch. Paths of the previous owner end. The time limit for the
     /// owner's silence begins with [`Desk::begin`].
     ///

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use sun2xp::control::events::Arrival;
 use sun2xp::finger::FingerReport;
 use sun2xp::groups::FingerCommand;
+use sun2xp::hand::SetPointError;
 use sun2xp::motion::{Pose, Validity};
 use sun2xp::{Hand, HandError, OutOfRange, Stage};
 use sun2xp_remote_protocol::{FINGERS, Part};
@@ -81,13 +82,17 @@ impl Fingers {
         }
     }
 
-    /// Begins the epoch of a new owner, who has not commanded any finger yet.
+    /// Begins the epoch of a new owner, who has not commanded any finger yet. The acquire counts as a Target, so
+    /// fingers that were caught first follow their set points again.
     pub fn begin_epoch(&mut self, silence: &Silence) {
-        self.goals = [Goal::default(); FINGERS];
+        self.keep_valid(silence);
+        self.goals.iter_mut().for_each(Goal::begin_epoch);
         self.keep_valid(silence);
     }
 
-    /// Applies the parts of a Target that are new, all of them or none, and renews the validity of everything else.
+    /// Applies the parts of a Target that are new, all of them or none, and renews the validity of everything else. If
+    /// a servo is so late that it has no room for another group, no part is applied yet. The parts stay new, and the
+    /// owner repeats them.
     ///
     /// # Errors
     /// Returns why a finger refuses its part. Then no part is applied, and the validity is not renewed. If a finger
@@ -101,7 +106,13 @@ impl Fingers {
         let prepared = new.map(|part| self.prepare(part, valid, now)).collect::<Result<Vec<_>, _>>()?;
         if !prepared.is_empty() {
             let commands: Vec<FingerCommand> = prepared.iter().filter_map(|prepared| prepared.command).collect();
-            self.hand.send_group(&commands)?;
+            match self.hand.send_group(&commands) {
+                Err(HandError::SetPoint(SetPointError::GroupsWaiting(_))) => {
+                    self.keep_valid(silence);
+                    return Ok(());
+                }
+                sent => sent?,
+            }
         }
         let mut sent = Ok(());
         for Prepared { finger, mut goal, path, .. } in prepared {
@@ -192,7 +203,10 @@ impl Fingers {
     fn send(&mut self, number: i32, report: &FingerReport, valid: Validity, spring: bool) {
         let index = number as usize - 1;
         let goal = match spring {
-            true => self.pulled(number, self.goals[index], report),
+            true => {
+                let goal = self.keeping(number, self.goals[index], report);
+                goal.and_then(|goal| self.pulled(number, goal, report))
+            }
             false => Ok(self.goals[index]),
         };
         let Ok(goal) = goal else { return };
@@ -207,7 +221,7 @@ impl Fingers {
         }
         // A finger that has stopped meanwhile refuses the command. The next call detects that.
         if self.hand.send_group(&[command]).is_ok() {
-            self.goals[index].destination = goal.destination;
+            (self.goals[index].destination, self.goals[index].kept) = (goal.destination, goal.kept);
             self.goals[index].note_sent(report, whole);
         }
     }

@@ -33,6 +33,11 @@ pub struct Goal {
     pub destination: Destination,
     /// Kx, N/cm, and relative damping that are in force for the owner.
     pub spring: Option<(Matrix3<f64>, f64)>,
+    /// Kx, N/cm, and relative damping that the previous owner has left.
+    inherited: Option<(Matrix3<f64>, f64)>,
+    /// The joint angles of the set point that the owner keeps because it has not commanded a place, rad. A finger that
+    /// was caught returns to them.
+    pub kept: Option<Vector3<f64>>,
     /// Whether the whole way to the destination has been sent, and not only the part that the lead admits.
     pub whole: bool,
     /// Numbers of the finger's recoveries and orders when this goal was set. A later recovery or order cancels it.
@@ -51,6 +56,17 @@ impl Goal {
     /// Forgets the command number, which belongs to the previous owner.
     pub fn forget_command(&mut self) {
         (self.command, self.before) = (0, (0, 0));
+    }
+
+    /// Begins the epoch of another owner, who has not commanded the finger yet. What the finger followed is remembered
+    /// in case it is caught.
+    pub fn begin_epoch(&mut self) {
+        let kept = match self.destination {
+            Destination::None => self.kept,
+            Destination::Joints(end) | Destination::Tip(end) if self.whole => Some(end),
+            _ => None,
+        };
+        *self = Self { inherited: self.spring.or(self.inherited), kept, ..Self::default() };
     }
 
     /// Returns whether the owner has commanded the finger, and it was neither recovered nor calibrated since.
@@ -91,16 +107,19 @@ impl Goal {
 
     /// Returns the goal after a part with a new command number, taken at `now`, ns. `destination` is the destination
     /// of the part. If it is none, the goal keeps its destination. If neither the part nor an earlier one has a Kx, the
-    /// goal keeps the spring in `report`.
+    /// goal keeps the spring in `report`, or the spring from before the catch if the finger was caught.
     #[must_use]
     pub fn with(&self, part: &Part, destination: Option<Destination>, report: &FingerReport, now: u64) -> Self {
-        let (kx, damping) = self.spring.unwrap_or_else(|| in_force(report));
+        let inherited = self.inherited.filter(|_| report.expired);
+        let (kx, damping) = self.spring.or(inherited).unwrap_or_else(|| in_force(report));
         let kx = part.stiffness.map_or(kx, |rows| matrix(&rows));
         Self {
             command: part.command,
             before: (self.command, now),
             destination: destination.unwrap_or(self.destination),
             spring: Some((kx, part.damping.unwrap_or(damping))),
+            inherited: None,
+            kept: self.kept.filter(|_| destination.is_none()),
             whole: false,
             phase: (report.recoveries, report.orders),
             springs: report.springs,

@@ -47,17 +47,20 @@ impl Ownership {
         self.owner.as_ref().is_some_and(|owner| owner.client == *client && owner.epoch == epoch)
     }
 
+    /// Returns the other owner because of whom an acquire by this client is refused; none if it is admitted.
+    #[must_use]
+    pub fn other_owner(&self, client: &ClientName, take_over: bool) -> Option<&Owner> {
+        self.owner.as_ref().filter(|owner| owner.client != *client && !take_over)
+    }
+
     /// Makes this client the owner, with this epoch. The previous epoch ends. If another client owns the hand, the call
     /// is refused unless `take_over` is set.
     ///
     /// # Errors
     /// Returns the name of the other owner. Then nothing has changed.
     pub fn acquire(&mut self, client: &ClientName, take_over: bool, epoch: u64) -> Result<&Owner, ClientName> {
-        if let Some(owner) = &self.owner
-            && owner.client != *client
-            && !take_over
-        {
-            return Err(owner.client.clone());
+        if let Some(other) = self.other_owner(client, take_over) {
+            return Err(other.client.clone());
         }
         self.newest += 1;
         Ok(self.owner.insert(Owner { client: client.clone(), epoch, number: self.newest }))

@@ -2,7 +2,7 @@
 //! thread of its own, because the threads of zenoh must not wait.
 
 use crate::access::permission;
-use crate::desk::{Stops, code_of};
+use crate::desk::{Desk, Stops, code_of};
 use crate::epoch::new_epoch;
 use crate::output::complain;
 use crate::settings::Permission;
@@ -113,24 +113,11 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
             return reply.send(&answer);
         }
     };
-    if request.recover && shared.busy.swap(true, Ordering::AcqRel) {
-        return reply.send(&in_progress(shared, 0));
-    }
-    let (acquired, stops) = {
-        let mut desk = shared.desk.lock();
-        (desk.acquire(&client, request.take_over, epoch, now()), desk.stops())
+    let (number, stops) = match take(shared, request, &client, epoch) {
+        Ok(taken) => taken,
+        Err(refusal) => return reply.send(&refusal),
     };
-    let number = match acquired {
-        Ok(number) => number,
-        Err(other) => {
-            if request.recover {
-                shared.busy.store(false, Ordering::Release);
-            }
-            let text = format!("{other} owns the hand: wait until it releases the hand, or take the hand over");
-            let answer = shared.desk.lock().answer(Code::Owned, text, 0, now());
-            return reply.send(&answer);
-        }
-    };
+    let owner = client.clone();
     let begin = move |shared: &Shared, recovered: Result<(), HandError>| {
         let mut desk = shared.desk.lock();
         let time = now();
@@ -154,14 +141,40 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
         begin(shared, recovered)
     });
     if !started {
-        shared.desk.lock().abandon(now());
+        let mut desk = shared.desk.lock();
+        // Another client may have taken the hand over since.
+        if desk.admits(&owner, epoch) {
+            desk.abandon(now());
+        }
+    }
+}
+
+/// Makes the client the owner with this epoch. If it requests a recovery, `busy` is set. Returns the number of the
+/// epoch, and how often each finger was stopped so far. Otherwise returns the refusal, and nothing has changed.
+fn take(shared: &Shared, request: &Request, client: &ClientName, epoch: u64) -> Result<(u64, Stops), Answer> {
+    let mut desk = shared.desk.lock();
+    // An acquire that is refused because of the owner must not hold up the requests of this owner.
+    let admitted = desk.may_acquire(client, request.take_over);
+    if admitted && request.recover && shared.busy.swap(true, Ordering::AcqRel) {
+        return Err(in_progress(&desk, 0));
+    }
+    let time = now();
+    match desk.acquire(client, request.take_over, epoch, time) {
+        Ok(number) => Ok((number, desk.stops())),
+        Err(other) => {
+            let text = format!("{other} owns the hand: wait until it releases the hand, or take the hand over");
+            Err(desk.answer(Code::Owned, text, 0, time))
+        }
     }
 }
 
 /// Runs a request that takes long, unless another such request is running.
 fn long(shared: &Arc<Shared>, epoch: u64, reply: impl Reply, body: impl FnOnce(&Shared) -> Answer + Send + 'static) {
     match shared.busy.swap(true, Ordering::AcqRel) {
-        true => reply.send(&in_progress(shared, epoch)),
+        true => {
+            let answer = in_progress(&shared.desk.lock(), epoch);
+            reply.send(&answer);
+        }
         false => {
             run(shared, reply, body);
         }
@@ -193,9 +206,9 @@ fn run(shared: &Arc<Shared>, reply: impl Reply, body: impl FnOnce(&Shared) -> An
     }
 }
 
-fn in_progress(shared: &Shared, epoch: u64) -> Answer {
+fn in_progress(desk: &Desk, epoch: u64) -> Answer {
     let text = "the hand is being recovered or calibrated already: repeat the request when that has ended".into();
-    shared.desk.lock().answer(Code::InProgress, text, epoch, now())
+    desk.answer(Code::InProgress, text, epoch, now())
 }
 
 /// Recovers this finger, or every finger if `finger` is none. `stops` was read when the request was admitted. A finger
@@ -257,3 +270,6 @@ pub fn join(shared: &Shared) {
         let _ = thread.join();
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -36,9 +36,10 @@ fn of_finger(hand: &Hand, number: i32) -> Result<FingerStatus, HandError> {
         Stage::Faulted(fault) => FaultText::beginning_of(&fault.to_string()),
         _ => FaultText::default(),
     };
+    let warnings = u32::try_from(hand.fault(number)?.warnings).unwrap_or(u32::MAX);
     Ok(FingerStatus {
         stage: stage(&report.stage),
-        warnings: u32::from(hand.fault(number)?.warning.is_some()),
+        warnings,
         cycles: status.losses.cycles,
         skipped_periods: status.losses.skipped_periods,
         lost_replies: status.losses.lost_replies,
@@ -49,4 +50,46 @@ fn of_finger(hand: &Hand, number: i32) -> Result<FingerStatus, HandError> {
         calibration: status.calibration.clamp(0.0, 1.0),
         fault_text,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use std::time::{Duration, Instant};
+    use sun2xp::realtime::now;
+    use sun2xp::{Configuration, RealTime};
+
+    fn wait_until(what: &str, holds: impl Fn() -> bool) {
+        let begun = Instant::now();
+        while !holds() {
+            // The machine of the tests may be busy.
+            assert!(begun.elapsed() < Duration::from_secs(60), "no {what} in time");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    #[test]
+    fn a_status_has_the_number_of_warnings_since_open() {
+        let mut configuration = Configuration::default();
+        configuration.hand.real_time = RealTime::Ignore;
+        // The stop of joint 0 is close.
+        configuration.fingers[0].joints.maximum_degrees[0] = 5.0;
+        let hand = Arc::new(Hand::open(configuration).expect("the simulated hand"));
+        let limits = Limits { catch_ms: 100, end_ms: 1000, soft_stiffness: 1.0, lead_force: 10.0 };
+        let desk = Desk::new(hand.clone(), limits, now());
+        let given = || hand.fault(1).expect("finger 1").warnings;
+        let cycles = || hand.report(1).expect("finger 1").losses.cycles;
+        hand.push_simulated(1, [5.0, 0.0, 0.0]).expect("pushed");
+        wait_until("warning", || given() >= 1);
+        // A warning counts again after it has been absent for a second.
+        hand.push_simulated(1, [0.0; 3]).expect("released");
+        let released = cycles();
+        wait_until("pause", || cycles() > released + 3000);
+        hand.push_simulated(1, [5.0, 0.0, 0.0]).expect("pushed");
+        wait_until("second warning", || given() >= 2);
+        let before = given();
+        let shown = status(&hand, &limits, &desk, now()).fingers[0].as_ref().map(|finger| u64::from(finger.warnings));
+        assert!(shown.is_some_and(|shown| (before..=given()).contains(&shown)), "{shown:?}, not {before}");
+    }
 }

@@ -5,6 +5,7 @@ mod rig;
 
 use rig::{FAR, Rig, STIFF, is_near, joints, kept, path};
 use sun2xp::Stage;
+use sun2xp::realtime::now;
 use sun2xp_remote_protocol::{Code, Part};
 use sun2xp_serve::goal::Destination;
 
@@ -43,6 +44,87 @@ fn a_stiffness_that_comes_back_pulls_with_the_force_of_the_lead_only() {
     });
     assert_eq!(report.set_point.stiffness[(0, 0)], STIFF[0][0]);
     assert!(!is_near(&report.set_point.joints, &caught, 0.05), "the set point is ahead of the finger by the lead only");
+}
+
+/// The owner commands Kx only. Something pushes the finger away before it is caught, and lets it go afterwards.
+#[test]
+fn a_finger_whose_place_is_kept_returns_to_its_set_point_after_a_catch() {
+    let mut rig = Rig::new("end_ms = 20000");
+    rig.acquire("alice");
+    let before = rig.report(1).set_point.joints;
+    let kx = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
+    let part = [Part { stiffness: Some(kx), ..kept(1, 1) }];
+    rig.wait_until("stiffness", &part, |rig| rig.report(1).set_point.stiffness[(0, 0)] == 2.0);
+    rig.hand.push_simulated(1, [2.0, 2.0, 0.0]).expect("pushed");
+    rig.wait_until("push", &part, |rig| !is_near(&rig.report(1).cycle.joints, &before, 0.05));
+    rig.wait_in_silence("catch", |rig| rig.report(1).expired);
+    rig.hand.push_simulated(1, [0.0; 3]).expect("released");
+    rig.wait_until("return", &part, |rig| {
+        let report = rig.report(1);
+        !report.expired && is_near(&report.set_point.joints, &before, 0.01)
+    });
+}
+
+/// The new owner commands a place only. The stiffness is that from before the catch.
+#[test]
+fn a_new_owner_does_not_get_the_soft_stiffness_of_a_catch() {
+    let mut rig = Rig::new("end_ms = 20000");
+    rig.acquire("alice");
+    let stiff = [Part { stiffness: Some(STIFF), ..joints(1, 1, FAR) }];
+    rig.wait_until("stiffness", &stiff, |rig| rig.report(1).set_point.stiffness[(0, 0)] == STIFF[0][0]);
+    rig.wait_in_silence("catch", |rig| rig.report(1).expired);
+    rig.acquire("bob");
+    let report = rig.wait_for("set point", |rig| {
+        rig.send(&[joints(1, 1, FAR)]);
+        let (in_force, report) = rig.hand.newest_in_force(1).expect("a report");
+        (in_force && !report.expired).then_some(report)
+    });
+    assert_eq!(report.set_point.stiffness[(0, 0)], STIFF[0][0]);
+}
+
+/// An acquire counts as a Target.
+#[test]
+fn a_caught_finger_follows_its_set_point_again_when_a_new_owner_acquires() {
+    let mut rig = Rig::new("end_ms = 20000");
+    rig.acquire("alice");
+    let start = rig.report(1).cycle.joints;
+    let place = [start[0] + 0.05, start[1], start[2]];
+    let is_there = |rig: &Rig| is_near(&rig.report(1).set_point.joints, &place.into(), 1e-6);
+    rig.wait_until("set point", &[joints(1, 1, place)], is_there);
+    rig.wait_in_silence("catch", |rig| rig.report(1).expired);
+    rig.acquire("bob");
+    rig.wait_in_silence("set point", |rig| !rig.report(1).expired && is_there(rig));
+    rig.desk.look(now());
+    let before = rig.desk.counts().caught;
+    rig.wait_until("set point", &[joints(2, 1, FAR)], |rig| rig.report(2).set_point_number > 0);
+    rig.wait_in_silence("count of the next catch", |rig| rig.desk.counts().caught > before);
+}
+
+/// The server hears nothing while the finger recovers. The next Target has a new part without a place.
+#[test]
+fn a_recovered_finger_does_not_return_to_its_earlier_place() {
+    let mut rig = Rig::new("end_ms = 20000");
+    rig.acquire("alice");
+    rig.wait_until("set point", &[joints(1, 1, FAR)], |rig| rig.report(1).set_point_number > 0);
+    rig.hand.stop(1).expect("finger 1");
+    rig.hand.recover(1).expect("recovered");
+    let held = rig.report(1).set_point.joints;
+    let stiff = [Part { stiffness: Some(STIFF), ..kept(1, 2) }];
+    rig.wait_until("stiffness", &stiff, |rig| rig.report(1).set_point.stiffness[(0, 0)] == STIFF[0][0]);
+    assert!(is_near(&rig.report(1).set_point.joints, &held, 1e-3));
+}
+
+/// The Targets come faster than the servos take their parts.
+#[test]
+fn parts_for_which_a_servo_has_no_room_are_applied_later() {
+    let mut rig = Rig::new("end_ms = 20000");
+    rig.acquire("alice");
+    let parts = |command| [1, 2].map(|finger| Part { damping: Some(1.0), ..kept(finger, command) });
+    for command in 1..=200 {
+        assert_eq!(rig.send(&parts(command)), None);
+    }
+    rig.wait_until("last parts", &parts(200), |rig| rig.desk.goals()[..2].iter().all(|goal| goal.command == 200));
+    assert_eq!(rig.desk.counts().refused, 0);
 }
 
 #[test]

@@ -18,7 +18,7 @@ pub struct FingerCommand {
     pub finger: i32,
     /// Desired pose.
     pub pose: Option<Pose>,
-    /// Kx in the finger's frame, N/cm: `rows[row][column]`.
+    /// Kx in the finger's frame, N/cm: `stiffness[row][column]`.
     pub stiffness: Option<[[f64; 3]; 3]>,
     /// Damping, relative to the damping that the controller chooses.
     pub damping: Option<f64>,

@@ -36,12 +36,12 @@ impl RemoteHand {
     /// client owns it and `take_over` is false, or if a finger does not recover.
     pub fn open(configuration: &RemoteConfiguration) -> Result<Self, RemoteError> {
         let hand = Self::watch(configuration)?;
-        hand.link.acquire()?;
+        hand.link.acquire(true)?;
         Ok(hand)
     }
 
-    /// Connects to the hand to read it. It is never acquired, unless [`RemoteHand::reopen`] is called. There may be any
-    /// number of watchers.
+    /// Connects to the hand to read it. It is never acquired, unless [`RemoteHand::reopen`] or [`RemoteHand::acquire`]
+    /// is called. There may be any number of watchers.
     ///
     /// # Errors
     /// Returns an error if the configuration or a certificate cannot be used, or if the hand cannot be reached.
@@ -56,7 +56,16 @@ impl RemoteHand {
     /// Returns an error if the hand cannot be reached, if another client owns it and `take_over` is false, or if a
     /// finger does not recover.
     pub fn reopen(&self) -> Result<(), RemoteError> {
-        self.link.acquire()
+        self.link.acquire(true)
+    }
+
+    /// Acquires the hand as [`RemoteHand::reopen`] does, and recovers no finger. [`RemoteHand::recover`] recovers each
+    /// finger that may move.
+    ///
+    /// # Errors
+    /// Returns an error if the hand cannot be reached, or if another client owns it and `take_over` is false.
+    pub fn acquire(&self) -> Result<(), RemoteError> {
+        self.link.acquire(false)
     }
 
     /// Releases the hand: every finger goes to its end state. The hand can still be read, and acquired again. Waits for

@@ -1,5 +1,7 @@
 //! The link to one hand: a session, the subscriptions, and the thread that sends Targets.
 
+mod requests;
+
 use crate::clock::now;
 use crate::configuration::RemoteConfiguration;
 use crate::connection;
@@ -9,35 +11,18 @@ use crate::exchange::Exchange;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
-use sun2xp_remote_protocol::{
-    Action, Answer, ClientName, Code, DecodeError, Event, Finger, HandKeys, Request, State, Status,
-};
+use std::time::Duration;
+use sun2xp_remote_protocol::{Action, Answer, ClientName, DecodeError, Event, Finger, HandKeys, State, Status};
 use zenoh::key_expr::KeyExpr;
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::sample::Sample;
 use zenoh::{Session, Wait};
-
-/// The time in which the server answers most requests. Recovering takes up the slack of tendons.
-const ANSWER: Duration = Duration::from_secs(30);
-
-/// The time in which the server answers a release or a stop. A planner that closes the hand must not wait longer if the
-/// line is cut.
-const QUICK_ANSWER: Duration = Duration::from_secs(3);
-
-/// The time in which a calibration ends. The protocol says ten minutes.
-const CALIBRATION: Duration = Duration::from_secs(610);
 
 /// The time in which a Status and the first records are received.
 const FIRST: Duration = Duration::from_secs(3);
 
 /// The time in which a State follows the Answer to a request.
 const NEXT_STATE: Duration = Duration::from_millis(200);
-
-/// Attempts of a request that reaches nobody, and the pause between them. Just after a client has connected, Zenoh may
-/// not know the way to the server yet.
-const ATTEMPTS: usize = 3;
-const PAUSE: Duration = Duration::from_millis(200);
 
 /// What the callbacks, the sending thread and the planner share.
 pub struct Shared {
@@ -131,15 +116,13 @@ impl Link {
 
     /// Requests the Status, and so finds out whether the hand is there.
     fn first_status(&self) -> Result<(), RemoteError> {
-        let replies = connection::get(&self.session, &self.keys.status(), None, (FIRST, 1));
-        let replies = replies.map_err(|error| self.not_connected(&error))?;
-        let Some((_, payload)) = replies.first() else {
+        let Some(payload) = self.get(&self.keys.status(), None, FIRST)? else {
             return Err(self.not_connected(
                 "nobody answers for it. Check remote.hand, whether the server lists this client in [serve.clients], \
                  and whether `sun2xp serve` of this hand is connected to this router",
             ));
         };
-        let status = Status::decode(payload).map_err(|error| self.protocol(&error))?;
+        let status = Status::decode(&payload).map_err(|error| self.protocol(&error))?;
         self.shared.lock().view.take_status(status);
         Ok(())
     }
@@ -175,59 +158,9 @@ impl Link {
         started.map_err(|source| RemoteError::System { doing: "start the thread that sends Targets".into(), source })
     }
 
-    /// Sends a Request, and waits for its Answer. An Answer that is not *done* is an error.
-    pub fn request(&self, action: Action, finger: Option<Finger>, recover: bool) -> Result<Answer, RemoteError> {
-        let acquires = action == Action::Acquire;
-        let epoch = self.shared.lock().outbox.ownership().map_or(0, |ownership| ownership.epoch);
-        let take_over = acquires && self.configuration.take_over;
-        let request = Request { action, finger, take_over, recover, epoch };
-        let payload = request.encode().map_err(|error| RemoteError::NotConnected(error.to_string()))?;
-        let limit = match action {
-            Action::Calibrate | Action::Identify => CALIBRATION,
-            Action::Release | Action::Stop => QUICK_ANSWER,
-            Action::Acquire | Action::Recover => ANSWER,
-        };
-        let key = self.keys.request(action, &self.client);
-        let get = || {
-            let replies = connection::get(&self.session, &key, Some(payload.clone()), (limit, 1));
-            replies.map_err(|error| self.not_connected(&error))
-        };
-        let (begun, mut replies) = (Instant::now(), get()?);
-        for _ in 1..ATTEMPTS {
-            if replies.is_empty() && begun.elapsed() < limit {
-                std::thread::sleep(PAUSE);
-                replies = get()?;
-            }
-        }
-        let Some((_, payload)) = replies.first() else {
-            let reason = format!(
-                "the request `{}` has no answer. Check the line, and whether the server lists the client {} in \
-                 [serve.clients]",
-                action.name(),
-                self.client
-            );
-            return Err(self.not_connected(&reason));
-        };
-        let answer = Answer::decode(payload).map_err(|error| self.protocol(&error))?;
-        match answer.code {
-            Code::Done => Ok(answer),
-            Code::Owned => Err(RemoteError::Owned(answer.text)),
-            Code::NotOwner if !acquires => Err(self.not_owner(answer)),
-            code => Err(RemoteError::Answered { code, text: answer.text }),
-        }
-    }
-
-    /// The error for an Answer that this client does not own the hand.
-    fn not_owner(&self, answer: Answer) -> RemoteError {
-        match self.shared.lock().outbox.ownership() {
-            Err(loss) => RemoteError::NotOwner { hand: self.configuration.hand.clone(), loss },
-            Ok(_) => RemoteError::Answered { code: Code::NotOwner, text: answer.text },
-        }
-    }
-
-    /// Becomes the owner of the hand, and recovers the fingers that have stopped.
-    pub fn acquire(&self) -> Result<(), RemoteError> {
-        let answer = self.request(Action::Acquire, None, true)?;
+    /// Becomes the owner of the hand. `recover` also recovers the fingers that have stopped.
+    pub fn acquire(&self, recover: bool) -> Result<(), RemoteError> {
+        let answer = self.request(Action::Acquire, None, recover)?;
         self.shared.lock().outbox.acquired(&answer);
         self.shared.wake();
         self.await_state_after(&answer);

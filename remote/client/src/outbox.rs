@@ -46,6 +46,8 @@ pub struct Outbox {
     refusal: Option<String>,
     /// Refusals of Targets up to this sequence number are not reported any more.
     reported: u64,
+    /// Whether no Targets are sent in this epoch for now.
+    held: bool,
 }
 
 impl Outbox {
@@ -60,6 +62,7 @@ impl Outbox {
             sent: None,
             refusal: None,
             reported: 0,
+            held: false,
         }
     }
 
@@ -83,6 +86,11 @@ impl Outbox {
         if self.ownership.is_ok() {
             *self = Self { command: self.command, ..Self::new(loss) };
         }
+    }
+
+    /// Holds the Targets of this epoch back, or sends them again. What is put meanwhile waits.
+    pub fn hold(&mut self, held: bool) {
+        self.held = held;
     }
 
     /// Notes the time and the owner of a State that was received. `continued` is false if the server was started again
@@ -146,9 +154,9 @@ impl Outbox {
         self.slots.iter().any(Slot::waits) && !self.slots.iter().any(Slot::is_blocked)
     }
 
-    /// The time at which the next Target must be sent; none while the hand is not owned.
+    /// The time at which the next Target must be sent; none while the hand is not owned or Targets are held back.
     pub fn due(&self) -> Option<u64> {
-        self.ownership.ok()?;
+        self.ownership.ok().filter(|_| !self.held)?;
         let interval = if self.has_changes() { LEAST_INTERVAL } else { REPETITION };
         Some(self.sent.map_or(0, |(sent, _)| sent + interval))
     }

@@ -6,6 +6,7 @@
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
 
+mod measured_rate;
 mod network_hand;
 mod opening;
 mod refusals;

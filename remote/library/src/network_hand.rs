@@ -1,6 +1,7 @@
 //! A hand on another machine, over the network.
 
-use crate::refusals::{closed, refusal};
+use crate::measured_rate::MeasuredRate;
+use crate::refusals::{calibration_refusal, closed, recovery_refusal, refusal};
 use crate::results;
 use crate::stop_calls::{StopCalls, Stoppable};
 use std::array::from_fn;
@@ -33,15 +34,17 @@ pub(crate) struct NetworkHand {
 struct Connection {
     hand: client::RemoteHand,
     events: client::RemoteEvents,
-    /// The first record of each finger.
-    first: [Mutex<Option<client::Record>>; 3],
+    /// The measured rate of each finger.
+    rates: [Mutex<MeasuredRate>; 3],
     _stop_calls: StopCalls,
 }
 
 impl Stoppable for NetworkHand {
-    fn stop_every_finger(&self) {
+    fn stop_every_finger(&self) -> bool {
         // The result cannot be reported, because the call that requested the stop has returned.
-        let _ = self.stop(0);
+        let Ok(connection) = self.connection() else { return true };
+        // A planner that has lost the hand must not stop the hand of the next owner later.
+        connection.hand.emergency_stop().is_ok() || !connection.hand.is_owner()
     }
 }
 
@@ -57,7 +60,7 @@ impl NetworkHand {
         let mut place = own.connection.write().unwrap_or_else(PoisonError::into_inner);
         let _stop_calls = StopCalls::watch(Arc::downgrade(&own), seen)?;
         let events = hand.events();
-        let connection = Connection { hand, events, first: from_fn(|_| Mutex::new(None)), _stop_calls };
+        let connection = Connection { hand, events, rates: Default::default(), _stop_calls };
         *place = Some(Arc::new(connection));
         drop(place);
         Ok(own)
@@ -104,8 +107,11 @@ impl NetworkHand {
     fn newest(&self, finger: i32) -> Result<(Arc<Connection>, client::Record), RemoteRefusal> {
         let connection = self.connection()?;
         let finger = member(&connection.hand, finger)?;
+        // The record is read under the lock, so that records are noted in their order.
+        let mut rate = connection.rates[finger.index()].lock().unwrap_or_else(PoisonError::into_inner);
         let record = connection.hand.record(finger.get()).map_err(refusal)?;
-        connection.first[finger.index()].lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(record);
+        rate.note(&record);
+        drop(rate);
         Ok((connection, record))
     }
 }
@@ -120,6 +126,14 @@ fn member(hand: &client::RemoteHand, number: i32) -> Result<FingerNumber, Remote
     let members: Vec<FingerNumber> = FingerNumber::ALL.into_iter().filter(|&number| has(number)).collect();
     let fingers = Fingers::try_from(members).unwrap_or(Fingers::ALL);
     Err(HandError::NotInHand { finger, fingers }.into())
+}
+
+/// Refuses to wait for a finger that follows no set point, and will not follow one by itself.
+fn follows_set_points(record: &client::Record) -> Result<(), RemoteRefusal> {
+    use client::Stage::{Calibrating, Closed, Closing, Limp};
+    let busy = matches!(record.stage, Limp | Calibrating | Closing | Closed);
+    let finger = FingerNumber::new(record.finger.number().into()).filter(|_| busy);
+    finger.map_or(Ok(()), |finger| Err(HandError::Busy(finger).into()))
 }
 
 /// The finger of a call that takes 0 for all fingers; none for all.
@@ -152,8 +166,8 @@ impl RemoteHand for NetworkHand {
         let (connection, newest) = self.newest(finger)?;
         let hand = connection.hand.status().map_err(refusal)?;
         let status = connection.hand.finger_status(finger).map_err(refusal)?;
-        let first = *connection.first[newest.finger.index()].lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(results::status(&hand, &status, first.as_ref().unwrap_or(&newest), &newest))
+        let rate = connection.rates[newest.finger.index()].lock().unwrap_or_else(PoisonError::into_inner).rate();
+        Ok(results::status(&hand, &status, &newest, rate))
     }
 
     fn limits(&self, finger: i32) -> Result<sun2xp_limits, RemoteRefusal> {
@@ -177,9 +191,13 @@ impl RemoteHand for NetworkHand {
         let connection = self.connection()?;
         let finger = one_or_all(&connection.hand, finger)?;
         if !connection.hand.is_owner() {
-            return connection.hand.reopen().map_err(refusal);
+            if finger.is_none() {
+                return connection.hand.reopen().map_err(recovery_refusal);
+            }
+            // The other fingers stay stopped until the planner recovers them too.
+            connection.hand.acquire().map_err(refusal)?;
         }
-        connection.hand.recover(finger).map_err(refusal)
+        connection.hand.recover(finger).map_err(recovery_refusal)
     }
 
     fn calibrate(&self, finger: i32, task: Task) -> Result<(), RemoteRefusal> {
@@ -189,7 +207,7 @@ impl RemoteHand for NetworkHand {
             Task::Zero => connection.hand.zero(finger),
             _ => connection.hand.identify(finger),
         };
-        done.map_err(refusal)
+        done.map_err(calibration_refusal)
     }
 
     fn wait(&self, finger: i32, until: Until, limit: Duration) -> Result<(), RemoteRefusal> {
@@ -205,7 +223,9 @@ impl RemoteHand for NetworkHand {
             let mut missing = None;
             for &finger in &asked {
                 // Refuses a finger that has stopped, and records that are too old.
-                let progress = self.connection()?.hand.progress(finger).map_err(refusal)?;
+                let connection = self.connection()?;
+                let progress = connection.hand.progress(finger).map_err(refusal)?;
+                follows_set_points(&connection.hand.record(finger).map_err(refusal)?)?;
                 let there = match until {
                     Until::Arrived => progress.arrived,
                     _ => progress.settled,
@@ -246,9 +266,9 @@ impl RemoteHand for NetworkHand {
         match Arc::try_unwrap(connection) {
             // The fingers go to their end state even if the server does not answer: the owner falls silent.
             Ok(connection) => drop(connection.hand.close()),
-            // A call in another thread still uses the connection, and releases the hand when it ends. The fingers go to
-            // their end state now.
-            Err(shared) => drop(shared.hand.stop(None)),
+            // A call in another thread still uses the connection, and drops it when the call ends. The hand is released
+            // now.
+            Err(shared) => drop(shared.hand.release()),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Opens a hand on another machine.
 
 use crate::network_hand::NetworkHand;
-use crate::refusals::{forbidden, refusal, system};
+use crate::refusals::{forbidden, recovery_refusal, refusal, system};
 use std::path::Path;
 use std::sync::Arc;
 use sun2xp::Configuration;
@@ -23,7 +23,7 @@ pub(crate) fn open(source: RemoteSource, configuration: &Configuration) -> Resul
     let hand = client::RemoteHand::open(&remote).map_err(|error| match error.kind() {
         // A client that may only read gets the same answer as a client that does not own the hand.
         client::RemoteErrorKind::NotOwner => forbidden(&remote.hand),
-        _ => refusal(error),
+        _ => recovery_refusal(error),
     })?;
     NetworkHand::start(hand, configuration, seen)
 }

@@ -17,6 +17,7 @@ mod number {
     pub const PORT: i32 = 11;
     pub const SYSTEM: i32 = 12;
     pub const TIMED_OUT: i32 = 14;
+    pub const CALIBRATION: i32 = 15;
     pub const NOT_SUPPORTED: i32 = 16;
 }
 
@@ -37,10 +38,30 @@ pub(crate) fn refusal(error: RemoteError) -> RemoteRefusal {
     RemoteRefusal::Other { number, errno, text: error.to_string(), actions }
 }
 
+/// The refusal for an error of a request that calibrates.
+pub(crate) fn calibration_refusal(error: RemoteError) -> RemoteRefusal {
+    request_refusal(error, (number::CALIBRATION, libc::ECANCELED))
+}
+
+/// The refusal for an error of a request that recovers fingers.
+pub(crate) fn recovery_refusal(error: RemoteError) -> RemoteRefusal {
+    request_refusal(error, (number::PORT, libc::EIO))
+}
+
+/// The server gives the reason for which a request has failed only as a text. `failed` has the number and the errno for
+/// all these reasons.
+fn request_refusal(error: RemoteError, failed: (i32, i32)) -> RemoteRefusal {
+    if error.kind() != Kind::Refused {
+        return refusal(error);
+    }
+    let (number, errno) = failed;
+    RemoteRefusal::Other { number, errno, text: error.to_string(), actions: Vec::new() }
+}
+
 fn numbers(kind: Kind) -> (i32, i32) {
     match kind {
         Kind::NoSuchFinger | Kind::Argument => (number::ARGUMENT, libc::EINVAL),
-        Kind::NotInHand => (number::NOT_SUPPORTED, libc::ENODEV),
+        Kind::NotInHand => (number::NOT_SUPPORTED, libc::EINVAL),
         Kind::OutOfRange | Kind::Refused => (number::LIMIT, libc::ERANGE),
         Kind::NotASpring => (number::LIMIT, libc::EDOM),
         // A planner that fell silent has lost the hand, and the fingers have stopped. As after a fault, the planner
@@ -74,4 +95,28 @@ pub(crate) fn forbidden(hand: &HandName) -> RemoteRefusal {
 /// The refusal of something that the system or this library cannot do.
 pub(crate) fn system(text: &str) -> RemoteRefusal {
     RemoteRefusal::Other { number: number::SYSTEM, errno: libc::EIO, text: text.into(), actions: Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers_of(refusal: RemoteRefusal) -> (i32, i32) {
+        match refusal {
+            RemoteRefusal::Other { number, errno, .. } => (number, errno),
+            RemoteRefusal::Hand(error) => panic!("{error}"),
+        }
+    }
+
+    /// A planner that gets ERANGE looks for a mistake in its own numbers.
+    #[test]
+    fn a_request_that_fails_is_not_a_number_out_of_range() {
+        let failed = || RemoteError::Refused("a tendon is slack: tension it".into());
+        assert_eq!(numbers_of(calibration_refusal(failed())), (number::CALIBRATION, libc::ECANCELED));
+        assert_eq!(numbers_of(recovery_refusal(failed())), (number::PORT, libc::EIO));
+        assert_eq!(numbers_of(refusal(failed())), (number::LIMIT, libc::ERANGE));
+        let owned = || RemoteError::Owned("bob owns the hand: wait until it is released".into());
+        assert_eq!(numbers_of(calibration_refusal(owned())), (number::BUSY, libc::EBUSY));
+        assert_eq!(numbers_of(recovery_refusal(owned())), (number::BUSY, libc::EBUSY));
+    }
 }

@@ -24,16 +24,14 @@ fn fault_number(stage: Stage) -> i32 {
     }
 }
 
-/// `first` and `newest` are records of the finger, from which the measured rate follows.
-pub(crate) fn status(hand: &Status, finger: &FingerStatus, first: &Record, newest: &Record) -> sun2xp_status {
-    let seconds = newest.begin.saturating_sub(first.begin) as f64 * 1e-9;
-    let cycles = newest.cycle.saturating_sub(first.cycle) as f64;
+/// `newest` is the newest record of the finger, and `measured_rate` is the measured rate of its servo, Hz.
+pub(crate) fn status(hand: &Status, finger: &FingerStatus, newest: &Record, measured_rate: f64) -> sun2xp_status {
     sun2xp_status {
         size: 0,
         state: state(newest.stage),
         realtime: 0,
         rate: hand.rate,
-        measured_rate: if seconds > 0.0 { cycles / seconds } else { f64::NAN },
+        measured_rate,
         wake_up_median: f64::NAN,
         wake_up_p99: f64::NAN,
         wake_up_maximum: f64::NAN,

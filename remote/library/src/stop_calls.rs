@@ -15,8 +15,8 @@ const INTERVAL: Duration = Duration::from_millis(5);
 
 /// What the thread stops.
 pub(crate) trait Stoppable: Send + Sync + 'static {
-    /// Stops every finger.
-    fn stop_every_finger(&self);
+    /// Stops every finger. Returns false if the stop may not have arrived, and must be repeated.
+    fn stop_every_finger(&self) -> bool;
 }
 
 /// A thread that carries out the stop calls while both this value and the hand exist.
@@ -34,9 +34,10 @@ impl StopCalls {
             while !seen_by_thread.load(Ordering::Acquire) {
                 let calls = stop_calls();
                 if calls != seen {
-                    seen = calls;
                     let Some(hand) = hand.upgrade() else { return };
-                    hand.stop_every_finger();
+                    if hand.stop_every_finger() {
+                        seen = calls;
+                    }
                 }
                 thread::sleep(INTERVAL);
             }
@@ -56,22 +57,36 @@ mod tests {
     use super::*;
     use std::sync::mpsc::{Sender, channel};
 
-    struct Told(Sender<()>);
+    struct Told {
+        to: Sender<()>,
+        /// Whether the next stop arrives. The stop after it does.
+        arrives: AtomicBool,
+    }
 
     impl Stoppable for Told {
-        fn stop_every_finger(&self) {
-            let _ = self.0.send(());
+        fn stop_every_finger(&self) -> bool {
+            let _ = self.to.send(());
+            self.arrives.swap(true, Ordering::Relaxed)
         }
     }
 
-    #[test]
-    fn a_call_during_the_opening_stops_the_hand() {
+    /// Makes a stop call during the opening, and waits until the hand was told to stop this many times.
+    fn stopped(arrives: bool, times: usize) {
         let seen = stop_calls();
         sun2xp::stop_all();
-        let (tell, told) = channel();
-        let hand = Arc::new(Told(tell));
+        let (to, told) = channel();
+        let hand = Arc::new(Told { to, arrives: AtomicBool::new(arrives) });
         let watch = StopCalls::watch(Arc::downgrade(&hand), seen);
         assert!(watch.is_ok());
-        assert_eq!(told.recv_timeout(Duration::from_secs(20)), Ok(()));
+        for _ in 0..times {
+            assert_eq!(told.recv_timeout(Duration::from_secs(20)), Ok(()));
+        }
+    }
+
+    /// One test makes all calls, because every hand of a process reacts to them.
+    #[test]
+    fn a_call_during_the_opening_stops_the_hand_until_the_stop_has_arrived() {
+        stopped(true, 1);
+        stopped(false, 2);
     }
 }

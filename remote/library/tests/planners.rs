@@ -140,6 +140,28 @@ fn one_with_events_and_an_emergency_stop() {
     alike("events.c", &["-std=gnu99"], BY_BOTH);
 }
 
+#[test]
+fn one_that_waits_for_a_finger_that_is_being_zeroed() {
+    alike("waits.c", &["-std=gnu99"], BY_CONFIGURATION);
+}
+
+/// After a planner has lost the hand, a call that recovers one finger leaves the others stopped.
+#[test]
+fn one_that_loses_the_hand() {
+    let rig = Rig::start();
+    let said = rig.planners.said("loses.c", Way::Configured);
+    assert_eq!(said, "stop 0\nrecovered 1, stopped 1 1\nrecovered 1, stopped 0 0\n");
+}
+
+/// The hand is released also if a thread of the planner still waits for an event.
+#[test]
+fn one_that_closes_while_it_waits_for_events() {
+    let rig = Rig::start();
+    for &way in BY_BOTH {
+        assert_eq!(rig.planners.said("ends.c", way), "close 0\nanother 0\nclose 0\n", "{way:?}");
+    }
+}
+
 /// A client that the server does not list may not command the hand. The text names the key.
 #[test]
 fn one_that_may_not_command() {

@@ -9,7 +9,7 @@ use crate::{FaultText, Stage};
 pub struct FingerStatus {
     /// Its stage, with the fault.
     pub stage: Stage,
-    /// The number of warnings in force.
+    /// Warnings since open. A warning that persists counts once.
     pub warnings: u32,
     /// Cycles since open.
     pub cycles: u64,

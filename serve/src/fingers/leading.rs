@@ -28,6 +28,20 @@ impl LedPlace {
 }
 
 impl Fingers {
+    /// Returns the goal of a finger that is about to get a command. If the owner has not commanded its place, the set
+    /// point in force is kept. A finger that was caught returns to the set point from before the catch.
+    pub(super) fn keeping(&self, number: i32, goal: Goal, report: &FingerReport) -> Result<Goal, HandError> {
+        let mut keeping = goal;
+        if goal.destination == Destination::None {
+            match goal.kept.filter(|_| report.expired) {
+                // The place where a finger has become a spring can be slightly beyond a limit.
+                Some(place) => keeping.destination = Destination::Joints(self.clamped(number, &place.into())?.into()),
+                None => keeping.kept = Some(report.set_point.joints),
+            }
+        }
+        Ok(keeping)
+    }
+
     /// Returns the goal of a finger whose Kx is about to be sent. If the owner has not commanded the place of the
     /// finger, the new Kx pulls it to the set point in force, which may be far ahead of it. Then this set point becomes
     /// the destination, so that the lead bounds the force.

@@ -46,10 +46,13 @@ impl Fingers {
                 poses.last().map(|pose| Destination::Path { end: plan.end(), until: until(pose) })
             }
         };
-        let mut goal = self.goals[finger].with(part, destination, &report, now);
+        let mut before = self.goals[finger];
+        before.notice(&report);
+        let mut goal = before.with(part, destination, &report, now);
         if !is_path(part) && report.expired && matches!(goal.destination, Destination::Path { .. }) {
             goal.destination = Destination::None; // The times of an interrupted path are in the past.
         }
+        goal = self.keeping(number, goal, &report)?;
         let mut command = FingerCommand::new(number).validity(valid);
         (command.stiffness, command.damping) = (part.stiffness, part.damping);
         if let Place::Joints(joints) = &part.place {

@@ -23,6 +23,20 @@ impl RemoteHand {
         self.request(Action::Stop, finger)
     }
 
+    /// Stops every finger as [`RemoteHand::stop`] does, for an emergency. No Targets are sent until the server has
+    /// confirmed the stop. Without the confirmation, the hand goes to its end state by itself. Repeat the call then,
+    /// while [`RemoteHand::is_owner`] is true.
+    ///
+    /// # Errors
+    /// Returns an error if the hand cannot be reached.
+    pub fn emergency_stop(&self) -> Result<(), RemoteError> {
+        self.link.shared.lock().outbox.hold(true);
+        self.stop(None)?;
+        self.link.shared.lock().outbox.hold(false);
+        self.link.shared.wake();
+        Ok(())
+    }
+
     /// Zeros finger 1, 2 or 3. Returns when this is done, after up to ten minutes. The result is in force at the
     /// server.
     ///

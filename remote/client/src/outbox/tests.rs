@@ -55,6 +55,21 @@ fn without_ownership_nothing_is_sent() {
     assert_eq!((outbox.due(), outbox.next(u64::MAX), outbox.ownership()), (None, None, Err(Loss::Ended)));
 }
 
+/// During an emergency stop the owner falls silent, and what it sends meanwhile waits.
+#[test]
+fn targets_can_be_held_back() {
+    let mut outbox = owner();
+    assert!(outbox.next(0).is_some());
+    outbox.hold(true);
+    outbox.put(joints(0.5), None);
+    assert_eq!((outbox.due(), outbox.next(50 * MS), outbox.ownership().is_ok()), (None, None, true));
+    outbox.hold(false);
+    assert_eq!(part(&mut outbox, 60 * MS).place, Place::Joints([0.5; 3]));
+    outbox.hold(true);
+    outbox.acquired(&answer(Code::Done, 6));
+    assert!(outbox.next(70 * MS).is_some(), "a new epoch is not held");
+}
+
 #[test]
 fn an_owner_that_commands_nothing_says_that_it_lives() {
     let mut outbox = owner();

@@ -1,7 +1,7 @@
 //! The hand behind the small server: its owner, and what its fingers do.
 
 use std::sync::LazyLock;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use sun2xp_remote_client::{ClientName, Counts, Event, Finger, FingerStatus, Record, Stage, Status};
 use sun2xp_remote_protocol::{Action, Answer, Code, FaultText, Place, Request, State, Target};
 use zenoh::Session;
@@ -26,6 +26,10 @@ pub struct FakeHand {
     pub events: Vec<Event>,
     /// Number of Requests that get no answer, as if they had reached nobody.
     pub unanswered: usize,
+    /// The time after which such a Request ends.
+    pub unanswered_after: Duration,
+    /// Number of gets of the Status that get no reply.
+    pub unanswered_status: usize,
     /// The version byte of its Status.
     pub version: u8,
     /// The number of States after a recovery that are not published, so that an older one stays the newest.
@@ -51,6 +55,8 @@ impl FakeHand {
             refuse: None,
             events: Vec::new(),
             unanswered: 0,
+            unanswered_after: Duration::ZERO,
+            unanswered_status: 0,
             version: 1,
             late_states: 0,
             silent: false,

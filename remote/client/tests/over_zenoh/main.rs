@@ -4,4 +4,5 @@ mod calls;
 mod fake_hand;
 mod latency;
 mod leaks;
+mod requests;
 mod server;

@@ -153,6 +153,12 @@ fn serve(session: &Session, name: &str) -> Arc<Watched> {
             let mut locked = hand.lock();
             if locked.unanswered > 0 {
                 locked.unanswered -= 1;
+                let after = locked.unanswered_after;
+                // The threads of Zenoh must not wait.
+                std::thread::spawn(move || {
+                    std::thread::sleep(after);
+                    drop(query);
+                });
                 return;
             }
             let answer = locked.answer(&client, &payload);
@@ -164,7 +170,13 @@ fn serve(session: &Session, name: &str) -> Arc<Watched> {
     }
     let hand = watched.clone();
     let status = move |query: zenoh::query::Query| {
-        let status = hand.lock().status_payload();
+        let mut locked = hand.lock();
+        if locked.unanswered_status > 0 {
+            locked.unanswered_status -= 1;
+            return;
+        }
+        let status = locked.status_payload();
+        drop(locked);
         query.reply(hand.keys.status(), status).wait().expect("a reply");
     };
     session.declare_queryable(keys.status()).callback(status).background().wait().expect("declared");

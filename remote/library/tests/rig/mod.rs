@@ -130,9 +130,9 @@ impl Rig {
         let port = free_port();
         let endpoint = format!("tcp/127.0.0.1:{port}");
         let planners = Loading::new(&remote(&endpoint));
-        let serve =
-            format!("[serve]\nname = \"{NAME}\"\nlisten = [\"{endpoint}\"]\n[serve.clients]\nplanner = \"command\"\n");
-        fs::write(planners.place("server.toml"), format!("{serve}{HAND}")).expect("a file");
+        let serve = format!("[serve]\nname = \"{NAME}\"\nlisten = [\"{endpoint}\"]\n");
+        let clients = "[serve.clients]\nplanner = \"command\"\nanother = \"command\"\n";
+        fs::write(planners.place("server.toml"), format!("{serve}{clients}{HAND}")).expect("a file");
         let server = serve_until_ready(&planners.place("server.toml"));
         Self { planners, endpoint, server, _turn: turn }
     }

@@ -1,0 +1,56 @@
+use super::*;
+use crate::server::prepare;
+use crate::settings::{Overrides, Settings};
+use std::path::Path;
+use std::sync::mpsc::{Sender, channel};
+use sun2xp::{Configuration, RealTime};
+
+/// Longest time until an Answer. The machine of the tests may be busy.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+const ACQUIRE: Request = Request { action: Action::Acquire, finger: None, take_over: false, recover: false, epoch: 0 };
+
+struct Sent(Sender<Answer>);
+
+impl Reply for Sent {
+    fn send(self, answer: &Answer) {
+        self.0.send(answer.clone()).expect("a test that waits");
+    }
+}
+
+fn shared() -> Arc<Shared> {
+    let text = "[serve]\n[serve.clients]\nalice = 'command'\nbob = 'command'\n";
+    let settings = Settings::from_text(text, Path::new("s.toml"), &Overrides::default());
+    let settings = settings.unwrap_or_else(|error| panic!("{error}"));
+    let mut configuration = Configuration::default();
+    configuration.hand.real_time = RealTime::Ignore;
+    prepare(&mut configuration, &settings.limits);
+    Arc::new(Shared::new(Arc::new(Hand::open(configuration).expect("the simulated hand")), settings))
+}
+
+fn ask(shared: &Arc<Shared>, client: &str, request: Request) -> Answer {
+    let (sender, receiver) = channel();
+    let payload = request.encode().expect("a Request");
+    answer(shared, request.action, client.parse().expect("a name"), &payload, Sent(sender));
+    receiver.recv_timeout(PATIENCE).expect("an Answer")
+}
+
+#[test]
+fn an_acquire_that_the_owner_prevents_does_not_hold_up_a_recovery() {
+    let shared = shared();
+    let epoch = ask(&shared, "alice", ACQUIRE).epoch;
+    let recovering = Request { recover: true, ..ACQUIRE };
+    assert_eq!(ask(&shared, "bob", recovering).code, Code::Owned);
+    assert!(!shared.busy.load(Ordering::Acquire));
+    // The owner recovers a finger.
+    shared.busy.store(true, Ordering::Release);
+    assert_eq!(ask(&shared, "bob", recovering).code, Code::Owned, "not because of the recovery");
+    assert!(shared.busy.load(Ordering::Acquire));
+    let taking = Request { take_over: true, ..recovering };
+    assert_eq!(ask(&shared, "bob", taking).code, Code::InProgress);
+    let alice: ClientName = "alice".parse().expect("a name");
+    assert!(shared.desk.lock().admits(&alice, epoch), "a refused acquire changes nothing");
+    shared.busy.store(false, Ordering::Release);
+    assert_eq!(ask(&shared, "bob", taking).code, Code::Done);
+    join(&shared);
+}
