@@ -158,8 +158,9 @@
        4. sun2xp/sun2xp.toml in the folders of $XDG_CONFIG_DIRS, or /etc/xdg
        5. no file: the simulated hand, announced in one line on standard error
 
-   The file must be a regular file of at most 1 MiB. A finger without a port in the file is
-   simulated, and announced too; with port = "simulated" it is not announced.
+   The file must be a regular file of at most 1 MiB. If it names neither a port nor a board for a finger,
+   the finger is simulated, and announced too; with port = "simulated" it is not announced. OpenHand
+   refuses a file that names neither for a finger, but a real port or board for another one.
 
    A program that is setuid or setgid, or whose file has capabilities, does not trust its
    environment and working directory, which belong to its caller. It reads only

@@ -58,6 +58,7 @@
        EFAULT     SUN2XP_ERROR_ARGUMENT        an argument is a null pointer
        ENODEV     SUN2XP_ERROR_NO_HAND         the handle is null, foreign, or of a closed hand
        EINVAL     SUN2XP_ERROR_ARGUMENT        no such finger; NaN or infinity; a wrong size
+       EINVAL     SUN2XP_ERROR_NOT_SUPPORTED   a finger that the hand does not have (hand.fingers)
        EINVAL     SUN2XP_ERROR_CONFIGURATION   an unusable configuration
        ERANGE     SUN2XP_ERROR_LIMIT           outside the limits of the finger
        EDOM       SUN2XP_ERROR_LIMIT           a matrix that is not symmetric, or has a negative eigenvalue
@@ -138,10 +139,11 @@
    sun2xp_recover, sun2xp_zero, sun2xp_identify, sun2xp_adjust and
    sun2xp_write_black_box (4 MiB), sun2xp_send_path (1 MiB), sun2xp_wait, sun2xp_on_event,
    sun2xp_event_descriptor and sun2xp_wait_event (64 KiB) are refused with ENOMEM if that much memory is
-   not free. If memory runs out while one of them runs, the process is aborted, and the boards' watchdogs
-   end the motion. If less than 4 MiB are free when a finger faults, no black box is written, and a message
-   says so. If the library was loaded with dlopen, the first call of a thread needs memory for its
-   thread-local data. If there is none, the C library aborts the process.
+   not free. They test this directly after EPERM, and sun2xp_send_path tests it after EFAULT. If memory runs
+   out while one of them runs, the process is aborted, and the boards' watchdogs end the motion. If less
+   than 4 MiB are free when a finger faults, no black box is written, and a message says so. If the library
+   was loaded with dlopen, the first call of a thread needs memory for its thread-local data. If there is
+   none, the C library aborts the process.
 
    Cancellation: pthread_cancel does not interrupt a call. It takes effect at the program's next
    cancellation point or, with asynchronous cancellation, when the call returns.
@@ -272,10 +274,9 @@ struct sun2xp_error {
    hand    a hand, open or closed; null: any hand
    error   result; set error->size before the call
 
- Every thread has its own refusals. For each hand, the thread remembers only the last refusal. It does so
- for the four hands that have refused its calls most recently. The refusal of a call without a usable
- handle belongs to no hand, and only hand = null returns it. A call that succeeds does not change the
- refusals.
+ Every thread has its own refusals. A thread remembers the last refusal of each of the four hands that
+ have refused its calls most recently. The refusal of a call without a usable handle belongs to no
+ hand, and only hand = null returns it. A call that succeeds does not change the refusals.
 
  Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
 
@@ -326,7 +327,8 @@ typedef void (*sun2xp_log)(int severity, const char *text, void *user);
  may call it at the same time. It must make no calls of the library, and must return. The text is
  valid only during the call. There is one callback for all hands of the process.
 
- When sun2xp_set_log has returned, the previous callback is not running and is not called again.
+ When sun2xp_set_log has returned, the previous callback is not running and is not called again. A message
+ that comes while sun2xp_set_log waits for the previous callback is printed.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -381,13 +383,12 @@ unsigned int sun2xp_abi_version(void);
 
  Opens the ports, starts the servos and brings the tendons under tension. Returns when every finger has
  answered and holds its present pose at the configured initial stiffness. Takes at most about a second
- for a simulated hand. At most 16 hands of sun2xp_open can be
- open at once.
+ for a simulated hand. At most 16 hands can be open at once, in addition to the hand of OpenHand.
 
  Returns 0, or a negative number with
    EPERM    forked child
-   EFAULT   hand is null
    ENOMEM   there is not enough memory
+   EFAULT   hand is null
    EMFILE   16 hands are open
    ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
    EINVAL   the configuration is unusable; sun2xp_error_text names file, line and reason
@@ -415,8 +416,9 @@ int sun2xp_open(const char *path, sun2xp_hand **hand);
    configuration   the text, as in a configuration file (TOML, UTF-8)
    hand            result: the handle of the hand
 
- A finger without a port in the text is simulated. Calibration results are in force until the hand is
- closed, and are not stored.
+ A finger for which the text names neither a port nor a board is simulated. A text that leaves one
+ finger simulated in this way must not name a real port or board for another finger; it is refused.
+ Calibration results are in force until the hand is closed, and are not stored.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -490,7 +492,9 @@ sun2xp_hand *sun2xp_default_hand(void);
 #define SUN2XP_IO_SUPPLY 8                  /* The supply of the motors is missing or out of range. */
 #define SUN2XP_IO_DRIVER 16                 /* A motor driver reports a fault. */
 #define SUN2XP_IO_SENSOR 32                 /* An encoder or a gauge cannot be read. */
-#define SUN2XP_IO_ZERO_LOST 64              /* The encoder counts have lost their reference to the zero. */
+#define SUN2XP_IO_ZERO_LOST 64              /* The encoder counts have lost their reference to the zero. In the first
+                                               sample it does not fault the finger: a message says so, and the finger
+                                               must be zeroed (sun2xp_zero). */
 
 /* The terms under which the motors of a finger may move. The library sets all members. */
 struct sun2xp_io_terms {
@@ -515,7 +519,7 @@ struct sun2xp_io_sample {
     double tensions[4];                     /* Tensions at the gauges, N. */
     int encoders[4];                        /* Counts of the motor encoders. */
     unsigned int faults;                    /* Sum of SUN2XP_IO_... for faults that are present. Each faults the
-                                               finger. */
+                                               finger, except SUN2XP_IO_ZERO_LOST in the first sample. */
 };
 
 /* The command of one exchange. The library sets all members. */
@@ -581,9 +585,11 @@ struct sun2xp_io {
 
  Returns 0, or a negative number with
    EPERM    forked child
-   EFAULT   hand or io is null, or a function of io is null
-   EINVAL   size is too small; count is not 0 to 3; no such finger, or two entries for one finger
    ENOMEM   there is not enough memory
+   EFAULT   hand is null, or io is null and count is not 0
+   EINVAL   size is too small; count is not 0 to 3; no such finger, or two entries for one finger;
+            shortest_watchdog is negative or NaN
+   EFAULT   a function of io is null
    EMFILE   16 hands are open
    ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
    EINVAL   the configuration is unusable, or gauge.newton_per_count or gauge.zero was set for another board
@@ -602,7 +608,7 @@ int sun2xp_open_io(const char *path, int count, const struct sun2xp_io *io, sun2
 
  Returns 0, or a negative number with
    EPERM    forked child
-   EFAULT   configuration, hand or io is null, or a function of io is null
+   EFAULT   hand or configuration is null, or io is null and count is not 0
    others   as sun2xp_open_io
 
  Threads: any.
@@ -977,7 +983,7 @@ struct sun2xp_set_point {
 
  Returns 0, or a negative number with
    EPERM    forked child
-   EFAULT   set_points is null
+   EFAULT   set_points is null, and count is not 0
    ENODEV   no such hand
    EINVAL   size is too small; count is not 0 to 3; no such finger; two commands for one finger, or
             position and tip for one finger; an entry is NaN or infinite
@@ -1011,8 +1017,10 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
 
  Returns at once if the condition holds already. For all fingers it must hold at the same time. A finger
  that an object blocks settles without arriving. If the set point is a position of the tip, the finger
- arrives at the joint angles that were computed for it. Other calls work meanwhile. sun2xp_close works
- too, and this call is then refused.
+ arrives at the joint angles that were computed for it. If a reflex has replaced the set point that was
+ sent last, or the finger ignored it because of an inhibition, the condition must hold for the set point
+ of the reflex. The event SUN2XP_EVENT_REFLEX_FIRED says that a rule has reacted. Other calls work
+ meanwhile. sun2xp_close works too, and this call is then refused.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1062,7 +1070,8 @@ struct sun2xp_path_pose {
  pose is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
  continuous. Because they are fed forward, the finger follows without the lag of sun2xp_send_position.
  Between two poses that have a Kx, Kx changes linearly. Until the first pose that has a Kx, Kx changes
- linearly from its value at the beginning of the path.
+ linearly from its value at the beginning of the path. After sun2xp_send_joint_stiffness this value is 0,
+ and the joint stiffness ends when the path begins, so send Kx before the path.
 
  The whole path is checked before anything moves: against the joint limits, and against speed,
  acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -1075,8 +1084,9 @@ struct sun2xp_path_pose {
    EFAULT   poses is null
    ENOMEM   there is not enough memory for the computation
    ENODEV   no such hand
-   EINVAL   size is too small; no such finger; count is not 1 to 128; a time is less than 1 ms later
-            than the one before; joint angles and tip positions are mixed; an entry is NaN or infinite
+   EINVAL   size is too small; count is not 1 to 128; seconds is NaN, negative or more than 3600; no such
+            finger; a time is more than 3600, or less than 1 ms later than the one before; joint angles and
+            tip positions are mixed; an entry is NaN or infinite
    EDOM     a Kx is not symmetric, or has a negative eigenvalue
    ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is too
             stiff, or the path is too fast; sun2xp_error_text names the pose, and the factor by which the
@@ -1908,15 +1918,16 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
    ENODEV     no such hand, or it was closed meanwhile
    EINVAL     no such finger; or the configuration file has changed, and the zeros do not fit it:
               they are in force until sun2xp_close and not stored
-   EIO        the finger is faulted
+   EIO        the finger is faulted. If it faulted after its zeros were found, they are in force, and the next
+              sun2xp_zero or sun2xp_identify of the finger that succeeds stores them
    EBUSY      the finger is being calibrated or recovered already
    ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
               joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
               gives the remedy. The finger is then limp. Exception: if it moved while it was read, or if
               its counts were not valid, the calibration had not changed anything yet, and the finger is
               in its former state: a spring holds its set point, and a path has ended. If another thread
-              has recovered the finger from a fault during the calibration, the finger holds its pose,
-              with its former zeros
+              has recovered the finger from a fault during the calibration, the finger holds its pose.
+              If its new zeros had been found before the fault, they are in force, otherwise its former ones
    ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
    EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
               sun2xp_close
@@ -2169,7 +2180,8 @@ struct sun2xp_reflex {
  A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
  later calls that change a part of a set point start from the new one. The next sun2xp_send_position
  moves the finger again. The finger ignores a set point that is sent within the time in the member
- inhibition. A rule stays until sun2xp_remove_reflex or sun2xp_close.
+ inhibition. This is no error, and the set point counts for the expiry. A rule stays until
+ sun2xp_remove_reflex or sun2xp_close.
 
  Returns the number of the rule, above 0, or a negative number with
    EPERM    forked child
@@ -2223,9 +2235,9 @@ int sun2xp_remove_reflex(sun2xp_hand *hand, int finger, int number);
 /*
  Result of sun2xp_record: one cycle of a finger, from the black box.
 
- The library stores all cycles from the member oldest to the member newest. If the finger was already
- faulted, or if a simulated finger had not answered, the member computed is 0, and so are all members
- after it.
+ The library stores all cycles from the member oldest to the member newest. The controller does not
+ run in a cycle in which the finger faults first, or in which a simulated finger does not answer. The
+ member computed is then 0, and so are all members after it.
  */
 struct sun2xp_record {
     size_t size;                            /* sizeof (struct sun2xp_record), set before the call. */
@@ -2234,7 +2246,7 @@ struct sun2xp_record {
     unsigned long oldest;                   /* First cycle that is stored now. */
     unsigned long newest;                   /* Last cycle that is stored now. */
     double time;                            /* Start of the cycle on CLOCK_MONOTONIC, s. */
-    int answered;                           /* 1: the board's reply arrived. 0: it was lost. */
+    int answered;                           /* 1: the board's reply arrived. 0: none came in this cycle. */
     int status_bits;                        /* Status bits of the newest reply (docs/board-protocol.md). */
     int computed;                           /* 1: the controller ran and computed the members below. */
     int follows;                            /* 1: position_sent is the set point in force. 0: none is in force. */
@@ -2254,6 +2266,8 @@ struct sun2xp_record {
 
  A record is a part of what sun2xp_write_black_box writes into a file. Every cycle adds a record and
  removes the oldest one. A faulted finger adds none, so its records are the last ones before the fault.
+ If hand.black_box is set, the cycles of a finger that recovers right after a fault can be read only once
+ the library has copied the records of the fault, which takes up to 50 ms.
 
  Returns 0, or a negative number with
    EPERM    forked child

@@ -14,8 +14,11 @@
 
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -82,6 +85,56 @@ template <class Struct, class Call> Struct filled(Call call)
     checked(call(&result));
     return result;
 }
+
+/// A function that gets events.
+using event_callback = std::function<void(const struct sun2xp_event &)>;
+
+/// The functions that get the events of all hands, by numbers that are never used again. The library gets the number
+/// and not the address: if the callback of one hand ends the callback of another hand, sun2xp_on_event does not wait,
+/// and the library may still be about to call the function that was ended.
+class callbacks {
+public:
+    /// The callbacks of the process. They are never destroyed, because the library may call until the process ends.
+    static callbacks &all()
+    {
+        static callbacks *const all = new callbacks;
+        return *all;
+    }
+
+    std::uintptr_t add(event_callback callback)
+    {
+        auto shared = std::make_shared<event_callback>(std::move(callback));
+        const std::lock_guard<std::mutex> lock(mutex_);
+        callbacks_.emplace(++last_, std::move(shared));
+        return last_;
+    }
+
+    /// Removes a function. It is destroyed when it has returned.
+    void remove(std::uintptr_t number)
+    {
+        std::shared_ptr<event_callback> removed;
+        const std::lock_guard<std::mutex> lock(mutex_);
+        const auto found = callbacks_.find(number);
+        if (found == callbacks_.end())
+            return;
+        // The destructor of the function may use other hands, so it must not run while the mutex is locked.
+        removed = std::move(found->second);
+        callbacks_.erase(found);
+    }
+
+    /// The function with this number; null if it was removed.
+    std::shared_ptr<event_callback> find(std::uintptr_t number)
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        const auto found = callbacks_.find(number);
+        return found == callbacks_.end() ? nullptr : found->second;
+    }
+
+private:
+    std::mutex mutex_;
+    std::map<std::uintptr_t, std::shared_ptr<event_callback>> callbacks_;
+    std::uintptr_t last_ = 0;
+};
 
 } // namespace detail
 
@@ -201,7 +254,8 @@ public:
         return position;
     }
 
-    /// Waits until the condition holds. Returns false if it does not hold within the time. Also for all_fingers.
+    /// Waits until the condition holds. Returns false if it does not hold within the time, and for a hand on another
+    /// machine also if no reports arrive from it. Also for all_fingers.
     bool wait(until condition, seconds longest)
     {
         const int result = sun2xp_wait(hand_, number_, static_cast<int>(condition), longest.count());
@@ -238,8 +292,9 @@ private:
 class hand {
 public:
     /// Called with each event of a hand, in a thread of the library. It must not throw. It may replace or end itself
-    /// with on_event, and may destroy the hand: it stays alive until it returns.
-    using event_callback = std::function<void(const struct sun2xp_event &)>;
+    /// with on_event, and may destroy the hand: it stays alive until it returns. If it ends the function of another
+    /// hand, that function may still be running.
+    using event_callback = detail::event_callback;
 
     /// Opens the hand of a configuration file.
     explicit hand(const std::string &path) { detail::checked(sun2xp_open(path.c_str(), &hand_)); }
@@ -260,7 +315,7 @@ public:
     }
 
     hand(hand &&other) noexcept
-        : hand_(std::exchange(other.hand_, nullptr)), callback_(std::move(other.callback_))
+        : hand_(std::exchange(other.hand_, nullptr)), callback_(std::exchange(other.callback_, 0))
     {
     }
 
@@ -279,9 +334,18 @@ public:
     {
         if (hand_ != nullptr)
             sun2xp_close(hand_);
+        if (callback_ != 0)
+            detail::callbacks::all().remove(callback_);
     }
 
-    void close() { detail::checked(sun2xp_close(std::exchange(hand_, nullptr))); }
+    /// Closes the hand. After the refusal SUN2XP_ERROR_BUSY the hand is still open, and its handle is still here.
+    void close()
+    {
+        const int result = sun2xp_close(hand_);
+        if (result != -SUN2XP_ERROR_BUSY)
+            hand_ = nullptr;
+        detail::checked(result);
+    }
 
     /// The handle, for calls of sun2xp.h.
     sun2xp_hand *handle() const noexcept { return hand_; }
@@ -320,14 +384,16 @@ public:
     /// Calls a function with each event. An empty function ends these calls.
     void on_event(event_callback callback)
     {
-        std::shared_ptr<listener> next;
-        if (callback) {
-            next = std::make_shared<listener>();
-            next->call = std::move(callback);
-        }
-        detail::checked(sun2xp_on_event(hand_, next ? &pass_on : nullptr, next.get()));
-        // The previous function is running only if it makes this call. Then pass_on keeps it.
-        callback_ = std::move(next);
+        detail::callbacks &all = detail::callbacks::all();
+        const std::uintptr_t next = callback ? all.add(std::move(callback)) : 0;
+        // The number is stored first, because the function may be called, and replace itself, before this call returns.
+        const std::uintptr_t previous = std::exchange(callback_, next);
+        const int result = sun2xp_on_event(hand_, next != 0 ? &pass_on : nullptr, reinterpret_cast<void *>(next));
+        // If the call is refused, the previous function stays.
+        if (result != 0)
+            callback_ = previous;
+        all.remove(result == 0 ? previous : next);
+        detail::checked(result);
     }
 
     /// A descriptor for poll and select.
@@ -348,19 +414,16 @@ private:
         return result;
     }
 
-    /// A function that is called with events.
-    struct listener : std::enable_shared_from_this<listener> {
-        event_callback call;
-    };
-
     static void pass_on(const struct sun2xp_event *event, void *context) noexcept
     {
-        const std::shared_ptr<listener> running = static_cast<listener *>(context)->shared_from_this();
-        running->call(*event);
+        const auto call = detail::callbacks::all().find(reinterpret_cast<std::uintptr_t>(context));
+        if (call)
+            (*call)(*event);
     }
 
     sun2xp_hand *hand_ = nullptr;
-    std::shared_ptr<listener> callback_;
+    /// The number of the function that gets the events; 0 if there is none.
+    std::uintptr_t callback_ = 0;
 };
 
 /// Stops every finger of every hand of the process. It may be called in a signal handler.

@@ -100,7 +100,7 @@ pub mod contact {
     pub use crate::model::configuration::ConfiguredContact;
 }
 
-/// What other processes of the same user may see of an open hand: `[telemetry]`. They use the tool `sun2xp`.
+/// What other processes of the same user may see of an open hand: `[telemetry]`. The tool `sun2xp` is such a process.
 pub mod monitoring {
     pub use crate::model::configuration::ConfiguredTelemetry;
 }

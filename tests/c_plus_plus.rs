@@ -33,6 +33,16 @@ fn the_example_moves_two_hands() {
     assert!(said(&run).contains("as expected: error"), "{}", said(&run));
 }
 
+/// The program has its own versions of some calls, which the header then uses.
+#[test]
+fn the_header_survives_late_callbacks_and_refused_closes() {
+    let Some(compiler) = cpp_compiler() else { return };
+    let bench = Bench::new();
+    let program = bench.build(compiler, &[STRICT, &["-std=c++17"]].concat(), &["late.cpp"]);
+    let run = bench.run(Command::new(program));
+    assert!(run.status.success(), "{}", said(&run));
+}
+
 /// Uses events, groups, paths and reflexes, and moves a hand to another variable.
 #[test]
 fn every_part_of_the_header_serves() {

@@ -114,8 +114,8 @@ proptest! {
         prop_assert!(law().spring(&point.into(), &desired).amax() < 1e-12);
     }
 
-    /// A spring leads joint 2 through the straight pose. Near this pose, where the spring begins and ends, the torque
-    /// is continuous in the angles of the anchor and of the finger.
+    /// A joint spring leads the finger through the straight pose. The torque is continuous in the angles of the anchor
+    /// and of the finger near this pose, where the joint spring replaces the spring of the exact law.
     #[test]
     fn the_exact_law_has_no_jump_at_the_straight_pose(
         theta in prop::array::uniform3(-0.3..0.3f64), desired in prop::array::uniform3(-0.3..0.3f64),

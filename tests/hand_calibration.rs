@@ -1,9 +1,9 @@
 //! Calibration of an open hand on a simulated board: real threads, a real pseudo-terminal, real time.
 
 use std::fs;
-use sun2xp::calibration::{Findings, Obstacle, Step, Zeros};
+use sun2xp::calibration::{Findings, Obstacle, Progress, Step, Zeros};
 use sun2xp::finger::Stage;
-use sun2xp::hand::{Calibrating, Fingers, Found, Hand, HandError, read_configuration, store_findings};
+use sun2xp::hand::{Calibrating, Configured, Fingers, Found, Hand, HandError, read_configuration, store_findings};
 use sun2xp::model::FingerNumber;
 
 const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500\n[finger.zeroing]\nspeed = 2.0\n[finger.encoder]\n\
@@ -63,6 +63,28 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
         matches!(&refused, HandError::NotStored { finger: FingerNumber::THREE, .. }) && refused.errno() == libc::ENOENT,
         "{refused}"
     );
+}
+
+/// The finger takes up slack with its new zeros when it is stopped.
+#[test]
+fn results_are_stored_although_the_finger_faults_before_it_is_a_spring_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hand.toml");
+    fs::write(&path, "[finger]\nport = 'simulated'\nzeroing.method = 'pose'\n").expect("written");
+    let hand = Hand::open_as(Configured::read(&path).expect("usable")).expect("open");
+    let stop = |progress: Progress| {
+        if progress.step == Step::TakingUpSlack && progress.part == 1.0 {
+            hand.stop(1).expect("stopped");
+        }
+    };
+    let refused = hand.zero(1, stop).expect_err("the finger was stopped");
+    assert!(matches!(refused, HandError::Faulted { finger: FingerNumber::ONE, .. }), "{refused}");
+    let found = hand.calibrated(1).expect("there");
+    hand.recover(1).unwrap_or_else(|error| panic!("{error}"));
+    assert!(hand.store_calibration(1).expect("stored"));
+    let stored = read_configuration(&path).expect("usable").fingers[0].clone();
+    assert_eq!(stored.encoder.zero, found.encoder.zero);
+    assert!(!hand.store_calibration(1).expect("nothing is left to store"));
 }
 
 #[test]
@@ -132,6 +154,26 @@ fn fingers_are_zeroed_against_their_stops_and_identified() {
     assert_eq!(hand.calibrated(2).expect("there").tendon.stiffness, <[f64; 4]>::from(found.tendon_stiffness));
     assert_eq!(hand.calibrated(1).expect("there").tendon.stiffness, [300.0; 4]);
     assert_eq!([1, 2, 3].map(|finger| hand.report(finger).expect("a report").stage), [Stage::Running; 3]);
+}
+
+#[test]
+fn a_calibration_that_a_stop_has_ended_is_not_in_progress() {
+    let mut configuration = read_default();
+    configuration.fingers[0].zeroing.method = Some(sun2xp::model::configuration::ZeroingMethod::Stops);
+    let hand = Hand::open(configuration).expect("open");
+    let part = || hand.status(1).expect("a status").calibration;
+    let mut calibrating = Calibrating::begin(&hand, 1, sun2xp::calibration::Task::Zero).expect("begun");
+    while part() == 0.0 {
+        calibrating.poll(&hand).expect("in progress");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    hand.stop(1).expect("finger 1");
+    while calibrating.poll(&hand).is_ok() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert_eq!(part(), 0.0);
+    hand.recover(1).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(part(), 0.0);
 }
 
 fn read_default() -> sun2xp::model::configuration::Configuration {

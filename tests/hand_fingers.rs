@@ -51,7 +51,7 @@ fn a_finger_is_opened_without_the_ports_of_the_others() {
     ] {
         let refused = refused.expect("refused");
         assert!(matches!(refused, HandError::NotOpened(FingerNumber::TWO)), "{refused}");
-        assert_eq!(refused.errno(), libc::ENODEV);
+        assert_eq!(refused.errno(), libc::EINVAL);
     }
     assert!(matches!(hand.position(4), Err(HandError::NoSuchFinger(4))));
     assert!(matches!(Recovering::begin(&hand, 0), Err(HandError::NoSuchFinger(0))));
@@ -105,7 +105,7 @@ fn a_hand_of_one_finger_is_a_hand() {
         let refused = refused.expect("refused");
         assert!(matches!(refused, HandError::NotInHand { .. }), "{refused}");
         assert!(refused.to_string().contains("hand.fingers = [2]"), "{refused}");
-        assert_eq!(refused.errno(), libc::ENODEV);
+        assert_eq!(refused.errno(), libc::EINVAL);
     }
     hand.close();
     let other = Hand::open_limp(configuration, None, fingers(&[1, 2])).err().expect("refused");

@@ -147,6 +147,17 @@ fn feedback_is_one_period_old_and_older_where_replies_stay_away() {
     assert!(rig.age().count <= 1);
 }
 
+/// The last reading of the board's clock, before the stop, is not a reading of later cycles.
+#[test]
+fn a_stopped_finger_does_not_change_the_period() {
+    let mut rig = Rig::new(0.0, true);
+    rig.cycles(1000);
+    rig.finger.mailbox.stop();
+    rig.cycles(10_000);
+    let off = rig.board_period(1000) - PERIOD as f64;
+    assert!(off.abs() < 3.0, "periods off by {off} ns");
+}
+
 #[test]
 fn the_period_can_follow_the_board() {
     for drift in [-200e-6, 200e-6] {

@@ -64,7 +64,8 @@ static void warm_limits(const struct parameters *p, const struct state *s, doubl
     }
 }
 
-/* Eqs. 18 to 20 with an upper bound. The bound never exceeds what motors with this limit can pull. */
+/* Eqs. 18 to 20 with an upper bound: the configured one or what motors with this limit can pull, whichever is less,
+   but at least the tension at rest. */
 static double distribute(const struct parameters *p, const double limit[TENDONS], const double torques[JOINTS],
                          double tensions[TENDONS])
 {

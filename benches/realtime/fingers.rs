@@ -48,7 +48,7 @@ pub fn reach_with(
         let stiffness = finger.initial_stiffness();
         let (recorder, black_box) = BlackBox::new(configuration, number);
         let (servo, mailbox) =
-            FingerServo::new(configuration, number, stiffness, &identity, &configured, producer, recorder)
+            FingerServo::new(configuration, number, stiffness, &identity, &configured, (producer, recorder))
                 .map_err(|unusable| unusable.reason)?;
         let start = first + period * number.index() as u64 / FINGERS as u64;
         Ok(Finger {

@@ -45,7 +45,7 @@ pub enum LinkError {
         /// The request.
         request: Kind,
     },
-    /// The board has fingers, but none with this address.
+    /// The board has no finger with this address.
     #[error("the board at this port has no finger address {address}; it has {}: set finger.address to one that it has, \
              or check finger.port", listed(*addresses))]
     WrongAddress {

@@ -37,7 +37,7 @@ pub struct sun2xp_record {
     pub newest: c_ulong,
     /// Start of the cycle on CLOCK_MONOTONIC, s.
     pub time: f64,
-    /// 1: the board's reply arrived. 0: it was lost.
+    /// 1: the board's reply arrived. 0: none came in this cycle.
     pub answered: c_int,
     /// Status bits of the newest reply (docs/board-protocol.md).
     pub status_bits: c_int,
@@ -65,6 +65,8 @@ pub struct sun2xp_record {
 ///
 /// A record is a part of what sun2xp_write_black_box writes into a file. Every cycle adds a record and
 /// removes the oldest one. A faulted finger adds none, so its records are the last ones before the fault.
+/// If hand.black_box is set, the cycles of a finger that recovers right after a fault can be read only once
+/// the library has copied the records of the fault, which takes up to 50 ms.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

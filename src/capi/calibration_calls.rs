@@ -39,15 +39,16 @@ use std::ffi::c_int;
 ///   ENODEV     no such hand, or it was closed meanwhile
 ///   EINVAL     no such finger; or the configuration file has changed, and the zeros do not fit it:
 ///              they are in force until sun2xp_close and not stored
-///   EIO        the finger is faulted
+///   EIO        the finger is faulted. If it faulted after its zeros were found, they are in force, and the next
+///              sun2xp_zero or sun2xp_identify of the finger that succeeds stores them
 ///   EBUSY      the finger is being calibrated or recovered already
 ///   ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
 ///              joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
 ///              gives the remedy. The finger is then limp. Exception: if it moved while it was read, or if
 ///              its counts were not valid, the calibration had not changed anything yet, and the finger is
 ///              in its former state: a spring holds its set point, and a path has ended. If another thread
-///              has recovered the finger from a fault during the calibration, the finger holds its pose,
-///              with its former zeros
+///              has recovered the finger from a fault during the calibration, the finger holds its pose.
+///              If its new zeros had been found before the fault, they are in force, otherwise its former ones
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
 ///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
 ///              sun2xp_close

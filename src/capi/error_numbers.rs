@@ -71,7 +71,8 @@ pub(super) fn number(refusal: &Refusal) -> c_int {
         | Refusal::WrongSize { .. }
         | Refusal::NoSuchName
         | Refusal::IoCount
-        | Refusal::IoTwice(_) => SUN2XP_ERROR_ARGUMENT,
+        | Refusal::IoTwice(_)
+        | Refusal::IoWatchdog { .. } => SUN2XP_ERROR_ARGUMENT,
         Refusal::NoMemory => SUN2XP_ERROR_NO_MEMORY,
         Refusal::NotRemote => SUN2XP_ERROR_NOT_SUPPORTED,
         Refusal::OnlyRemote => SUN2XP_ERROR_CONFIGURATION,

@@ -159,9 +159,7 @@ pub extern "C" fn sun2xp_on_event(
                 let listener = callback.map(|callback| events.listener(hand, callback)).transpose()?;
                 Ok::<_, HandError>(events.replace(listener))
             })?;
-            if let Some(previous) = previous {
-                previous.end(in_callback);
-            }
+            events.end_previous(previous, in_callback);
             Ok(())
         })
     })

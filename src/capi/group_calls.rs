@@ -59,7 +59,7 @@ pub struct sun2xp_set_point {
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
-///   EFAULT   set_points is null
+///   EFAULT   set_points is null, and count is not 0
 ///   ENODEV   no such hand
 ///   EINVAL   size is too small; count is not 0 to 3; no such finger; two commands for one finger, or
 ///            position and tip for one finger; an entry is NaN or infinite
@@ -89,11 +89,13 @@ pub unsafe extern "C" fn sun2xp_send_group(
 ) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_send_group", hand, || {
-        // SAFETY: by the contract in the manual, `set_points` is null or points to as many bytes as its first member
-        // gives.
-        let commands = unsafe { SizedStruct::new(set_points, "set_points") }?;
-        // SAFETY: by the contract in the manual, there are `count` set points.
-        let commands = unsafe { load_commands(count, &commands) };
+        let commands = match count {
+            // There is no first set point from which a size could be read.
+            0 => Ok(([hand::FingerCommand::default(); FINGERS], 0)),
+            // SAFETY: by the contract in the manual, `set_points` is null, or there are `count` set points with as many
+            // bytes as the first member of the first one gives.
+            _ => unsafe { load_commands(count, &SizedStruct::new(set_points, "set_points")?) },
+        };
         if let Some(remote) = hand_table::remote_to_command(hand)? {
             let (commands, count) = commands?;
             return Ok(remote.send(&commands[..count])?);
@@ -113,8 +115,10 @@ pub unsafe extern "C" fn sun2xp_send_group(
 ///
 /// Returns at once if the condition holds already. For all fingers it must hold at the same time. A finger
 /// that an object blocks settles without arriving. If the set point is a position of the tip, the finger
-/// arrives at the joint angles that were computed for it. Other calls work meanwhile. sun2xp_close works
-/// too, and this call is then refused.
+/// arrives at the joint angles that were computed for it. If a reflex has replaced the set point that was
+/// sent last, or the finger ignored it because of an inhibition, the condition must hold for the set point
+/// of the reflex. The event SUN2XP_EVENT_REFLEX_FIRED says that a rule has reacted. Other calls work
+/// meanwhile. sun2xp_close works too, and this call is then refused.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -166,7 +170,8 @@ fn time_limit(seconds: f64) -> Result<Duration, Refusal> {
 /// Copies the commands of a group, and returns them with their number.
 ///
 /// # Safety
-/// There are `count` commands with the size of the first one, and their pointers are null or point to their arrays.
+/// `count` is not 0. There are `count` commands with the size of the first one, and their pointers are null or point to
+/// their arrays.
 unsafe fn load_commands(
     count: c_int,
     commands: &SizedStruct<sun2xp_set_point>,
@@ -174,9 +179,6 @@ unsafe fn load_commands(
     let mut loaded = [hand::FingerCommand::default(); FINGERS];
     let number = usize::try_from(count).ok().filter(|&number| number <= FINGERS);
     let number = number.ok_or(hand::HandError::from(SetPointError::GroupSize(count)))?;
-    if number == 0 {
-        return Ok((loaded, 0));
-    }
     commands.check()?;
     for (place, loaded) in loaded[..number].iter_mut().enumerate() {
         // SAFETY: the size is right, as checked above, and by the contract of this function there are `number`

@@ -9,6 +9,7 @@ use std::cell::Cell;
 use std::os::fd::RawFd;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::sleep;
 use std::time::Duration;
 
 /// The events of the hand at a place of the table.
@@ -19,6 +20,8 @@ pub(super) struct HandEvents {
     listener: Mutex<Option<Listener>>,
     /// Locked while the planner's callback runs. The exit handler waits for it.
     calling: Mutex<()>,
+    /// The mark [`Listener::removed`] of the callback that runs.
+    running: Mutex<Option<Arc<AtomicBool>>>,
 }
 
 /// A thread that calls a planner's function.
@@ -31,6 +34,9 @@ pub(super) struct Listener {
 /// Set when the process exits. From then on no callback of the planner is called.
 static ENDED: AtomicBool = AtomicBool::new(false);
 
+/// Interval at which a thread checks whether a removed callback has returned.
+const RETURN_PERIOD: Duration = Duration::from_millis(1);
+
 thread_local! {
     /// Whether the calling thread is in a callback of the planner.
     static IN_CALLBACK: Cell<bool> = const { Cell::new(false) };
@@ -38,7 +44,12 @@ thread_local! {
 
 impl HandEvents {
     pub const fn new() -> Self {
-        Self { queue: RwLock::new(None), listener: Mutex::new(None), calling: Mutex::new(()) }
+        Self {
+            queue: RwLock::new(None),
+            listener: Mutex::new(None),
+            calling: Mutex::new(()),
+            running: Mutex::new(None),
+        }
     }
 
     /// Creates the queue of a hand that is being opened.
@@ -49,9 +60,7 @@ impl HandEvents {
     /// Ends the callback and the queue of a hand that is closed. Waits until the callback has returned, unless
     /// `in_callback` is true.
     pub fn close(&self, in_callback: bool) {
-        if let Some(listener) = self.replace(None) {
-            listener.end(in_callback);
-        }
+        self.end_previous(self.replace(None), in_callback);
         drop(self.queue.write().take());
     }
 
@@ -87,21 +96,37 @@ impl HandEvents {
         Ok(Listener { thread, removed })
     }
 
-    /// Replaces the callback. Returns the previous one, which the caller ends without holding a lock.
+    /// Replaces the callback. Returns the previous one, which the caller passes to [`Self::end_previous`].
     pub fn replace(&self, listener: Option<Listener>) -> Option<Listener> {
         std::mem::replace(&mut *self.listener.lock(), listener)
+    }
+
+    /// Ends the callback that was replaced. Then waits until no removed callback runs, unless `in_callback` is true. A
+    /// callback that has removed itself may still be running although no callback was installed. The caller must hold
+    /// no lock, because the callback may make calls that need it.
+    pub fn end_previous(&self, previous: Option<Listener>, in_callback: bool) {
+        if let Some(previous) = previous {
+            previous.end(in_callback);
+        }
+        let runs = || self.running.lock().as_ref().is_some_and(|removed| removed.load(Ordering::Acquire));
+        while !in_callback && runs() {
+            sleep(RETURN_PERIOD);
+        }
     }
 
     /// Wraps the planner's callback in a function that tells [`in_callback`] and [`end`] whether the callback runs.
     fn guarded(&self, removed: Arc<AtomicBool>, mut callback: impl FnMut(&Event, u64)) -> impl FnMut(&Event, u64) {
         move |event, lost| {
             let _calling = self.calling.lock();
+            // This comes before the check of `removed`, so that `end_previous` waits for each callback that passes it.
+            *self.running.lock() = Some(removed.clone());
             // Both can have changed while this thread waited for the lock.
             if !ENDED.load(Ordering::Acquire) && !removed.load(Ordering::Acquire) {
                 IN_CALLBACK.set(true);
                 callback(event, lost);
                 IN_CALLBACK.set(false);
             }
+            *self.running.lock() = None;
         }
     }
 }
@@ -109,7 +134,7 @@ impl HandEvents {
 impl Listener {
     /// Ends the calls of the function. Waits until the function has returned, unless `in_callback` is true. The caller
     /// must hold no lock, because the function may make calls that need it.
-    pub fn end(self, in_callback: bool) {
+    fn end(self, in_callback: bool) {
         self.removed.store(true, Ordering::Release);
         if in_callback {
             self.thread.detach();
@@ -137,6 +162,8 @@ mod tests {
     use super::*;
     use crate::events::EventKind;
     use crate::model::{FingerNumber, Part};
+    use std::sync::mpsc::channel;
+    use std::thread;
 
     /// A listener can be ended in a callback while its own thread waits for the lock of the callbacks.
     #[test]
@@ -150,5 +177,30 @@ mod tests {
         guarded(&event, 0);
         drop(guarded);
         assert_eq!(calls, 1);
+    }
+
+    #[test]
+    fn a_callback_that_has_removed_itself_is_waited_for() {
+        let (finger, kind, part) = (FingerNumber::ONE, EventKind::Settled, Part::Finger);
+        let event = Event { finger, cycle: 7, time: 7_000_000, kind, part, values: [0.0; 4] };
+        let (events, removed) = (&HandEvents::new(), Arc::new(AtomicBool::new(false)));
+        let ((began, has_begun), (allow, may_return)) = (channel(), channel());
+        let (close, closed) = channel();
+        thread::scope(move |scope| {
+            let mut guarded = events.guarded(removed.clone(), move |_, _| {
+                removed.store(true, Ordering::Release);
+                began.send(()).expect("the test waits");
+                may_return.recv().expect("the test allows it");
+            });
+            scope.spawn(move || guarded(&event, 0));
+            has_begun.recv().expect("the callback runs");
+            scope.spawn(move || {
+                events.close(false);
+                close.send(()).expect("the test waits");
+            });
+            assert!(closed.recv_timeout(Duration::from_millis(100)).is_err(), "the callback still runs");
+            allow.send(()).expect("the callback waits");
+            closed.recv().expect("the hand is closed");
+        });
     }
 }

@@ -34,9 +34,7 @@ struct Opened {
     hand: OpenedHand,
 }
 
-static TABLE: [Place; MOST_HANDS + 1] = [const {
-    Place { lifecycle: Mutex::new(()), hand: RwLock::new(None), handle: AtomicUsize::new(0), events: HandEvents::new() }
-}; MOST_HANDS + 1];
+static TABLE: [Place; MOST_HANDS + 1] = [const { Place::new() }; MOST_HANDS + 1];
 
 /// Number of hands opened so far. It makes the handles of two hands different.
 static OPENED: AtomicUsize = AtomicUsize::new(0);
@@ -60,6 +58,10 @@ pub(super) fn default_handle() -> Handle {
 /// Opens the hand of OpenHand. `open_remote` opens the hand if it is on another machine.
 pub(super) fn open_default(open_remote: RemoteOpener) -> Result<(), Refusal> {
     refuse_while_exiting()?;
+    // The lifecycle of an open hand is not locked here, because its own callback may be closing it.
+    if default_handle() != Handle::NULL {
+        return Err(Refusal::AlreadyOpen);
+    }
     let Some(_opening) = TABLE[DEFAULT].lifecycle.try_lock() else { return Err(Refusal::Busy) };
     if TABLE[DEFAULT].hand.read().is_some() {
         return Err(Refusal::AlreadyOpen);
@@ -70,14 +72,16 @@ pub(super) fn open_default(open_remote: RemoteOpener) -> Result<(), Refusal> {
 /// Opens another hand, as [`open_default`] does.
 pub(super) fn open(source: SourceWithIo, open_remote: RemoteOpener) -> Result<Handle, Refusal> {
     refuse_while_exiting()?;
-    let (place, _opening) = free_place().ok_or(Refusal::TooManyHands)?;
+    let (place, _opening) = free_place(&TABLE).ok_or(Refusal::TooManyHands)?;
     open_at(place, source, open_remote)
 }
 
-fn free_place() -> Option<(usize, MutexGuard<'static, ()>)> {
-    (DEFAULT + 1..TABLE.len()).find_map(|place| {
-        let opening = TABLE[place].lifecycle.try_lock()?;
-        TABLE[place].hand.read().is_none().then_some((place, opening))
+/// A free place of a table, with its locked lifecycle. The lifecycle of an open hand is not locked, because a callback
+/// that closes this hand would be refused meanwhile.
+fn free_place(table: &[Place]) -> Option<(usize, MutexGuard<'_, ()>)> {
+    (DEFAULT + 1..table.len()).filter(|&place| table[place].handle.load(Ordering::Acquire) == 0).find_map(|place| {
+        let opening = table[place].lifecycle.try_lock()?;
+        table[place].hand.read().is_none().then_some((place, opening))
     })
 }
 
@@ -130,6 +134,15 @@ pub(super) fn close(handle: Handle, in_callback: bool) -> Result<(), Refusal> {
 }
 
 impl Place {
+    const fn new() -> Self {
+        Self {
+            lifecycle: Mutex::new(()),
+            hand: RwLock::new(None),
+            handle: AtomicUsize::new(0),
+            events: HandEvents::new(),
+        }
+    }
+
     /// The place that a handle names. The hand of the handle may be closed, and another one be open there.
     #[inline]
     fn named_by(handle: Handle) -> Result<&'static Self, Refusal> {
@@ -252,4 +265,18 @@ pub(super) fn events(handle: Handle) -> Result<&'static HandEvents, Refusal> {
 
 fn refuse_while_exiting() -> Result<(), Refusal> {
     if EXITING.load(Ordering::Acquire) { Err(Refusal::Exiting) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_for_a_free_place_leaves_open_hands_alone() {
+        let table = [Place::new(), Place::new(), Place::new()];
+        table[1].handle.store(1, Ordering::Release);
+        assert_eq!(free_place(&table).map(|(place, _)| place), Some(2));
+        table[2].handle.store(2, Ordering::Release);
+        assert!(free_place(&table).is_none());
+    }
 }

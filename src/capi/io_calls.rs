@@ -48,9 +48,11 @@ use std::path::PathBuf;
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
-///   EFAULT   hand or io is null, or a function of io is null
-///   EINVAL   size is too small; count is not 0 to 3; no such finger, or two entries for one finger
 ///   ENOMEM   there is not enough memory
+///   EFAULT   hand is null, or io is null and count is not 0
+///   EINVAL   size is too small; count is not 0 to 3; no such finger, or two entries for one finger;
+///            shortest_watchdog is negative or NaN
+///   EFAULT   a function of io is null
 ///   EMFILE   16 hands are open
 ///   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
 ///   EINVAL   the configuration is unusable, or gauge.newton_per_count or gauge.zero was set for another board
@@ -85,7 +87,7 @@ pub unsafe extern "C" fn sun2xp_open_io(
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
-///   EFAULT   configuration, hand or io is null, or a function of io is null
+///   EFAULT   hand or configuration is null, or io is null and count is not 0
 ///   others   as sun2xp_open_io
 ///
 /// Threads: any.

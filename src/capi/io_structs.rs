@@ -23,7 +23,8 @@ pub const SUN2XP_IO_DRIVER: c_uint = 16;
 /// An encoder or a gauge cannot be read.
 pub const SUN2XP_IO_SENSOR: c_uint = 32;
 
-/// The encoder counts have lost their reference to the zero.
+/// The encoder counts have lost their reference to the zero. In the first sample it does not fault the finger: a
+/// message says so, and the finger must be zeroed (sun2xp_zero).
 pub const SUN2XP_IO_ZERO_LOST: c_uint = 64;
 
 /// The terms under which the motors of a finger may move. The library sets all members.
@@ -79,7 +80,8 @@ pub struct sun2xp_io_sample {
     pub tensions: [f64; 4],
     /// Counts of the motor encoders.
     pub encoders: [c_int; 4],
-    /// Sum of SUN2XP_IO_... for faults that are present. Each faults the finger.
+    /// Sum of SUN2XP_IO_... for faults that are present. Each faults the finger, except
+    /// SUN2XP_IO_ZERO_LOST in the first sample.
     pub faults: c_uint,
 }
 

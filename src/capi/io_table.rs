@@ -110,12 +110,23 @@ pub(super) unsafe fn load(number: c_int, io: *const sun2xp_io) -> Result<HandIo,
     let tables = unsafe { SizedStruct::new(io, "io") }?;
     tables.check()?;
     let number = usize::try_from(number).ok().filter(|&number| number <= FINGERS);
+    let mut by_finger = [None; FINGERS];
     for place in 0..number.ok_or(Refusal::IoCount)? {
         // SAFETY: the size is right, as checked above, and by the contract of this function there are `number` structs.
         let table = unsafe { tables.load(place) };
         let finger = FingerNumber::try_from(table.finger)?;
-        if loaded[finger.index()].replace(Box::new(from_table(&table)?)).is_some() {
+        if by_finger[finger.index()].replace(table).is_some() {
             return Err(Refusal::IoTwice(finger));
+        }
+        // A range contains no NaN.
+        if !(0.0..).contains(&table.shortest_watchdog) {
+            return Err(Refusal::IoWatchdog { finger, seconds: table.shortest_watchdog });
+        }
+    }
+    // The functions come last, because a missing function is the last reason in the entry of sun2xp_open_io.
+    for (loaded, table) in loaded.iter_mut().zip(&by_finger) {
+        if let Some(table) = table {
+            *loaded = Some(Box::new(from_table(table)?));
         }
     }
     Ok(loaded)

@@ -13,6 +13,7 @@ use crate::capi::remedy_calls::{Interface, named};
 use crate::capi::remote_hand::{RemoteHand, RemoteRefusal, RemoteSource};
 use crate::capi::remote_library::{self, RemoteLibrary};
 use crate::capi::status_struct::sun2xp_status;
+use crate::finger::stop_calls;
 use crate::hand::{FingerCommand, Pose, Until};
 use crate::model::configuration::Configuration;
 use crate::realtime::Mutex;
@@ -35,6 +36,7 @@ struct LoadedHand {
 
 /// Loads the library, and opens a hand with it.
 pub(super) fn open(source: RemoteSource, _: &Configuration) -> Result<Arc<dyn RemoteHand>, RemoteRefusal> {
+    let stop_calls_seen = stop_calls();
     let library = remote_library::load()?;
     let (open, argument) = match source {
         RemoteSource::File(path) => (library.open, path.into_os_string().into_vec()),
@@ -47,6 +49,10 @@ pub(super) fn open(source: RemoteSource, _: &Configuration) -> Result<Arc<dyn Re
     let result = unsafe { open(argument.as_ptr(), &raw mut handle) };
     if result != 0 {
         return Err(last_refusal(library, null()));
+    }
+    // Until the library was loaded, `stop_all` did not reach it.
+    if stop_calls() != stop_calls_seen {
+        (library.stop_all)();
     }
     Ok(Arc::new(LoadedHand { library, handle: AtomicPtr::new(handle), waiting: Mutex::default() }))
 }
@@ -146,6 +152,10 @@ fn set_point(command: &FingerCommand) -> sun2xp_set_point {
 
 impl RemoteHand for LoadedHand {
     fn send(&self, commands: &[FingerCommand]) -> Result<(), RemoteRefusal> {
+        if commands.is_empty() {
+            // The other library would read a size behind the pointer of an empty array.
+            return Ok(());
+        }
         let (library, hand) = (self.library, self.handle());
         // SAFETY: in each call, the pointers are those of arrays that exist during the call.
         let result = unsafe {

@@ -43,7 +43,8 @@ thread_local! {
 /// may call it at the same time. It must make no calls of the library, and must return. The text is
 /// valid only during the call. There is one callback for all hands of the process.
 ///
-/// When sun2xp_set_log has returned, the previous callback is not running and is not called again.
+/// When sun2xp_set_log has returned, the previous callback is not running and is not called again. A message
+/// that comes while sun2xp_set_log waits for the previous callback is printed.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -62,12 +63,13 @@ pub extern "C" fn sun2xp_set_log(callback: sun2xp_log, user: *mut c_void) -> c_i
     })
 }
 
-/// Passes a message to the callback. Returns false if there is none.
+/// Passes a message to the callback. Returns false if there is none, or if it is being replaced.
 fn pass_on(severity: Severity, message: &str) -> bool {
     // A callback that writes is a cancellation point. It must not end the thread inside a call of the library.
     let _whole = NoCancellation::begin();
-    // This must not wait: in a forked child, nothing releases a lock that another thread of the parent held.
-    let Some(callback) = CALLBACK.try_read() else { return true };
+    // This must not wait: in a forked child, nothing releases a lock that another thread of the parent held. While
+    // sun2xp_set_log waits for the previous callback, the message is printed instead.
+    let Some(callback) = CALLBACK.try_read() else { return false };
     let Some((callback, user)) = &*callback else { return false };
     let mut text = Text::<2048>::EMPTY;
     text.compose(format_args!("{message}"));

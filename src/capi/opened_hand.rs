@@ -4,7 +4,7 @@ use crate::board::HandIo;
 use crate::capi::refusal::Refusal;
 use crate::capi::remote_hand::{RemoteHand, RemoteOpener, RemoteSource, over_the_network};
 use crate::capi::reporting;
-use crate::hand::{self, Configured, Hand, HandError};
+use crate::hand::{Configured, FingersWithIo, Hand, HandError};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -40,11 +40,11 @@ impl Source {
         SourceWithIo { source: self, io: Some(io) }
     }
 
-    fn read(&self) -> Result<Configured, HandError> {
+    fn read(&self, with_io: FingersWithIo) -> Result<Configured, HandError> {
         let configured = match self {
-            Self::Found => hand::find_configuration(),
-            Self::File(path) => Configured::read(path),
-            Self::Text(text) => Configured::from_text(text),
+            Self::Found => Configured::find_with_io(with_io),
+            Self::File(path) => Configured::read_with_io(path, with_io),
+            Self::Text(text) => Configured::from_text_with_io(text, with_io),
         };
         configured.map_err(HandError::from)
     }
@@ -63,7 +63,7 @@ impl Source {
 /// otherwise a hand of this machine. In a library without a network, `open_remote` opens hands on other machines.
 pub(super) fn open(from: SourceWithIo, open_remote: RemoteOpener) -> Result<OpenedHand, Refusal> {
     let SourceWithIo { source, io } = from;
-    let configured = source.read()?;
+    let configured = source.read(io.as_ref().map(FingersWithIo::of).unwrap_or_default())?;
     reporting::set_printing(configured.configuration.hand.print_refusals);
     let opener = over_the_network();
     if !configured.is_remote() {

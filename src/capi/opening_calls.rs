@@ -23,13 +23,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///
 /// Opens the ports, starts the servos and brings the tendons under tension. Returns when every finger has
 /// answered and holds its present pose at the configured initial stiffness. Takes at most about a second
-/// for a simulated hand. At most 16 hands of sun2xp_open can be
-/// open at once.
+/// for a simulated hand. At most 16 hands can be open at once, in addition to the hand of OpenHand.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
-///   EFAULT   hand is null
 ///   ENOMEM   there is not enough memory
+///   EFAULT   hand is null
 ///   EMFILE   16 hands are open
 ///   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
 ///   EINVAL   the configuration is unusable; sun2xp_error_text names file, line and reason
@@ -67,9 +66,9 @@ pub unsafe extern "C" fn sun2xp_open(path: *const c_char, hand: *mut *mut sun2xp
 ///   configuration   the text, as in a configuration file (TOML, UTF-8)
 ///   hand            result: the handle of the hand
 ///
-/// A finger for which the text names neither a port nor a board is simulated. The text is refused if it
-/// names a real port or board for another finger. Calibration results are in force until the hand is
-/// closed, and are not stored.
+/// A finger for which the text names neither a port nor a board is simulated. A text that leaves one
+/// finger simulated in this way must not name a real port or board for another finger; it is refused.
+/// Calibration results are in force until the hand is closed, and are not stored.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

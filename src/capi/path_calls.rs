@@ -6,8 +6,8 @@
 use crate::capi::boundary::guarded;
 use crate::capi::hand_table;
 use crate::capi::handle::{Handle, sun2xp_hand};
-use crate::capi::memory::{load, load_rows};
-use crate::capi::refusal::Refusal;
+use crate::capi::memory::{load, load_rows, non_null};
+use crate::capi::refusal::{Refusal, Wanted};
 use crate::capi::sized_struct::SizedStruct;
 use crate::finger::MOST_POSES;
 use crate::hand::{self, HandError, PathError, Pose};
@@ -49,7 +49,8 @@ pub struct sun2xp_path_pose {
 /// pose is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
 /// continuous. Because they are fed forward, the finger follows without the lag of sun2xp_send_position.
 /// Between two poses that have a Kx, Kx changes linearly. Until the first pose that has a Kx, Kx changes
-/// linearly from its value at the beginning of the path.
+/// linearly from its value at the beginning of the path. After sun2xp_send_joint_stiffness this value is 0,
+/// and the joint stiffness ends when the path begins, so send Kx before the path.
 ///
 /// The whole path is checked before anything moves: against the joint limits, and against speed,
 /// acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -62,8 +63,9 @@ pub struct sun2xp_path_pose {
 ///   EFAULT   poses is null
 ///   ENOMEM   there is not enough memory for the computation
 ///   ENODEV   no such hand
-///   EINVAL   size is too small; no such finger; count is not 1 to 128; a time is less than 1 ms later
-///            than the one before; joint angles and tip positions are mixed; an entry is NaN or infinite
+///   EINVAL   size is too small; count is not 1 to 128; seconds is NaN, negative or more than 3600; no such
+///            finger; a time is more than 3600, or less than 1 ms later than the one before; joint angles and
+///            tip positions are mixed; an entry is NaN or infinite
 ///   EDOM     a Kx is not symmetric, or has a negative eigenvalue
 ///   ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is too
 ///            stiff, or the path is too fast; sun2xp_error_text names the pose, and the factor by which the
@@ -95,13 +97,13 @@ pub unsafe extern "C" fn sun2xp_send_path(
 ) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_send_path", hand, || {
-        // SAFETY: by the contract in the manual, `poses` is null or points to as many bytes as its first member gives.
-        let poses = unsafe { SizedStruct::new(poses, "poses") }?;
+        non_null(poses, "poses", Wanted::Struct("sun2xp_path_pose"))?;
         if !is_memory_free(MEMORY_OF_PATH) {
             return Err(Refusal::NoMemory);
         }
-        // SAFETY: by the contract in the manual, `poses` points to `count` poses.
-        let poses = unsafe { load_poses(count, &poses) };
+        // SAFETY: `poses` is not null, as checked above. By the contract in the manual it points to `count` poses with
+        // as many bytes as the first member of the first one gives.
+        let poses = unsafe { load_poses(count, poses) };
         hand_table::command(hand, |hand| -> Result<(), Refusal> {
             Ok(hand.send_path(finger, &poses?, valid(seconds).map_err(HandError::from)?)?)
         })
@@ -163,11 +165,13 @@ fn valid(seconds: f64) -> Result<Option<Duration>, PathError> {
 ///
 /// # Safety
 /// There are `count` poses with the size of the first one, and the stiffness of each is null or points to nine numbers.
-unsafe fn load_poses(count: c_int, poses: &SizedStruct<sun2xp_path_pose>) -> Result<Vec<hand::PathPose>, Refusal> {
+unsafe fn load_poses(count: c_int, poses: *const sun2xp_path_pose) -> Result<Vec<hand::PathPose>, Refusal> {
     let number = usize::try_from(count).unwrap_or(0);
     if !(1..=MOST_POSES).contains(&number) {
         return Err(HandError::from(PathError::Count { count: number, most: MOST_POSES }).into());
     }
+    // SAFETY: there is a first pose, and by the contract of this function it has as many bytes as its size gives.
+    let poses = unsafe { SizedStruct::new(poses, "poses") }?;
     poses.check()?;
     (0..number)
         .map(|place| {

@@ -114,7 +114,8 @@ pub struct sun2xp_reflex {
 /// A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
 /// later calls that change a part of a set point start from the new one. The next sun2xp_send_position
 /// moves the finger again. The finger ignores a set point that is sent within the time in the member
-/// inhibition. A rule stays until sun2xp_remove_reflex or sun2xp_close.
+/// inhibition. This is no error, and the set point counts for the expiry. A rule stays until
+/// sun2xp_remove_reflex or sun2xp_close.
 ///
 /// Returns the number of the rule, above 0, or a negative number with
 ///   EPERM    forked child
@@ -154,7 +155,7 @@ pub unsafe extern "C" fn sun2xp_install_reflex(
             rule.check()?;
             // SAFETY: the size is right, as checked above, and there is a first struct.
             let rule = unsafe { rule.load(0) };
-            number = hand.install_reflex(finger, from_c(&rule)?)? as c_int;
+            number = hand.install_reflex_with(finger, from_c(&rule)?, rule.priority)? as c_int;
             Ok(())
         })
     });
@@ -189,12 +190,12 @@ pub extern "C" fn sun2xp_remove_reflex(hand: *mut sun2xp_hand, finger: c_int, nu
     })
 }
 
-/// Converts a rule.
+/// Converts a rule, except its priority.
 fn from_c(rule: &sun2xp_reflex) -> Result<crate::finger::Reflex, HandError> {
     Ok(crate::finger::Reflex {
         condition: condition(rule)?,
         reaction: reaction(rule)?,
-        priority: rule.priority.clamp(0, 255) as u8,
+        priority: 0,
         refractory: rule.refractory,
         inhibition: rule.inhibition,
     })

@@ -33,6 +33,11 @@ pub(super) enum Refusal {
     IoCount,
     #[error("two elements of io are for finger {0}: pass one for each finger")]
     IoTwice(FingerNumber),
+    #[error(
+        "the shortest_watchdog of the io of finger {finger} is {seconds:?} s: set it to the shortest watchdog time of \
+         the hardware, or to 0 for hardware that supports every time"
+    )]
+    IoWatchdog { finger: FingerNumber, seconds: f64 },
     #[error("no hand has this name: the names are nominal, worn, sheathed and cheap")]
     NoSuchName,
     #[error(
@@ -118,7 +123,7 @@ impl Refusal {
             Self::NoHand => libc::ENODEV,
             Self::AlreadyOpen | Self::Busy | Self::InLogCallback => libc::EBUSY,
             Self::TooManyHands => libc::EMFILE,
-            Self::NoSuchName | Self::IoCount | Self::IoTwice(_) => libc::EINVAL,
+            Self::NoSuchName | Self::IoCount | Self::IoTwice(_) | Self::IoWatchdog { .. } => libc::EINVAL,
             Self::Exiting => libc::ESHUTDOWN,
             Self::NoMemory => libc::ENOMEM,
             Self::Panicked(_) => libc::EIO,

@@ -157,6 +157,13 @@ impl StateFeedback {
             let estimate = &mut state.estimates[tendon];
             self.observers[tendon].take_over(&previous.observers[tendon], estimate, ratio[tendon]);
         }
+        self.reference.take_over(&previous.reference, &mut state.reference, &mut state.anchor, &mut state.along);
+    }
+
+    /// Notes that the next set point, rad, with this motion, begins a path. It replaces a set point that may have moved
+    /// differently.
+    pub fn begin_path(&self, state: &mut StateFeedbackState, joints: &Vector3<f64>, motion: &Motion) {
+        self.reference.replace_along(&mut state.along, joints, motion, self.period);
     }
 
     /// Returns whether so many consecutive replies were lost that no command can be computed.

@@ -1,5 +1,6 @@
 //! Reads and writes files. Whatever path a user gives, the library neither waits without end nor exhausts its memory.
-//! No failure and no other process can destroy the content of a file.
+//! A file always has its complete old content or its complete new content, even if a write fails or if several
+//! processes write at the same time.
 
 mod privileges;
 mod regular;

@@ -52,6 +52,8 @@ pub struct BlackBox {
     held: u32,
     /// Whether a fault arrived that [`BlackBox::faulted`] has not reported yet.
     faulted: bool,
+    /// Whether the records after a fault wait until [`BlackBox::faulted`] has reported the fault.
+    waits_at_faults: bool,
     /// Copies of what arrives, while telemetry has a reader.
     outlet: Option<Outlet>,
     /// Controllers from this number on are not published yet. They are kept while there is an outlet.
@@ -81,6 +83,7 @@ impl BlackBox {
             awaited: None,
             held: 0,
             faulted: false,
+            waits_at_faults: false,
             outlet: None,
             unpublished: 0,
         };
@@ -104,7 +107,10 @@ impl BlackBox {
         self.held = taken;
         let unpublished = self.first_unpublished();
         let kept = |number: u32| number >= taken.min(unpublished) || named.contains(&number) || awaited == Some(number);
-        self.controllers.retain(|controller| kept(controller.number));
+        // The records that wait behind a fault may name older controllers too.
+        if !self.waits() {
+            self.controllers.retain(|controller| kept(controller.number));
+        }
         self.controllers.push(ControllerSource { number, gravity, finger });
     }
 
@@ -125,7 +131,9 @@ impl BlackBox {
     /// Takes the servo's records and keyframes. [`BlackBox::collect`] must be called at least every half second.
     /// Otherwise the kept records exceed their capacity, and the collector allocates memory.
     fn take(&mut self) {
-        while let Some(record) = self.arriving.pop() {
+        while !self.waits()
+            && let Some(record) = self.arriving.pop()
+        {
             self.faulted |= matches!(record.stage, Stage::Faulted(_));
             self.outlet.iter_mut().for_each(|outlet| outlet.add_record(&record));
             // A gap occurs if nothing was collected for too long, or if the finger was faulted. A replay cannot cross a
@@ -200,6 +208,17 @@ impl BlackBox {
     /// Whether a fault has arrived since the last call.
     pub fn faulted(&mut self) -> bool {
         std::mem::take(&mut self.faulted)
+    }
+
+    /// From now on, the records after a fault wait until [`BlackBox::faulted`] has reported the fault. Until then
+    /// [`BlackBox::recording`] ends with the fault, even if the finger has recovered meanwhile.
+    pub fn wait_at_faults(&mut self) {
+        self.waits_at_faults = true;
+    }
+
+    /// Whether records wait behind a fault that is not reported yet.
+    fn waits(&self) -> bool {
+        self.waits_at_faults && self.faulted
     }
 
     /// Returns the record of `cycle`, or the newest record if `cycle` is `None`. Returns `None` if there is no such

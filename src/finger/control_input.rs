@@ -22,6 +22,9 @@ pub struct ControlInput {
     /// controllers compensate the gravity with which they were constructed.
     #[serde(default)]
     pub gravity: Option<Vector3<f64>>,
+    /// Whether a path begins in this cycle. Recordings of older libraries do not have it.
+    #[serde(default)]
+    pub path_begins: bool,
 }
 
 impl ControlInput {
@@ -39,6 +42,11 @@ impl ControlInput {
         }
         if let Some(gravity) = &self.gravity {
             controller.approach_gravity(state, gravity);
+        }
+        if self.path_begins
+            && let Activity::Follow(set_point) = &self.activity
+        {
+            previous.unwrap_or(controller).begin_path(state, set_point);
         }
         let (mut command, mut report) = match previous {
             None => controller.cycle(state, feedback, &self.activity),

@@ -19,7 +19,7 @@ pub struct CycleRecord<S = Stage> {
     pub stage: S,
     /// Durations of the cycle's stages, ns.
     pub timing: CycleTiming,
-    /// Measurements of the reply; none if it was lost.
+    /// Measurements of the reply; none if no reply came in this cycle.
     pub feedback: Option<Feedback>,
     /// Status bits of the newest reply.
     pub status: u16,

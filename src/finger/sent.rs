@@ -27,6 +27,9 @@ pub(super) struct SentSetPoint {
     pub group: u64,
     /// Number of the set point, counted by the planners' end.
     pub number: u32,
+    /// Number of the last set point that a planner has sent. It is lower than `number` if the library has corrected
+    /// that set point since. The validity is that of the planner's set point.
+    pub planned: u32,
     /// The set point. If there is a path, it holds the end of the path.
     pub set_point: SetPoint,
     /// The path that leads to the set point.
@@ -42,6 +45,17 @@ pub(super) struct SentPath {
     pub number: u32,
     /// Whether the path changes the stiffness.
     pub stiffness: bool,
+    /// The period in which the path begins.
+    pub origin: u64,
+    /// Length of the path, s.
+    pub length: f64,
+}
+
+impl SentPath {
+    /// Returns the period in which the path ends. `period` is the length of a period, s.
+    pub fn end(&self, period: f64) -> u64 {
+        self.origin + (self.length / period).ceil() as u64
+    }
 }
 
 impl SentSetPoint {
@@ -51,6 +65,7 @@ impl SentSetPoint {
             spring: report.springs,
             group: 0,
             number: report.set_point_number,
+            planned: report.set_point_number,
             set_point: report.set_point,
             path: None,
             valid: Validity::default(),
@@ -64,21 +79,29 @@ impl SentSetPoint {
         if report.springs == self.spring {
             return;
         }
-        if report.expired_phase == Some(self.spring) && self.number != report.set_point_number {
+        // A correction of the set point that has expired is not ahead, so the servo discards it.
+        let ahead = self.planned.wrapping_sub(report.set_point_number).cast_signed();
+        if report.expired_phase == Some(self.spring) && ahead > 0 {
             self.spring = report.springs;
         } else {
             *self = Self { group: self.group, ..Self::held(report) };
         }
     }
 
-    /// Notes what a change replaces, and how long the set point is valid.
+    /// Notes what the change of a planner replaces, and how long the set point is valid.
     pub fn replace(&mut self, replaced: Replaced, valid: Validity) {
+        self.correct(replaced);
+        self.valid = valid;
+        self.planned = self.number;
+    }
+
+    /// Notes what a correction by the library replaces.
+    pub fn correct(&mut self, replaced: Replaced) {
         match (replaced, &mut self.path) {
             (Replaced::Place, path) => *path = None,
             (Replaced::Stiffness, Some(path)) => path.stiffness = false,
             (Replaced::Stiffness, None) | (Replaced::Other, _) => {}
         }
-        self.valid = valid;
         self.number = self.number.wrapping_add(1);
     }
 }
@@ -110,6 +133,19 @@ mod tests {
         let mut sent = SentSetPoint::held(&report);
         sent.set_point = at(0.7);
         sent.replace(Replaced::Place, Validity::default());
+        (report.set_point_number, report.springs, report.expired_phase) = (1, 1, Some(0));
+        sent.begin_with(&report);
+        assert_eq!((sent.spring, sent.number, sent.set_point), (1, 1, at(0.1)));
+    }
+
+    /// The servo discards the correction, because it belongs to the phase that has ended.
+    #[test]
+    fn a_correction_that_was_sent_while_its_set_point_expired_is_replaced_by_the_held_one() {
+        let mut report = FingerReport::opening(at(0.1));
+        let mut sent = SentSetPoint::held(&report);
+        sent.replace(Replaced::Place, Validity::default());
+        sent.set_point = at(0.7);
+        sent.correct(Replaced::Place);
         (report.set_point_number, report.springs, report.expired_phase) = (1, 1, Some(0));
         sent.begin_with(&report);
         assert_eq!((sent.spring, sent.number, sent.set_point), (1, 1, at(0.1)));

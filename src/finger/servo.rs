@@ -69,6 +69,8 @@ pub struct FingerServo {
     sequence: u8,
     toggle: bool,
     answered: bool,
+    /// Whether a reply was accepted in this cycle.
+    replied: bool,
     /// Sequence number of the last reply that was accepted.
     last_answer: u8,
     link: LinkWatch,
@@ -143,6 +145,7 @@ impl FingerServo {
     /// after a request to stop this finger, or after the fault of a finger that stops together with this one.
     pub fn begin_period(&mut self, began: u64) {
         self.events.begin_cycle(self.report.losses.cycles + 1, began);
+        self.replied = false;
         let requested = self.mailbox.stop_requested().then_some(FaultKind::FingerStopCall);
         if let Some(kind) = self.alarm.pending().or(requested) {
             self.fault(Fault::new(kind));
@@ -205,7 +208,7 @@ impl FingerServo {
                 began,
                 stage: self.report.stage,
                 timing: CycleTiming::default(),
-                feedback: self.answered.then_some(self.feedback),
+                feedback: self.replied.then_some(self.feedback),
                 status: self.status.0,
                 control,
             });
@@ -220,14 +223,14 @@ impl FingerServo {
     }
 
     /// Publishes the timing, the record and the report of this cycle. The report comes after the record, so that a
-    /// planner that has read the report of a cycle finds its record.
+    /// planner that has read the report of a cycle finds its record, unless the record waits behind a fault.
     pub fn publish(&mut self) {
         let timing = std::mem::take(&mut self.timing);
         if let Some(record) = self.record.take() {
             self.black_box.record(CycleRecord { timing, ..record });
         }
         self.mailbox.publish(self.report);
-        // A planner that has read an event of a cycle therefore finds the report and the record of this cycle.
+        // A planner that has read an event of a cycle therefore finds the report of this cycle.
         self.events.publish(self.report.next);
         self.note_events();
         // The timing comes after the report, so that a reader never counts more timings than cycles. The ring is full

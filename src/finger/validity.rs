@@ -30,7 +30,7 @@ impl Validity {
 /// A validity that was renewed without a new set point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Renewal {
-    /// Number of the set point that was sent last before the renewal. A set point that was sent later has its own
+    /// Number of the set point that a planner sent last before the renewal. A set point that was sent later has its own
     /// validity.
     pub number: u32,
     pub validity: Validity,

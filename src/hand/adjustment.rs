@@ -2,7 +2,7 @@
 //! the servo as a whole.
 
 use crate::control::{JointSpring, SetPoint};
-use crate::finger::{Adjustable, Replaced, Validity};
+use crate::finger::{Adjustable, Replaced};
 use crate::hand::admission::Admission;
 use crate::hand::configuration_file::{Wrong, deserialize, overlay, to_document};
 use crate::hand::dispatcher::Member;
@@ -48,8 +48,8 @@ impl Hand {
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a key cannot be
     /// read, cannot change while the hand is open, or results in a configuration that cannot be used. Returns an error
-    /// if the set point that was sent last is outside the new limits, unless commands are clamped. After an error
-    /// nothing is changed.
+    /// if the set point that was sent last is outside the new limits, unless commands are clamped: a set point that is
+    /// clamped keeps its validity. After an error nothing is changed.
     pub fn adjust(&self, finger: i32, keys: &str) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;
@@ -92,16 +92,10 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     member.mailbox.adjust(adjustable).map_err(faulted)?;
     if admitted != sent {
         let replaced = if joints == sent.joints { Replaced::Stiffness } else { Replaced::Place };
-        let clamp = |set_point: &mut SetPoint| {
-            // If the set point differs, the finger has restarted meanwhile and holds the pose in which it was found.
-            if *set_point == sent {
-                *set_point = admitted;
-            }
-            Ok::<(), SetPointError>(())
-        };
-        // This is refused only if the finger has faulted since the controller was replaced. A finger that has faulted
-        // has no set point that could be outside the limits, and recovers with the new controller.
-        let _ = member.mailbox.try_send((replaced, Validity::default()), clamp);
+        // If the set point is no longer `sent`, the finger has restarted meanwhile and holds the pose in which it was
+        // found. The correction is refused only if the finger has faulted since the controller was replaced. A finger
+        // that has faulted has no set point that could be outside the limits, and recovers with the new controller.
+        let _ = member.mailbox.correct(replaced, &sent, admitted);
     }
     *admission = changed;
     Ok(())

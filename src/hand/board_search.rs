@@ -41,7 +41,8 @@ pub struct SearchedPort {
 }
 
 /// Asks for the identity of every finger at every port that the patterns name. Only a Hello is sent, which changes
-/// nothing on a board. Ports that another program has open are not touched. Takes at most 160 ms for a port and a rate.
+/// nothing on a board. Ports that another program has open are not touched. Takes at most 160 ms for a port and a rate,
+/// and 100 ms more for each finger of the board that does not answer.
 ///
 /// `baud` are the bit rates to try at each port, bit/s. A * in the last part of a pattern stands for any text.
 pub fn search_boards(patterns: &[String], baud: &[u32]) -> Vec<SearchedPort> {

@@ -34,7 +34,7 @@ pub struct Calibrating {
     /// Whether the finger stays limp after the results are in force.
     stays_limp: bool,
     /// The results; `None` until the finger is ordered to restart with them.
-    found: Option<(Findings, Found)>,
+    found: Option<Findings>,
     asked: Instant,
 }
 
@@ -116,14 +116,15 @@ impl Calibrating {
     /// called again after `Done`.
     ///
     /// # Errors
-    /// Returns an error if the routine fails and leaves the finger limp, or if the finger faults.
+    /// Returns an error if the routine fails and leaves the finger limp, or if the finger faults. If it faults while it
+    /// restarts with the results, the results are in force, and [`Hand::store_calibration`] stores them.
     pub fn poll(&mut self, hand: &Hand) -> Result<CalibrationState, HandError> {
         let finger = self.finger;
         let report = hand.dispatcher.report(finger)?;
         if report.recoveries != self.recoveries {
             // The finger has faulted and recovered between two polls, so this calibration is over. If the report has a
             // verdict, the verdict belongs to another calibration. Without this return, progress would be reported
-            // forever.
+            // forever. Results that were found before the fault are in force.
             return Err(HandError::Interrupted(finger));
         }
         if report.orders != self.order {
@@ -134,12 +135,9 @@ impl Calibrating {
             }
             return Ok(CalibrationState::InProgress(Progress { step: Step::TakingUpSlack, part: 0.0 }));
         }
-        if let Some((findings, found)) = &self.found {
+        if let Some(findings) = &self.found {
             if report.stage == Stage::Opening {
                 return Ok(CalibrationState::InProgress(Progress { step: Step::TakingUpSlack, part: 1.0 }));
-            }
-            if !matches!(findings, Findings::RightWiring) {
-                hand.note(found.clone());
             }
             return Ok(CalibrationState::Done(*findings));
         }
@@ -167,8 +165,11 @@ impl Calibrating {
                 self.order = hand.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
                     Self::ordered(finger, member.mailbox.restart(adjustable, limp))
                 })?;
-                (self.found, self.asked) = (Some((found, to_store)), Instant::now());
+                (self.found, self.asked) = (Some(found), Instant::now());
                 *configuration = changed;
+                drop(configuration);
+                // The results are in force even if the finger faults before it has restarted.
+                hand.note(to_store);
                 Ok(CalibrationState::InProgress(Progress { step: Step::TakingUpSlack, part: 1.0 }))
             }
         }
@@ -255,7 +256,11 @@ impl Hand {
         Some(ToStore { file: self.file.clone()?, found })
     }
 
+    /// Keeps the results that a later call stores, if there are any.
     fn note(&self, found: Found) {
+        if found.values().is_empty() {
+            return;
+        }
         let mut all = self.found.lock();
         match all.iter_mut().find(|before| before.finger() == found.finger()) {
             Some(before) => before.add(found),

@@ -3,7 +3,7 @@
 
 mod editing;
 
-use super::configuration_file::{LARGEST, parse, to_document};
+use super::configuration_file::{FingersWithIo, LARGEST, parse, to_document};
 use crate::files::{UpdateError, update_file};
 use crate::hand::ConfigurationError;
 use crate::hand::found::{Found, FoundValue, Misfit};
@@ -32,7 +32,8 @@ pub fn store_findings(path: &Path, found: &[Found]) -> Result<(), ConfigurationE
 /// Returns the text with the results, or `None` if the text contains them already.
 fn change(path: &Path, text: &str, found: &[Found]) -> Result<Option<String>, ConfigurationError> {
     let file = || path.to_path_buf();
-    let before = parse(text).map_err(|wrong| ConfigurationError::Invalid {
+    let with_io = found.iter().fold(FingersWithIo::default(), |all, found| all.and(found.with_io()));
+    let before = parse(text, with_io).map_err(|wrong| ConfigurationError::Invalid {
         file: file(),
         line: wrong.line(text),
         reason: wrong.to_string(),
@@ -50,7 +51,7 @@ fn change(path: &Path, text: &str, found: &[Found]) -> Result<Option<String>, Co
         return Ok(None);
     }
     let changed = like(text, document.to_string());
-    match parse(&changed) {
+    match parse(&changed, with_io) {
         Ok(_) => Ok(Some(changed)),
         Err(wrong) => Err(unusable(format!("with the new calibration, {wrong}"))),
     }

@@ -5,6 +5,7 @@ mod place;
 mod simulated;
 mod text;
 mod values;
+mod with_io;
 mod wrong;
 
 use crate::files::{raised_privileges, read_regular_file};
@@ -17,6 +18,7 @@ use text::Said;
 pub(super) use text::overlay;
 pub use values::deserialize;
 pub(super) use values::to_document;
+pub(crate) use with_io::FingersWithIo;
 pub use wrong::Wrong;
 
 /// Largest configuration file, bytes: more than sixty times the size of docs/sun2xp.toml, which contains every key.
@@ -45,27 +47,26 @@ pub struct Configured {
 /// Returns an error if the file cannot be read or used. It is also an error if `SUN2XP_CONFIG` names a missing file, or
 /// is set although it is not trusted: a planner that expects a real hand must never get the simulation instead.
 pub fn find_configuration() -> Result<Configured, ConfigurationError> {
-    match place::locate()? {
-        Some(path) => Configured::read(&path),
-        None => Ok(Configured { configuration: Configuration::default(), file: None, said: Said::default() }),
-    }
+    Configured::find_with_io(FingersWithIo::default())
 }
 
 /// Reads and checks one configuration file.
 ///
 /// # Errors
 /// Returns [`ConfigurationError::Invalid`], with file, line and reason, if the text is wrong. Returns
-/// [`ConfigurationError::Unreadable`] if the file cannot be read, is not a regular file or is larger than 1 MiB.
+/// [`ConfigurationError::Unreadable`] if the file cannot be read, is not a regular file or is larger than 1 MiB, and
+/// [`ConfigurationError::Remote`] if the file names a hand on another machine.
 pub fn read_configuration(path: &Path) -> Result<Configuration, ConfigurationError> {
-    Configured::read(path).map(|configured| configured.configuration)
+    Configured::read(path)?.local().map(|configured| configured.configuration)
 }
 
 /// Checks a configuration that a program has as text, in the format of a configuration file.
 ///
 /// # Errors
-/// Returns [`ConfigurationError::Invalid`], with line and reason, if the text is wrong.
+/// Returns [`ConfigurationError::Invalid`], with line and reason, if the text is wrong. Returns
+/// [`ConfigurationError::Remote`] if the text names a hand on another machine.
 pub fn parse_configuration(text: &str) -> Result<Configuration, ConfigurationError> {
-    parse(text).map_err(|wrong| invalid_text(text, &wrong))
+    Configured::from_text(text)?.local().map(|configured| configured.configuration)
 }
 
 fn invalid_text(text: &str, wrong: &Wrong) -> ConfigurationError {
@@ -73,9 +74,9 @@ fn invalid_text(text: &str, wrong: &Wrong) -> ConfigurationError {
     ConfigurationError::Invalid { file, line: wrong.line(text), reason: wrong.to_string() }
 }
 
-/// Reads and checks the text of a configuration file.
-pub(super) fn parse(text: &str) -> Result<Configuration, Wrong> {
-    text::parse(text).map(|(configuration, _)| configuration)
+/// Reads and checks the text of a configuration file. The ports of `with_io` are ignored.
+pub(super) fn parse(text: &str, with_io: FingersWithIo) -> Result<Configuration, Wrong> {
+    with_io.parse(text).map(|(configuration, _)| configuration)
 }
 
 impl Configured {
@@ -84,13 +85,7 @@ impl Configured {
     /// # Errors
     /// Returns an error if the file cannot be read or used.
     pub fn read(path: &Path) -> Result<Self, ConfigurationError> {
-        let file = path.to_path_buf();
-        let text = read_regular_file(path, LARGEST)
-            .map_err(|source| ConfigurationError::Unreadable { path: file.clone(), source })?;
-        match text::parse(&text) {
-            Ok((configuration, said)) => Ok(Self { configuration, file: Some(file), said }),
-            Err(wrong) => Err(ConfigurationError::Invalid { file, line: wrong.line(&text), reason: wrong.to_string() }),
-        }
+        Self::read_with_io(path, FingersWithIo::default())
     }
 
     /// Reads and checks the text of a configuration. Fingers without a port are simulated, which is not announced.
@@ -98,7 +93,31 @@ impl Configured {
     /// # Errors
     /// Returns [`ConfigurationError::Invalid`], with line and reason, if the text is wrong.
     pub fn from_text(text: &str) -> Result<Self, ConfigurationError> {
-        let (configuration, said) = text::parse(text).map_err(|wrong| invalid_text(text, &wrong))?;
+        Self::from_text_with_io(text, FingersWithIo::default())
+    }
+
+    /// Does the same as [`find_configuration`].
+    pub(crate) fn find_with_io(with_io: FingersWithIo) -> Result<Self, ConfigurationError> {
+        match place::locate()? {
+            Some(path) => Self::read_with_io(&path, with_io),
+            None => Ok(Self { configuration: Configuration::default(), file: None, said: Said::default() }),
+        }
+    }
+
+    /// Does the same as [`Configured::read`].
+    pub(crate) fn read_with_io(path: &Path, with_io: FingersWithIo) -> Result<Self, ConfigurationError> {
+        let file = path.to_path_buf();
+        let text = read_regular_file(path, LARGEST)
+            .map_err(|source| ConfigurationError::Unreadable { path: file.clone(), source })?;
+        match with_io.parse(&text) {
+            Ok((configuration, said)) => Ok(Self { configuration, file: Some(file), said }),
+            Err(wrong) => Err(ConfigurationError::Invalid { file, line: wrong.line(&text), reason: wrong.to_string() }),
+        }
+    }
+
+    /// Does the same as [`Configured::from_text`].
+    pub(crate) fn from_text_with_io(text: &str, with_io: FingersWithIo) -> Result<Self, ConfigurationError> {
+        let (configuration, said) = with_io.parse(text).map_err(|wrong| invalid_text(text, &wrong))?;
         Ok(Self { configuration, file: None, said: Said { ports: [true; FINGERS], ..said } })
     }
 
@@ -115,14 +134,17 @@ impl Configured {
         self
     }
 
-    /// Refuses a configuration with a table `[remote]`, for calls that open only hands of this machine. Its fingers
-    /// have no ports, so these calls would open a simulated hand instead.
-    pub(super) fn refuse_remote(&self) -> Result<(), ConfigurationError> {
+    /// Refuses a configuration with a table `[remote]`, for programs that open only hands of this machine. Its fingers
+    /// have no ports, so such a program would open a simulated hand instead.
+    ///
+    /// # Errors
+    /// Returns [`ConfigurationError::Remote`] if there is such a table.
+    pub fn local(self) -> Result<Self, ConfigurationError> {
         if self.said.remote {
-            let file = self.file.clone().unwrap_or_else(|| "configuration text".into());
+            let file = self.file.unwrap_or_else(|| "configuration text".into());
             return Err(ConfigurationError::Remote { file });
         }
-        Ok(())
+        Ok(self)
     }
 
     /// Notes that the program provides the hardware of this finger, so that its port does not matter.
@@ -223,10 +245,12 @@ mod tests {
     fn a_hand_on_another_machine_is_refused_by_calls_that_open_hands_of_this_machine() {
         let text = "[remote]\nendpoint = 'tcp/cell:7447'\nhand = 'left'\n";
         let configured = Configured::from_text(text).expect("usable");
-        assert!(configured.clone().of_this_machine().refuse_remote().is_ok());
+        assert!(configured.clone().of_this_machine().local().is_ok());
         let refusal = crate::hand::Hand::open_as(configured).err().expect("refused").to_string();
         assert!(refusal.starts_with("configuration text has a table [remote]"), "{refusal}");
-        assert!(Configured::from_text("").expect("usable").refuse_remote().is_ok());
+        let refusal = parse_configuration(text).expect_err("refused");
+        assert!(matches!(refusal, ConfigurationError::Remote { .. }), "{refusal}");
+        assert!(Configured::from_text("").expect("usable").local().is_ok());
     }
 
     #[test]

@@ -178,10 +178,11 @@ pub enum HandError {
         /// The cause and the remedy.
         obstacle: Obstacle,
     },
-    /// A calibration has ended without a result.
+    /// A calibration was interrupted. Its results are in force if they had been found before.
     #[error(
-        "the calibration of finger {0} ended without a result, because the finger faulted and recovered, or because \
-         the hand is being closed. Its previous calibration is in force: calibrate it again"
+        "the calibration of finger {0} was interrupted, because the finger faulted and recovered, or because the hand \
+         is being closed. If its results had been found before, they are in force, otherwise the previous calibration: \
+         calibrate it again"
     )]
     Interrupted(FingerNumber),
     /// The finger is busy.

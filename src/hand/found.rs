@@ -2,7 +2,7 @@
 //! the values that were found, and the part of the configuration on which these values depend.
 
 use crate::calibration::Findings;
-use crate::hand::configuration_file::to_document;
+use crate::hand::configuration_file::{FingersWithIo, to_document};
 use crate::model::FingerNumber;
 use crate::model::configuration::Configuration;
 use std::collections::BTreeMap;
@@ -52,6 +52,8 @@ pub struct Found {
     /// The values of the keys in `held_by` when the results were found, rounded as in the file. The hand keeps all
     /// digits of earlier results, and the file does not.
     holds_for: BTreeMap<String, String>,
+    /// The fingers whose hardware the program provided. Their ports and boards in the file do not matter.
+    with_io: FingersWithIo,
 }
 
 /// A key of a finger, with the value that was found.
@@ -133,7 +135,8 @@ impl Found {
         configuration: &Configuration,
     ) -> Self {
         let holds_for = excerpt(configuration, finger, held_by);
-        Self { finger, values, held_by, holds_for }
+        let with_io = FingersWithIo::of_open_hand(configuration);
+        Self { finger, values, held_by, holds_for, with_io }
     }
 
     /// Returns the number of the finger.
@@ -156,6 +159,12 @@ impl Found {
 
     pub(super) fn values(&self) -> &[FoundValue] {
         &self.values
+    }
+
+    /// The fingers whose hardware the program provided. The configuration that [`Found::misfit`] compares must have
+    /// been read with them.
+    pub(super) fn with_io(&self) -> FingersWithIo {
+        self.with_io
     }
 
     /// The first key that the results depend on and that has another value in `configuration`; none if all are equal. A

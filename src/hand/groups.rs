@@ -79,6 +79,17 @@ impl FingerCommand {
         }
     }
 
+    /// Refuses NaN and infinity in every quantity.
+    fn check_finite(&self, admission: &Admission) -> Result<(), SetPointError> {
+        match &self.pose {
+            None => {}
+            Some(Pose::Joints(joints)) => admission.finite("Pos", joints)?,
+            Some(Pose::Tip(tip)) => admission.finite("Tip", tip)?,
+        }
+        admission.finite("Kx", self.stiffness.as_slice().as_flattened().as_flattened())?;
+        admission.finite("Damping", self.damping.as_slice())
+    }
+
     /// Checks the command. Returns a function that changes the set point. That function returns an error if it refuses
     /// the resulting damping. `present` is the pose of the finger, rad.
     fn admit(
@@ -86,6 +97,7 @@ impl FingerCommand {
         admission: &Admission,
         present: &Vector3<f64>,
     ) -> Result<impl FnOnce(&mut SetPoint) -> Result<(), SetPointError> + use<>, SetPointError> {
+        self.check_finite(admission)?;
         let pose = match self.pose {
             None => None,
             Some(Pose::Joints(joints)) => Some((admission.joints(joints)?, admission.law)),
@@ -93,7 +105,6 @@ impl FingerCommand {
         };
         let stiffness = self.stiffness.map(|rows| admission.stiffness(rows)).transpose()?;
         let ratio = self.damping;
-        admission.finite("Damping", ratio.as_slice())?;
         let damping = admission.damping;
         Ok(move |set_point: &mut SetPoint| {
             (set_point.joints, set_point.law) = pose.unwrap_or((set_point.joints, set_point.law));
@@ -137,21 +148,42 @@ impl Hand {
                 return Err(SetPointError::TwiceInGroup(finger).into());
             }
         }
-        // The locks are taken in the order of the fingers, and held until every finger has its command.
+        // The locks are taken in the order of the fingers, and held until every finger has its command. Each kind of
+        // check is made for all fingers before the next kind, so that the reported reason does not depend on the
+        // finger.
         let mut admissions = [const { None }; FINGERS];
-        let mut prepared: [Option<PreparedSetPoint<'_>>; FINGERS] = [const { None }; FINGERS];
         for number in FingerNumber::ALL {
             let Some(command) = by_finger[number.index()] else { continue };
             let member = self.dispatcher.member(number)?;
-            let admission = admissions[number.index()].insert(member.admission.read());
-            let change = command.admit(admission, &member.mailbox.report().cycle.joints)?;
+            command.check_finite(admissions[number.index()].insert(member.admission.read()))?;
+        }
+        let mut changes = [const { None }; FINGERS];
+        for number in FingerNumber::ALL {
+            let (Some(command), Some(admission)) = (by_finger[number.index()], &admissions[number.index()]) else {
+                continue;
+            };
+            let member = self.dispatcher.member(number)?;
+            changes[number.index()] = Some(command.admit(admission, &member.mailbox.report().cycle.joints)?);
+        }
+        let mut prepared: [Option<PreparedSetPoint<'_>>; FINGERS] = [const { None }; FINGERS];
+        for number in FingerNumber::ALL {
+            let (Some(command), Some(change)) = (by_finger[number.index()], changes[number.index()].take()) else {
+                continue;
+            };
+            let member = self.dispatcher.member(number)?;
             let faulted = |fault| HandError::Faulted { finger: number, fault };
-            let set_point =
-                member.mailbox.prepare((command.replaced(), command.validity), change).map_err(faulted)??;
-            if !set_point.has_room() {
+            let set_point = member.mailbox.prepare((command.replaced(), command.validity), change).map_err(faulted)?;
+            prepared[number.index()] = Some(set_point?);
+        }
+        self.send_prepared(prepared)
+    }
+
+    /// Sends the set points of a group, unless a finger has no room for another group.
+    fn send_prepared(&self, prepared: [Option<PreparedSetPoint<'_>>; FINGERS]) -> Result<(), HandError> {
+        for number in FingerNumber::ALL {
+            if prepared[number.index()].as_ref().is_some_and(|set_point| !set_point.has_room()) {
                 return Err(SetPointError::GroupsWaiting(number).into());
             }
-            prepared[number.index()] = Some(set_point);
         }
         self.dispatcher.gate.send(prepared);
         Ok(())

@@ -3,7 +3,7 @@
 use crate::board::{Connection, FingerIo, HandIo, IoBoard, IoProperties, Link, Port, TensionScale, ZERO_COUNT};
 use crate::hand::HandError;
 use crate::hand::notice::print_notice;
-use crate::model::configuration::{Configuration, ConfiguredGauge, FINGERS, IO_PORT, Unusable};
+use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredGauge, FINGERS, Unusable};
 use crate::model::{FingerNumber, Fingers, Section, ShownPath, UnusableConfiguration};
 use std::path::Path;
 
@@ -46,8 +46,7 @@ impl Hardware {
             }
             let Some(provided) = &self.0[number.index()] else { continue };
             let finger = &mut configuration.fingers[number.index()];
-            finger.port = format!("{IO_PORT}{number}");
-            finger.board = None;
+            finger.provide(number);
             fit(&mut finger.gauge, provided.properties.tension_unit)
                 .map_err(|unusable| UnusableConfiguration { section: Section::Finger(number), unusable })?;
         }
@@ -109,6 +108,17 @@ fn fit(gauge: &mut ConfiguredGauge, unit: f64) -> Result<(), Unusable> {
         return Err(Unusable { key: "gauge.zero", reason });
     }
     Ok(())
+}
+
+/// Prints a notice if hardware of the program has no reference for its encoder counts when it starts. The finger is
+/// opened nevertheless, because it can be zeroed only when it is open.
+pub(super) fn warn_of_lost_zero(number: FingerNumber, finger: &ConfiguredFinger, zero_valid: bool) {
+    if finger.has_io() && !zero_valid {
+        print_notice(&format!(
+            "the hardware of finger {number} starts without a reference for its encoder counts \
+             (SUN2XP_IO_ZERO_LOST), so its joint angles are wrong: zero the finger before it moves"
+        ));
+    }
 }
 
 /// Prints a notice if a USB adapter delays bytes, because then every cycle loses its reply.

@@ -40,12 +40,12 @@ impl Identities {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
     use crate::board::protocol::{Capabilities, FirmwareVersion, VERSION};
 
     /// The identity of a board. The identities from two calls differ only in the unique number.
-    pub fn identity(number: u8) -> Identity {
+    fn identity(number: u8) -> Identity {
         Identity {
             version: VERSION,
             addresses: 0b1110,

@@ -50,6 +50,7 @@ pub use black_box_file::save_recording;
 pub use board_search::{FoundFinger, SearchedPort, find_boards, search_boards};
 pub use calibrating::{Calibrating, CalibrationState};
 pub use calibration_file::store_findings;
+pub(crate) use configuration_file::FingersWithIo;
 pub use configuration_file::{
     Configured, Wrong, deserialize, find_configuration, parse_configuration, read_configuration,
 };

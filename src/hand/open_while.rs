@@ -11,7 +11,7 @@ impl Hand {
     /// # Errors
     /// Returns the errors of [`Hand::open_as`], and [`HandError::System`] with `ECANCELED` if `goes_on` returns false.
     pub fn open_while(configured: Configured, goes_on: &dyn Fn() -> bool) -> Result<Self, HandError> {
-        configured.refuse_remote()?;
+        let configured = configured.local()?;
         configured.announce(Fingers::ALL);
         Self::open_from(configured.configuration, configured.file, Fingers::ALL, Hardware::default(), false, goes_on)
     }

@@ -11,7 +11,7 @@ use crate::finger::{
 };
 use crate::hand::admission::{Admission, DampingAdmission};
 use crate::hand::events::EventSource;
-use crate::hand::hardware::Hardware;
+use crate::hand::hardware::{Hardware, warn_of_lost_zero};
 use crate::hand::identities::Identities;
 use crate::hand::notice::print_notice;
 use crate::hand::port_repair::{KnownBoard, PortRepair};
@@ -149,7 +149,8 @@ pub(super) fn reach(
             finger.reconnect && !finger.has_io() && simulated.path(number).is_none()
         };
         let reconnect = sharing.iter().any(reconnects);
-        repairs.push(PortRepair::new(path, baud, reconnect, boards, repair_end));
+        // With an absolute path, the port is found again after the planner has changed its working directory.
+        repairs.push(PortRepair::new(from_here(path), baud, reconnect, boards, repair_end));
     }
     reached.sort_by_key(|finger| finger.number);
     let logs = reached.iter().map(|finger| finger.events.clone()).collect();
@@ -209,10 +210,12 @@ fn shake_hands(
     let (producer, timings) = ring((UNCOLLECTED * hand.rate).ceil() as usize);
     let (recorder, black_box) = BlackBox::new(configuration, number);
     let (servo, mailbox) =
-        FingerServo::new(configuration, number, stiffness, &identity, &configured, producer, recorder)
+        FingerServo::new(configuration, number, stiffness, &identity, &configured, (producer, recorder))
             .map_err(unusable)?;
     let zero_valid = configured.status.has(Status::ZERO_VALID);
-    let board = KnownBoard { finger: number, address, terms, identity, zero_valid };
+    warn_of_lost_zero(number, finger, zero_valid);
+    let has_io = finger.has_io();
+    let board = KnownBoard { finger: number, address, terms, identity, zero_valid, has_io, restarted: false };
     let (admission, events) = (admission(configuration, number), servo.event_log().clone());
     let touch = servo.touch().clone();
     let (servo, reflexes) = servo.with_reflexes(number, bulletin);

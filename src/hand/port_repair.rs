@@ -6,7 +6,6 @@ use crate::finger::{Fault, FaultKind, LinkRepairEnd, RepairedLink, RestoredBoard
 use crate::hand::{HandError, RecoveryError};
 use crate::model::FingerNumber;
 use crate::model::configuration::FINGERS;
-use crate::realtime::now;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -26,7 +25,7 @@ pub(super) struct PortRepair {
     released: bool,
     /// The released link or a new one; `None` while the port is gone.
     link: Option<Link<Connection>>,
-    /// Whether the boards have answered and are the same as at open.
+    /// Whether the link has not failed, or its boards have answered since and are the same as at open.
     pub checked: bool,
     /// Place of the finger that was given to the servo last, beside others.
     given: Option<usize>,
@@ -40,6 +39,10 @@ pub(super) struct KnownBoard {
     pub terms: Terms,
     pub identity: Identity,
     pub zero_valid: bool,
+    /// Whether the board is hardware of the program. It keeps its terms until the hand is closed.
+    pub has_io: bool,
+    /// Whether the board was found without terms after open. It has restarted then.
+    pub restarted: bool,
 }
 
 impl PortRepair {
@@ -58,7 +61,7 @@ impl PortRepair {
     /// Takes the link if the servo has released it. Returns whether the servo has released it.
     pub fn take_link(&mut self) -> bool {
         if let Some(released) = self.handover.released.pop() {
-            (self.released, self.checked) = (true, false);
+            (self.released, self.checked) = (true, !released.failed);
             self.link = (!released.failed).then_some(released.link);
         }
         self.released
@@ -69,21 +72,34 @@ impl PortRepair {
         self.handover.released.is_abandoned()
     }
 
+    /// Opens the port if it is gone, and asks its boards for their identities. They must be the same as at open. This
+    /// changes nothing on a board, so a hold continues.
+    pub fn reopen(&mut self) -> Result<(), HandError> {
+        self.with_link(compare_all)
+    }
+
     /// Opens the port if it is gone, and shakes hands with its boards. They must be the same as at open, with valid
-    /// zeros.
+    /// zeros. Sends no Stop and no terms before every board has proved to be the same.
     pub fn restore(&mut self) -> Result<[Option<Configured>; FINGERS], HandError> {
+        let released = self.link.is_some();
+        match self.with_link(shake_hands) {
+            // The port vanished after the servo had released its link, and may be there again.
+            Err(_) if released && self.link.is_none() && self.reconnect => self.with_link(shake_hands),
+            outcome => outcome,
+        }
+    }
+
+    /// Opens the port if it is gone, and calls `work` with its boards and its link.
+    fn with_link<R>(
+        &mut self,
+        work: impl FnOnce(&mut [KnownBoard], &mut Link<Connection>) -> Result<R, HandError>,
+    ) -> Result<R, HandError> {
         self.checked = false;
-        let Some(first) = self.boards.first().map(|board| board.finger) else { return Ok([None; FINGERS]) };
         let mut link = match self.link.take() {
             Some(link) => link,
-            None if self.reconnect => {
-                let port = Port::open(&self.path, self.baud);
-                let port = port.map_err(|error| HandError::Link { finger: first, source: error.into() })?;
-                Link::new(Connection::from(port))
-            }
-            None => return Err(RecoveryError::NotReconnected(first).into()),
+            None => self.open()?,
         };
-        let outcome = self.shake_hands(&mut link);
+        let outcome = work(&mut self.boards, &mut link);
         let failed = matches!(outcome, Err(HandError::Link { source: LinkError::Port(_), .. }));
         // A failed port is closed by dropping its link. The next attempt opens it. Hardware of the program stays.
         if !failed || link.transport().port().is_none() {
@@ -93,13 +109,15 @@ impl PortRepair {
         outcome
     }
 
-    /// Shakes hands with the boards of the port. They must be the same as at open, with valid zeros.
-    fn shake_hands(&self, link: &mut Link<Connection>) -> Result<[Option<Configured>; FINGERS], HandError> {
-        let mut all = [None; FINGERS];
-        for (board, place) in self.boards.iter().zip(&mut all) {
-            *place = Some(board.shake_hands(link)?);
+    /// Opens the port, which is gone.
+    fn open(&self) -> Result<Link<Connection>, HandError> {
+        let finger = self.boards.first().map_or(FingerNumber::ONE, |board| board.finger);
+        if !self.reconnect {
+            return Err(RecoveryError::NotReconnected(finger).into());
         }
-        Ok(all)
+        let port = Port::open(&self.path, self.baud);
+        let port = port.map_err(|error| HandError::Link { finger, source: error.into() })?;
+        Ok(Link::new(Connection::from(port)))
     }
 
     /// Gives the link back to the servo, and makes every finger of the port recover. For each finger, `stops` has the
@@ -123,8 +141,9 @@ impl PortRepair {
         stops: StopCounts,
         repairs: &AtomicU32,
     ) -> Result<bool, HandError> {
-        let Some(board) = self.boards.get(place) else { return Ok(false) };
-        let configured = board.shake_hands(&mut self.handover.relay)?;
+        let Some(board) = self.boards.get_mut(place) else { return Ok(false) };
+        board.compare(&mut self.handover.relay)?;
+        let configured = board.configure(&mut self.handover.relay)?;
         let board = RestoredFinger { address: board.address, board: RestoredBoard { configured, stops } };
         Ok(self.give(place, board, repairs))
     }
@@ -158,68 +177,70 @@ impl PortRepair {
     }
 }
 
+/// Asks the boards for their identities. They must be the same as at open.
+fn compare_all(boards: &mut [KnownBoard], link: &mut Link<Connection>) -> Result<(), HandError> {
+    boards.iter().try_for_each(|board| board.compare(link))
+}
+
+/// Compares the identities of all boards, and then configures the boards.
+fn shake_hands(
+    boards: &mut [KnownBoard],
+    link: &mut Link<Connection>,
+) -> Result<[Option<Configured>; FINGERS], HandError> {
+    compare_all(boards, link)?;
+    let mut all = [None; FINGERS];
+    for (board, place) in boards.iter_mut().zip(&mut all) {
+        *place = Some(board.configure(link)?);
+    }
+    Ok(all)
+}
+
 impl KnownBoard {
-    /// Stops the board and shakes hands with it. It must be the same as at open, with valid zeros.
-    fn shake_hands<T: Transport>(&self, link: &mut Link<T>) -> Result<Configured, HandError> {
-        let KnownBoard { finger, address, ref terms, .. } = *self;
-        // A board whose port failed has not received a Stop. If cable and power are back before its watchdog trips, the
-        // board still executes its last command.
-        let _ = link.stop(address, 0);
-        let (identity, configured) =
-            link.shake_hands(address, terms, now() + ANSWER).map_err(|source| HandError::Link { finger, source })?;
-        self.check(&identity, configured.status)?;
-        Ok(configured)
+    /// Asks the board for its identity, which must be the same as at open. Changes nothing on the board.
+    fn compare<T: Transport>(&self, link: &mut Link<T>) -> Result<(), HandError> {
+        let deadline = link.transport().now() + ANSWER;
+        let identity = link.identity(self.address, deadline).map_err(|error| self.failed(error))?;
+        match identity == self.identity {
+            true => Ok(()),
+            false => Err(self.faulted(Fault::new(FaultKind::IdentityChanged))),
+        }
     }
 
-    fn check(&self, identity: &Identity, status: Status) -> Result<(), HandError> {
-        let faulted = |fault| Err(HandError::Faulted { finger: self.finger, fault });
-        if *identity != self.identity {
-            return faulted(Fault::new(FaultKind::IdentityChanged));
+    /// Stops the board and agrees on the terms with it. Its zeros must be those of open. Call [`KnownBoard::compare`]
+    /// before, because a Stop and terms are only for the board of open.
+    fn configure<T: Transport>(&mut self, link: &mut Link<T>) -> Result<Configured, HandError> {
+        // A board whose port failed has not received a Stop. If cable and power are back before its watchdog trips, the
+        // board still executes its last command. If another board of the port does not answer `compare_all`, this one
+        // gets no Stop in this attempt, and its watchdog stops it.
+        if self.zero_valid || self.has_io {
+            // Hardware of the program does not confirm a Stop that fails. The terms below stop it again, and report the
+            // error of the program.
+            let _ = link.stop(self.address, 0);
+        } else {
+            // A board that never reports valid zeros has lost them exactly if it has lost its terms. It gets new terms
+            // below, so the finding is kept for the next attempt.
+            let deadline = link.transport().now() + ANSWER;
+            let status = link.confirmed_stop(self.address, deadline).map_err(|error| self.failed(error))?;
+            self.restarted |= !status.has(Status::CONFIGURED);
         }
-        if self.zero_valid && !status.has(Status::ZERO_VALID) {
-            return faulted(Fault::of(FaultKind::ZeroLost, f64::from(status.0)));
+        let deadline = link.transport().now() + ANSWER;
+        let configured = link.agree(self.address, &self.terms, &self.identity, deadline);
+        let configured = configured.map_err(|error| self.failed(error))?;
+        let status = configured.status;
+        match (self.zero_valid || self.restarted) && !status.has(Status::ZERO_VALID) {
+            true => Err(self.faulted(Fault::of(FaultKind::ZeroLost, f64::from(status.0)))),
+            false => Ok(configured),
         }
-        Ok(())
+    }
+
+    fn failed(&self, source: LinkError) -> HandError {
+        HandError::Link { finger: self.finger, source }
+    }
+
+    fn faulted(&self, fault: Fault) -> HandError {
+        HandError::Faulted { finger: self.finger, fault }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::finger::link_handover;
-    use crate::hand::identities::tests::identity;
-    use crate::model::configuration::{ConfiguredFinger, ConfiguredHand};
-
-    /// The check also ensures that the numbers of a hand's boards still differ after a recovery.
-    #[test]
-    fn a_board_with_another_number_is_not_the_one_of_open() {
-        let terms = Terms::new(&ConfiguredHand::default(), &ConfiguredFinger::default());
-        let board =
-            KnownBoard { finger: FingerNumber::ONE, address: 1, terms, identity: identity(5), zero_valid: false };
-        assert!(board.check(&identity(5), Status::default()).is_ok());
-        let error = board.check(&identity(6), Status::default()).expect_err("another board");
-        let changed = |fault: Fault| fault.kind == FaultKind::IdentityChanged;
-        assert!(matches!(error, HandError::Faulted { finger: FingerNumber::ONE, fault } if changed(fault)), "{error}");
-    }
-
-    /// A finger that the servo takes and that faults at once must not have more recoveries than repairs, so its repair
-    /// is counted before the servo gets it. A finger that the servo does not take has no repair.
-    #[test]
-    fn a_repair_is_counted_exactly_if_the_servo_can_take_the_finger() {
-        let (_servo, repair_end) = link_handover();
-        let mut repair = PortRepair::new(PathBuf::new(), 0, false, Vec::new(), repair_end);
-        let repairs = [const { AtomicU32::new(0) }; FINGERS];
-        let counts = || repairs.each_ref().map(|repairs| repairs.load(Ordering::Acquire));
-        let board = RestoredBoard { configured: Configured::default(), stops: StopCounts::default() };
-        let mut give = |place: usize| {
-            let address = place as u8 + 1;
-            (repair.give(place, RestoredFinger { address, board }, &repairs[place]), counts())
-        };
-        assert_eq!(give(1), (true, [0, 1, 0]));
-        assert_eq!(give(2), (false, [0, 1, 0]), "finger 2 still waits");
-        // The servo has released the link without taking finger 2.
-        repair.discard_given(&repairs);
-        repair.discard_given(&repairs);
-        assert_eq!(counts(), [0, 0, 0]);
-    }
-}
+mod tests;

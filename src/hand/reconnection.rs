@@ -82,7 +82,7 @@ fn reconnect(ports: &[Arc<RepairablePort>], stopped: &Receiver<()>) {
                 && !repair.checked
             {
                 // The error is reported to the caller that recovers the finger.
-                let _ = repair.restore();
+                let _ = repair.reopen();
             }
         }
     }

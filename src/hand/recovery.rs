@@ -3,16 +3,17 @@
 //!
 //! The servo releases its link when every finger on it is at rest, because opening a port and shaking hands take too
 //! long for a servo. A recovery call opens the port and shakes hands on the planner's thread. If `finger.reconnect` is
-//! set, a separate thread already tries to do so before the call. If another finger of the port runs, the servo keeps
-//! the link and relays the handshake of the recovering finger.
+//! set, a separate thread already tries to open a failed port before the call. Only a recovery call configures boards,
+//! because that ends a hold. If another finger of the port runs, the servo keeps the link and relays the handshake of
+//! the recovering finger.
 
 use crate::finger::{FingerReport, Mailbox, Stage, StopCounts, stop_calls};
 use crate::hand::reconnection::RepairablePort;
 use crate::hand::{Hand, HandError, RecoveryError};
 use crate::model::FingerNumber;
 use crate::model::configuration::FINGERS;
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, OnceLock};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -29,7 +30,8 @@ const STALL_LIMIT: Duration = Duration::from_secs(5);
 pub struct Recovering {
     /// `None` if the finger is not faulted. Then there is nothing to do.
     task: Option<Task>,
-    begun: Instant,
+    /// Time of the first poll. The servo must take the finger from then on, because `reconnect` may have taken long.
+    polled: OnceLock<Instant>,
 }
 
 struct Task {
@@ -75,7 +77,7 @@ impl Recovering {
             let faulted = matches!(report.stage, Stage::Faulted(_));
             if member == finger {
                 if !faulted {
-                    return Ok(Self { task: None, begun });
+                    return Ok(Self { task: None, polled: OnceLock::new() });
                 }
                 task.place = place;
             }
@@ -85,7 +87,7 @@ impl Recovering {
         // The faulted fingers of the port have counted their faults. A finger that faults later stops this one again.
         let faults = hand.recovery.alarm.faults();
         task.stops.iter_mut().for_each(|stops| stops.faults = faults);
-        Ok(Self { task: Some(task), begun })
+        Ok(Self { task: Some(task), polled: OnceLock::new() })
     }
 
     /// Repairs the connection of the finger, and makes the finger take up slack. If no finger of the port runs, this
@@ -156,6 +158,7 @@ impl Recovering {
     pub fn poll(&self, hand: &Hand) -> Result<bool, HandError> {
         let mut done = true;
         let Some(Task { port, recoveries, place: own, .. }) = &self.task else { return Ok(true) };
+        let waiting = self.polled.get_or_init(Instant::now);
         for (place, &finger) in port.fingers.iter().enumerate() {
             let before = recoveries[place];
             if place != *own && port.repairs[place].load(Ordering::Acquire) == before {
@@ -164,7 +167,7 @@ impl Recovering {
             let report = hand.dispatcher.last_report(finger)?;
             match report.stage {
                 Stage::Faulted(_) if report.recoveries == before => {
-                    if self.begun.elapsed() > STALL_LIMIT {
+                    if waiting.elapsed() > STALL_LIMIT {
                         return Err(HandError::NoAnswer(finger));
                     }
                     done = false;

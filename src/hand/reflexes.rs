@@ -2,7 +2,7 @@
 
 use crate::finger::{Condition, Reaction, Reflex};
 use crate::hand::admission::Admission;
-use crate::hand::{Hand, HandError, ReflexError};
+use crate::hand::{Hand, HandError, ReflexError, SetPointError};
 use crate::model::FingerNumber;
 use nalgebra::Matrix3;
 
@@ -28,13 +28,20 @@ impl Hand {
     /// [`Hand::send_position`] for the pose of [`Reaction::Retract`], and those of [`Hand::send_stiffness`] for the Kx
     /// of [`Reaction::Soften`].
     pub fn install_reflex(&self, finger: i32, reflex: Reflex) -> Result<u32, HandError> {
+        self.install_reflex_with(finger, reflex, reflex.priority.into())
+    }
+
+    /// As [`Self::install_reflex`], but with this priority, which may be outside its range of 0 to 255 in a C program.
+    pub(crate) fn install_reflex_with(&self, finger: i32, reflex: Reflex, priority: i32) -> Result<u32, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;
+        check_finite(&member.admission.read(), reflex.reaction)?;
         let condition = self.condition(finger, reflex.condition)?;
-        let reaction = reaction(&member.admission.read(), reflex.reaction)?;
+        within(finger, "priority", priority.into(), 0.0, u8::MAX.into(), "")?;
         within(finger, "refractory time", reflex.refractory, 0.0, LONGEST, "s")?;
         within(finger, "inhibition", reflex.inhibition, 0.0, LONGEST, "s")?;
-        let installed = member.reflexes.install(Reflex { condition, reaction, ..reflex });
+        let reaction = reaction(&member.admission.read(), reflex.reaction)?;
+        let installed = member.reflexes.install(Reflex { condition, reaction, priority: priority as u8, ..reflex });
         Ok(installed.ok_or(ReflexError::TooMany(finger))?)
     }
 
@@ -87,6 +94,16 @@ impl Hand {
     }
 }
 
+/// Refuses NaN and infinity in the vector or the matrix of a reaction.
+fn check_finite(admission: &Admission, reaction: Reaction) -> Result<(), SetPointError> {
+    match reaction {
+        Reaction::Retract(joints) => admission.finite("Pos", joints.as_slice()),
+        Reaction::Soften(kx) => admission.finite("Kx", kx.as_slice()),
+        Reaction::Grip { direction, .. } => admission.finite("the direction of the grip", direction.as_slice()),
+        Reaction::Stop | Reaction::Hold | Reaction::Damp(_) => Ok(()),
+    }
+}
+
 /// Checks a reaction, and returns it with the pose or the stiffness for the servo.
 fn reaction(admission: &Admission, reaction: Reaction) -> Result<Reaction, HandError> {
     let finger = admission.finger;
@@ -94,8 +111,7 @@ fn reaction(admission: &Admission, reaction: Reaction) -> Result<Reaction, HandE
         Reaction::Stop | Reaction::Hold => reaction,
         Reaction::Retract(joints) => Reaction::Retract(admission.joints(joints.into())?),
         Reaction::Soften(kx) => Reaction::Soften(admission.kx(rows(&kx))?),
-        Reaction::Grip { direction, by, most } => {
-            admission.finite("the direction of the grip", direction.as_slice())?;
+        Reaction::Grip { by, most, .. } => {
             within(finger, "increase of the force", by, 0.0, STRONGEST, "N")?;
             within(finger, "largest force", most, 0.0, STRONGEST, "N")?;
             reaction

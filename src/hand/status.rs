@@ -63,7 +63,8 @@ impl Hand {
             torque_scale: report.cycle.torque_scale,
             stiffness_scale: report.cycle.stiffness_scale,
             calibration: match report.calibration {
-                Some(Verdict::InProgress(progress)) => progress.part,
+                // A fault ends a calibration without another verdict.
+                Some(Verdict::InProgress(progress)) if report.stage == Stage::Calibrating => progress.part,
                 _ => 0.0,
             },
         })

@@ -73,8 +73,8 @@ impl Links {
         jacobian
     }
 
-    /// Returns the distance of the tip from the axis of joint 0, cm: l0 + l1 C1 + l2 C12. A pose with distance zero is
-    /// singular.
+    /// Returns the signed distance of the tip from the axis of joint 0, cm: l0 + l1 C1 + l2 C12. A pose with distance
+    /// zero is singular.
     pub fn reach(&self, theta: &Vector3<f64>) -> f64 {
         let [l0, l1, l2] = self.0;
         l0 + l1 * theta[1].cos() + l2 * (theta[1] + theta[2]).cos()

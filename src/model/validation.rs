@@ -7,6 +7,7 @@ mod motion;
 mod object;
 mod pretension;
 mod ranges;
+mod rotors;
 mod sharing;
 mod simulation;
 mod telemetry;
@@ -142,6 +143,7 @@ impl ConfiguredFinger {
         self.check_controller()?;
         self.check_mechanics()?;
         self.check_pretension()?;
+        self.check_rotors()?;
         self.monitors.check()?;
         self.events.check()?;
         self.touch.check()?;

@@ -17,6 +17,10 @@ const MOST: f64 = 5e-3;
 /// A change of the other clock by more than this number of periods beyond the largest drift is a jump of the clock.
 const JUMP: f64 = 2.0;
 
+/// Longest time from one reading to the next that tells how much the other clock has gained, s. It is shorter than half
+/// a turn of the counter. After a longer time the board may have restarted, and the count does not show it.
+const LONGEST_GAP: f64 = 0.03;
+
 /// Adjusts the period so that its length, measured with the other clock, is the nominal length. The other clock counts
 /// microseconds modulo 65 536 and is read at most once per period.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +50,8 @@ impl Follower {
     /// a count. `periods` is the number of periods until the next cycle: 1, or more if some are skipped.
     ///
     /// The counter wraps. A reading is therefore assumed to be within 32 ms of the expected count. If the other clock
-    /// jumps, for example because the board has restarted, the phase and the rate of the loop stay as they are.
+    /// jumps, for example because the board has restarted, the phase and the rate of the loop stay as they are. They
+    /// also stay if there was no reading for more than 30 ms, because the count then does not show a jump.
     pub fn correction(&mut self, reading: Option<u16>, periods: u64) -> i64 {
         let bound = MOST * self.period;
         let mut wanted = 0.0;
@@ -55,7 +60,8 @@ impl Follower {
             let counts = reading.wrapping_sub(self.last).wrapping_sub(expected as u16) as i16;
             let gained =
                 (expected + i64::from(counts)) * NS_A_COUNT - (self.periods as f64 * self.period).round() as i64;
-            let elapsed = self.periods as f64 * self.period * 1e-9;
+            let since = self.periods as f64 * self.period * 1e-9;
+            let (gained, elapsed) = if since > LONGEST_GAP { (0, 0.0) } else { (gained, since) };
             (self.last, self.periods) = (reading, 0);
             // A jump is a restart of the board or a very late command, and not a difference of the rates.
             let jump = gained.abs() as f64 > MOST * elapsed * 1e9 + JUMP * self.period;
@@ -119,6 +125,19 @@ mod tests {
         for jump in [20_000_000, 60_000_000] {
             let late = |cycle| Some(20_000 + if cycle < 18_500 { 0 } else { jump });
             let (mean, off) = run(100e-6, 20, 0.0, late);
+            assert!((mean - 1e6).abs() < 10.0 && off < 2000.0, "{jump} ns: {mean} {off}");
+        }
+    }
+
+    /// The finger is faulted for 10 s. The board restarts meanwhile, so its clock continues from another count.
+    #[test]
+    fn a_gap_without_readings_does_not_change_the_period() {
+        for jump in [0, 20_000_000] {
+            let (mean, off) = run(100e-6, 34, 0.0, |cycle| match cycle {
+                ..20_000 => Some(20_000),
+                20_000..30_000 => None,
+                30_000.. => Some(20_000 + jump),
+            });
             assert!((mean - 1e6).abs() < 10.0 && off < 2000.0, "{jump} ns: {mean} {off}");
         }
     }

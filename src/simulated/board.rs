@@ -154,9 +154,16 @@ fn answer(fingers: &mut [SimulatedFinger], now: u64, packet: &Packet, damaged: u
         },
         // Answers were rejected above.
         Ok(_) => return None,
-        Err(Malformed::Value { offset, .. }) => {
-            finger.refuses_any_terms().unwrap_or_else(|| refuse(Reason::Value, u16::from(offset)))
-        }
+        Err(Malformed::Value { offset, .. }) => finger.refuses_any_terms().unwrap_or_else(|| {
+            // Only the end state of a Configure can have an undefined value. The fields before it may be wrong too.
+            let earlier = match packet.body() {
+                &[version, low, high, ..] => {
+                    SimulatedFinger::wrong_before_end_state(version, u16::from_le_bytes([low, high]))
+                }
+                _ => None,
+            };
+            refuse(Reason::Value, earlier.unwrap_or(offset.into()))
+        }),
         Err(Malformed::UnknownKind(_) | Malformed::Length { .. }) => {
             refuse(Reason::UnknownFrame, packet.body().len() as u16)
         }

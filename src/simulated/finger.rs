@@ -208,11 +208,8 @@ impl SimulatedFinger {
             return refusal;
         }
         let refuse = |reason, detail| Frame::Refused(Refused { request: 0x2, reason, detail });
-        if terms.version != VERSION {
-            return refuse(Reason::Value, 2);
-        }
-        if terms.watchdog_ms < SHORTEST_WATCHDOG_MS {
-            return refuse(Reason::Value, 3);
+        if let Some(offset) = Self::wrong_before_end_state(terms.version, terms.watchdog_ms) {
+            return refuse(Reason::Value, offset);
         }
         if let Some(motor) = terms.torque_limits.iter().position(|&limit| limit > self.torque_limit) {
             return refuse(Reason::Value, 10 + 2 * motor as u16);
@@ -224,6 +221,15 @@ impl SimulatedFinger {
         self.state = State::Ready;
         let (encoders, gauges) = self.wiring.counts(self.sensors.read(&self.plant));
         Frame::Configured(Configured { terms: *terms, encoders, gauges, status: self.status() })
+    }
+
+    /// Returns the offset of the first wrong field before the end state of a Configure, if there is one.
+    pub(super) fn wrong_before_end_state(version: u8, watchdog_ms: u16) -> Option<u16> {
+        match (version, watchdog_ms) {
+            (VERSION, SHORTEST_WATCHDOG_MS..) => None,
+            (VERSION, _) => Some(3),
+            _ => Some(2),
+        }
     }
 
     /// Returns the refusal if this state refuses every Configure, even one whose terms cannot be decoded.

@@ -105,7 +105,7 @@ impl SimulatedLine {
         self.injected.is_empty() && self.held.is_none() && self.waiting.is_empty()
     }
 
-    /// Transports a frame at `now`, ns, and passes everything that arrives at once to `deliver`.
+    /// Transports a frame at `now`, ns, and passes every frame that has arrived by then to `deliver`.
     pub fn carry(&mut self, now: u64, frame: &[u8], deliver: &mut dyn FnMut(&[u8])) {
         if self.is_good(now) {
             return deliver(frame);

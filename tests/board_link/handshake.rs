@@ -106,6 +106,22 @@ fn a_failed_handshake_names_its_reason() {
 }
 
 #[test]
+fn a_finger_that_does_not_answer_does_not_hide_the_others_of_its_board() {
+    let mut good = board(&[1, 2, 3]);
+    let answer = move |request: Message| {
+        let mut wire = Vec::new();
+        if request.address != 2 {
+            good.receive(0, WireFrame::new(&request).as_bytes(), &mut |answer| wire.extend(answer));
+        }
+        wire
+    };
+    let mut link = Link::new(OtherEnd::new(answer, Vec::new()));
+    let found = link.identities(160 * MS).unwrap();
+    assert_eq!(found.iter().map(|&(address, _)| address).collect::<Vec<_>>(), [1, 3]);
+    assert_eq!(link.transport().now(), 100 * MS);
+}
+
+#[test]
 fn handshake_waits_for_a_board_that_is_starting() {
     let mut asked = 0;
     let mut starting = good_but(|_| {});

@@ -164,6 +164,9 @@ fn refusals() -> Vec<Conversation> {
     // A Configure with an undefined end state, which the codec cannot write.
     let mut end_state_2 = vec![0x21, 9, 1, 20, 0, 2];
     end_state_2.resize(34, 0);
+    // A field before the end state is wrong too.
+    let (mut version_2, mut watchdog_0) = (end_state_2.clone(), end_state_2.clone());
+    (version_2[2], watchdog_0[3]) = (2, 0);
     vec![
         (
             "terms that cannot be kept leave those before",
@@ -175,6 +178,8 @@ fn refusals() -> Vec<Conversation> {
                 configure(Configure { watchdog_ms: 0, ..TERMS }, refused(2, 3)),
                 configure(Configure { watchdog_ms: 0, torque_limits: [u16::MAX; 4], ..TERMS }, refused(2, 3)),
                 raw(&end_state_2, 2, 5),
+                raw(&version_2, 2, 2),
+                raw(&watchdog_0, 2, 3),
                 configure(Configure { torque_limits: [1, u16::MAX, 1, u16::MAX], ..HOLD }, refused(2, 12)),
                 command([10_000, 0, 0, 9_001], ENABLED | Status::TORQUE_CLIPPED),
                 Step::Torques([10_000, 0, 0, 9_000]),

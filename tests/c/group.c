@@ -42,7 +42,8 @@ int main(void)
     Two->position = Far;
     Three->finger = 2;
     Three->tip = Tip;
-    CHECK(sun2xp_send_group(HAND, 0, One) == 0);
+    CHECK(sun2xp_send_group(HAND, 0, One) == 0 && sun2xp_send_group(HAND, 0, NULL) == 0);
+    REFUSED(sun2xp_send_group(HAND, 1, NULL), EFAULT, "set_points");
     CHECK(GetPos(3, Before) == 0);
     REFUSED(sun2xp_send_group(HAND, 3, One), ERANGE, "limits");
     REFUSED(sun2xp_send_group(HAND, 4, One), EINVAL, "0 to 3");

@@ -121,15 +121,45 @@ static void refusals(const struct sun2xp_io *io)
     wrong[1].finger = 4;
     CHECK(sun2xp_open_io(NULL, 2, wrong, &hand) < 0 && errno == EINVAL);
     wrong[0].exchange = NULL;
+    /* The wrong finger of the second element comes before the missing function of the first. */
+    CHECK(sun2xp_open_io(NULL, 2, wrong, &hand) < 0 && errno == EINVAL);
     CHECK(sun2xp_open_io(NULL, 1, wrong, &hand) < 0 && errno == EFAULT);
     CHECK(strstr(sun2xp_error_text(NULL), "io->exchange is a null pointer") != NULL);
     wrong[0] = *io;
     wrong[0].size = sizeof wrong[0] - 1;
     CHECK(sun2xp_open_io(NULL, 1, wrong, &hand) < 0 && errno == EINVAL);
     wrong[0] = *io;
+    wrong[0].shortest_watchdog = -0.01;
+    CHECK(sun2xp_open_io(NULL, 1, wrong, &hand) < 0 && errno == EINVAL);
+    CHECK(strstr(sun2xp_error_text(NULL), "shortest_watchdog of the io of finger 1 is -0.01 s") != NULL);
+    wrong[0].shortest_watchdog = sqrt(-1.0);
+    CHECK(sun2xp_open_io(NULL, 1, wrong, &hand) < 0 && errno == EINVAL);
+    wrong[0] = *io;
     wrong[0].tension_unit = -1;
     CHECK(sun2xp_open_io(NULL, 1, wrong, &hand) < 0 && errno == EINVAL);
     CHECK(hand == NULL && Hardware[0].starts == 0);
+}
+
+static void count_notices(int severity, const char *text, void *user)
+{
+    if (severity == SUN2XP_LOG_WARNING && strstr(text, "SUN2XP_IO_ZERO_LOST") != NULL)
+        ++*(int *)user;
+}
+
+/* Hardware that starts without a zero is opened with a message. */
+static void starts_without_zero(const struct sun2xp_io *io)
+{
+    static const char Text[] = "[hand]\nfingers = [1]\nwatchdog_ms = 200\nend_state = \"release\"\n";
+    sun2xp_hand *hand;
+    int notices = 0;
+
+    CHECK(sun2xp_set_log(count_notices, &notices) == 0);
+    Hardware[0].faults = SUN2XP_IO_ZERO_LOST;
+    CHECK(sun2xp_open_io_text(Text, 1, io, &hand) == 0);
+    CHECK(sun2xp_close(hand) == 0 && sun2xp_set_log(NULL, NULL) == 0);
+    CHECK(notices == 1);
+    memset(&Hardware[0], 0, sizeof Hardware[0]);
+    begin_physics(&Hardware[0].physics);
 }
 
 int main(void)
@@ -152,6 +182,7 @@ int main(void)
         io[i].stop = stop;
     }
     refusals(io);
+    starts_without_zero(io);
     Hardware[0].start_fails = 1;
     CHECK(sun2xp_open_io_text(Text, 3, io, &hand) < 0 && errno == ENODEV);
     Hardware[0].start_fails = 0;

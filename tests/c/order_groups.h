@@ -9,6 +9,12 @@ static void wrong_groups(void)
     Command[0].tip = FarTip;
     REFUSED("sun2xp_send_group", sun2xp_send_group(HAND, 2, Command), "position of the tip");
     Command[0].tip = NULL;
+    Command[1].stiffness = Nan[0];
+    Command[0].position = FarPos;
+    REFUSED("sun2xp_send_group", sun2xp_send_group(HAND, 2, Command), "NaN");
+    Command[0].stiffness = three(Nan);
+    Command[1].stiffness = NULL;
+    REFUSED("sun2xp_send_group", sun2xp_send_group(HAND, 2, Command), "NaN");
     Command[0].position = NanPos;
     REFUSED("sun2xp_send_group", sun2xp_send_group(HAND, 2, Command), "NaN");
     Command[0].position = Pos;
@@ -17,6 +23,9 @@ static void wrong_groups(void)
     Command[0].stiffness = three(Stiff);
     REFUSED("sun2xp_send_group", sun2xp_send_group(HAND, 2, Command), "bound");
     Command[0].stiffness = three(Soft);
+    Command[1].position = FarPos;
+    REFUSED("sun2xp_send_group", sun2xp_send_group(HAND, 2, Command), "limits");
+    Command[1].position = NULL;
     REFUSED("sun2xp_send_group", sun2xp_send_group(HAND, 2, Command), "stop");
 }
 

@@ -14,10 +14,18 @@ static void wrong_reflexes(void)
     Rule.condition = SUN2XP_WHEN_FORCE_ABOVE;
     Rule.reaction = SUN2XP_THEN_SOFTEN;
     Rule.bound = -1;
-    Rule.stiffness[0][0] = -1;
+    Rule.stiffness[0][0] = NAN;
+    Rule.priority = 300;
+    Rule.refractory = 4000;
     REFUSED("sun2xp_install_reflex", sun2xp_install_reflex(HAND, 9, &Rule), NO_FINGER);
+    REFUSED("sun2xp_install_reflex", sun2xp_install_reflex(HAND, 2, &Rule), "NaN");
+    Rule.stiffness[0][0] = -1;
     REFUSED("sun2xp_install_reflex", sun2xp_install_reflex(HAND, 2, &Rule), "force");
     Rule.bound = 1000;
+    REFUSED("sun2xp_install_reflex", sun2xp_install_reflex(HAND, 2, &Rule), "priority");
+    Rule.priority = 255;
+    REFUSED("sun2xp_install_reflex", sun2xp_install_reflex(HAND, 2, &Rule), "refractory");
+    Rule.refractory = 0;
     REFUSED("sun2xp_install_reflex", sun2xp_install_reflex(HAND, 2, &Rule), "Kx");
     Rule.stiffness[0][0] = 1;
     for (count = 0; count < 16; count++)

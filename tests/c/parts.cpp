@@ -48,6 +48,7 @@ static void moves(sun2xp::hand &hand)
         both[index].finger = index + 1;
         both[index].position = there.data();
     }
+    hand.send_group({});
     hand.send_group({both[0], both[1]});
     CHECK(hand.finger(1).wait(sun2xp::until::settled, 20s) && hand.finger(2).wait(sun2xp::until::settled, 20s));
     const sun2xp::vector3 at = hand.finger(2).position();
@@ -84,6 +85,8 @@ static void is_called_once(sun2xp::hand &hand)
     });
     hand.finger(2).send_position({0.0, 0.5, 0.9});
     CHECK(found.get_future().get());
+    // Waits until the callback has returned, because it uses the variables of this function.
+    hand.on_event(nullptr);
 }
 
 static void knows_itself(sun2xp::hand &hand)

@@ -1,4 +1,4 @@
-/* Every refusal of an open hand: its errno and text, and outputs that stay unchanged. The hand keeps running. */
+/* Refusals of an open hand: each has its errno and text, and leaves outputs unchanged. The hand keeps running. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 //! The shared library and the static library.
 
-use crate::c::{Bench, c_compiler, library, root, said};
+use crate::c::{Bench, STRICT, c_compiler, library, root, said};
 use std::fs;
 use std::process::Command;
 
@@ -44,4 +44,41 @@ fn the_library_has_its_name_and_stays_loaded() {
     let dynamic = said(&run);
     assert!(dynamic.contains("[libsun2xp.so.0]"), "{dynamic}");
     assert!(dynamic.contains("NODELETE"), "{dynamic}");
+}
+
+/// The calls of libsun2xp_remote that `stub_remote.c` does not have, and that `stub_planner.c` does not need.
+const UNUSED: [&str; 17] = [
+    "error",
+    "open",
+    "send_position",
+    "send_stiffness",
+    "send_tip",
+    "send_damping",
+    "tip",
+    "status",
+    "limits",
+    "fault",
+    "stop",
+    "recover",
+    "zero",
+    "identify",
+    "wait",
+    "next_event",
+    "wait_event",
+];
+
+#[test]
+fn calls_for_a_hand_of_another_machine_reach_the_loaded_library() {
+    let bench = Bench::new();
+    let program = bench.build(c_compiler(), &[STRICT, &["-std=c99"]].concat(), &["stub_planner.c"]);
+    let unused = UNUSED.map(|call| format!("int sun2xp_{call}(void) {{ return -1; }}\n")).concat();
+    let unused = bench.write("unused.c", &unused);
+    fs::create_dir(bench.path().join("sun2xp-remote")).expect("a folder");
+    let mut compiler = Command::new(c_compiler());
+    compiler.args(["-shared", "-fPIC", "-I"]).arg(root().join("include"));
+    compiler.arg("-o").arg(bench.path().join("sun2xp-remote/libsun2xp_remote.so.0"));
+    let built = compiler.arg(root().join("tests/c/stub_remote.c")).arg(unused).output().expect("the compiler runs");
+    assert!(built.status.success(), "{}", said(&built));
+    let run = bench.run(Command::new(&program));
+    assert!(run.status.success(), "{}", said(&run));
 }

@@ -97,6 +97,12 @@ fn a_hand_with_drives_at_a_can_bus_moves() {
 }
 
 #[test]
+fn late_frames_of_a_can_bus_make_no_sample() {
+    let examples = c::root().join("c_examples");
+    succeed(&strict(&["-std=gnu99", "-I", examples.to_str().expect("the path is text")]), &["late_frames.c"]);
+}
+
+#[test]
 fn null_pointers_are_refused() {
     succeed(&strict(&["-ansi"]), &["null.c"]);
 }

@@ -143,7 +143,7 @@ impl<W: Transport + Clock + Clone> ServedFinger<W> {
         let (recorder, black_box) = BlackBox::new(configuration, FingerNumber::ONE);
         let stiffness = finger.initial_stiffness();
         let (finger, mailbox) =
-            FingerServo::new(belief, FingerNumber::ONE, stiffness, &identity, &configured, producer, recorder)
+            FingerServo::new(belief, FingerNumber::ONE, stiffness, &identity, &configured, (producer, recorder))
                 .expect("a finger");
         let (finger, reflexes) = finger.with_reflexes(FingerNumber::ONE, &Bulletin::new());
         let (touch, events) = (finger.touch().clone(), finger.event_log().clone());

@@ -12,7 +12,7 @@ fn turned(cycle: u64) -> Vector3<f64> {
     Vector3::new(1.0, 9.7 * angle.cos(), 9.7 * angle.sin())
 }
 
-/// Turns the finger for some cycles. The planner sends gravity every two periods, and a set point in each of them.
+/// Turns the finger for some cycles. The planner sends gravity and a set point every two periods.
 fn turn(bench: &mut Bench, cycles: u64) {
     for cycle in 0..cycles / 2 {
         let gravity = turned(2 * cycle);

@@ -1,9 +1,11 @@
 //! One finger from planner to board in memory, on simulated time: the set points that it holds, its faults and its
 //! warnings.
 
+mod black_box;
 mod calibrating;
 mod commands;
 mod continuous_replay;
+mod corrections;
 mod events;
 #[allow(dead_code)]
 #[path = "../common/finger_on_a_cable.rs"]

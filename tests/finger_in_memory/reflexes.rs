@@ -102,6 +102,25 @@ fn an_inhibited_planner_is_not_followed_for_a_time() {
     assert_eq!((bench.report().set_point.joints, bench.report().set_point.damping), (back, 1.1));
 }
 
+/// The second rule reacts one cycle after the first. Its shorter inhibition does not end that of the first.
+#[test]
+fn a_later_reaction_does_not_shorten_an_inhibition() {
+    let mut bench = Bench::new();
+    bench.goes(Vector3::new(0.1, 0.5, 1.0));
+    let above = Condition::JointAbove { joint: 2, angle: 0.8 };
+    let back = Vector3::new(0.0, 0.4, 0.9);
+    let retract = Reflex { priority: 1, inhibition: 0.5, ..rule(above, Reaction::Retract(back)) };
+    let soften = Reflex { inhibition: 0.05, ..rule(above, Reaction::Soften(Matrix3::identity() * 0.5)) };
+    let numbers = [retract, soften].map(|reflex| bench.reflexes.install(reflex).expect("a place"));
+    bench.cycles(3);
+    assert_eq!(fired(&mut bench), numbers);
+    for _ in 0..450 {
+        bench.mailbox.send(|set_point| set_point.joints = Vector3::new(0.1, 0.6, 1.3)).expect("not faulted");
+        bench.cycles(1);
+        assert_eq!(bench.report().set_point.joints, back);
+    }
+}
+
 #[test]
 fn silence_of_the_planner_and_a_stop() {
     let mut bench = Bench::new();

@@ -3,12 +3,14 @@
 
 use crate::finger_on_a_cable::{Hooks, ServedFinger, World};
 use nalgebra::Vector3;
+use std::cell::RefCell;
+use std::rc::Rc;
 use sun2xp::board::protocol::{Frame, Message, WireFrame};
 use sun2xp::board::{PortError, Terms, Transport};
 use sun2xp::finger::events::EventReader;
 use sun2xp::finger::{
     BlackBox, Elements, Fault, FaultKind, FingerReport, GroupGate, LinkRepairEnd, Mailbox, Reflexes, RepairedLink,
-    RestoredBoard, Servo, Stage, StopCounts, stop_calls,
+    Replaced, RestoredBoard, Servo, Stage, StopCounts, stop_calls,
 };
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, Schedule};
@@ -28,6 +30,8 @@ pub struct Line {
     instead: Option<Read>,
     /// The frame that every read returns instead of the board's answers.
     flood: Option<Flood>,
+    /// The mailbox in which the last set point will be corrected, and the number of readings of the clock until then.
+    correction: RefCell<Option<(u32, Rc<Mailbox>)>>,
 }
 
 /// A frame that is repeated without end.
@@ -60,13 +64,27 @@ impl Hooks for Line {
             None => cable.read_until(buffer, deadline),
         }
     }
+
+    fn now(&self, cable: &SimulatedCable) -> u64 {
+        let mut correction = self.correction.borrow_mut();
+        if let Some((left, mailbox)) = &mut *correction {
+            if *left == 0 {
+                let sent = mailbox.sent();
+                mailbox.correct(Replaced::Place, &sent, sent).expect("not faulted");
+                *correction = None;
+            } else {
+                *left -= 1;
+            }
+        }
+        cable.now()
+    }
 }
 
 /// Finger 1 with its servo, link and board.
 pub struct Bench {
     pub world: World<Line>,
     pub servo: Servo<World<Line>, World<Line>>,
-    pub mailbox: Mailbox,
+    pub mailbox: Rc<Mailbox>,
     pub touch: Elements,
     pub reflexes: Reflexes,
     pub black_box: BlackBox,
@@ -104,7 +122,7 @@ impl Bench {
         let schedule = Schedule::new(Clock::now(&world) + MILLISECOND, MILLISECOND);
         let ServedFinger { servo, mailbox, repair_end, touch, reflexes, events, black_box, .. } =
             ServedFinger::in_thread(&world, &configuration, &belief, schedule, |finger| finger.in_groups(gate.clone()));
-        let events = events.reader();
+        let (events, mailbox) = (events.reader(), Rc::new(mailbox));
         Self { world, servo, mailbox, black_box, touch, reflexes, events, gate, repair_end, configuration }
     }
 
@@ -156,6 +174,17 @@ impl Bench {
 
     pub fn end_flood(&self) {
         self.world.place().hooks.flood = None;
+    }
+
+    /// Corrects the last set point when the servo has read the clock `readings` times and reads it again. The
+    /// correction changes no value.
+    pub fn correct_after(&self, readings: u32) {
+        self.world.place().hooks.correction = RefCell::new(Some((readings, self.mailbox.clone())));
+    }
+
+    /// Returns whether the correction of [`Bench::correct_after`] has been made.
+    pub fn corrected(&self) -> bool {
+        self.world.place().hooks.correction.borrow().is_none()
     }
 
     /// Sends this frame to the finger's board, as another program on the same port would. The first reader of the port

@@ -1,6 +1,6 @@
 //! Planners that are slow or that hang: set points that are interpolated, and set points that expire.
 
-use crate::motion::{Track, configuration, joints, send};
+use crate::motion::{Track, configuration, joints, plan, send};
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -232,4 +232,62 @@ fn a_renewal_of_a_discarded_set_point_does_not_shorten_a_later_one() {
     bench.cycles(1000);
     assert!(!bench.report().expired);
     assert_eq!(bench.report().set_point.joints, TARGET);
+}
+
+/// Returns a finger whose reflex has just fired, with an inhibition of `inhibition`, s. The set point that the planner
+/// has sent before is valid for 100 ms.
+fn held_by_a_reflex(inhibition: f64) -> Bench {
+    let mut bench = Bench::new();
+    bench.goes(TARGET);
+    bench.mailbox.try_send((Replaced::Place, validity(100, 5000)), to_target).expect("not faulted").expect("admitted");
+    let (condition, reaction) = (Condition::JointAbove { joint: 2, angle: 0.5 }, Reaction::Hold);
+    let reflex = Reflex { condition, reaction, priority: 0, refractory: 0.0, inhibition };
+    bench.reflexes.install(reflex).expect("a place");
+    bench.cycles(2);
+    bench
+}
+
+#[test]
+fn a_planner_that_a_reflex_inhibits_is_not_silent() {
+    let mut bench = held_by_a_reflex(0.5);
+    for _ in 0..100 {
+        bench.cycles(10);
+        let sent = bench.mailbox.try_send((Replaced::Place, validity(100, 200)), to_target);
+        sent.expect("not faulted").expect("admitted");
+        assert_eq!((bench.stage(), bench.report().expired), (Stage::Running, false));
+    }
+}
+
+/// The planner sends nothing more until the path would end.
+#[test]
+fn a_path_that_a_reflex_inhibits_is_valid_until_its_end() {
+    let mut bench = held_by_a_reflex(0.3);
+    let report = bench.report();
+    let path = plan(&report.reference, &[joints(2.0, [0.3, 0.7, 1.2])]);
+    let valid = (report.springs, report.reference.period, validity(100, 5000));
+    let sent = bench.mailbox.send_path(valid, &path.table(), to_target);
+    assert!(matches!(sent, Ok(Ok(Some(_)))), "{sent:?}");
+    bench.cycles(2050);
+    assert!(!bench.report().expired);
+    bench.cycles(100);
+    assert!(bench.report().expired);
+}
+
+/// The finger did not follow the set point during the inhibition, and does not follow it later either.
+#[test]
+fn a_set_point_that_was_discarded_before_an_expiry_stays_discarded() {
+    let mut bench = held_by_a_reflex(0.3);
+    let sent = bench.mailbox.try_send((Replaced::Place, validity(100, 5000)), |set_point| {
+        set_point.joints = TARGET + Vector3::new(0.1, 0.1, 0.1);
+        Ok::<(), ()>(())
+    });
+    sent.expect("not faulted").expect("admitted");
+    bench.cycles(400);
+    let held = bench.report();
+    assert!(held.expired);
+    bench.mailbox.send(|set_point| set_point.stiffness *= 2.0).expect("not faulted");
+    bench.cycles(2);
+    let report = bench.report();
+    assert_eq!(report.set_point.joints, held.set_point.joints);
+    assert_eq!(report.set_point.stiffness, held.set_point.stiffness * 2.0);
 }

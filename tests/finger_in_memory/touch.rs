@@ -125,7 +125,7 @@ fn a_burst_of_touches_is_counted() {
     assert_eq!(bench.fault(), None);
 }
 
-/// A board with fewer or more elements than configured.
+/// A board with more elements than configured.
 #[test]
 fn an_element_that_is_not_configured_is_counted() {
     let mut bench = Bench::believing(two_elements, |belief| belief.fingers[0].touch.elements.truncate(1));
@@ -188,7 +188,8 @@ fn events_that_were_lost_before_a_reset_of_the_board_count_once() {
     assert_eq!(bench.touch.lost(), lost);
 }
 
-/// The board takes the force at its start for a force of zero, so it never reports the end of that contact.
+/// A board that was reset assumes that no element is pressed, so it never reports the end of a contact from before the
+/// reset.
 #[test]
 fn a_reset_of_the_board_makes_its_readings_invalid() {
     let mut bench = Bench::with(two_elements);

@@ -74,7 +74,7 @@ impl GraspingHand {
             let (recorder, black_box) = BlackBox::new(&configuration, number);
             let stiffness = finger.initial_stiffness();
             let (servo, mailbox) =
-                FingerServo::new(&configuration, number, stiffness, &identity, &configured, producer, recorder)
+                FingerServo::new(&configuration, number, stiffness, &identity, &configured, (producer, recorder))
                     .expect("a finger");
             let (servo, rules) = servo.with_reflexes(number, &bulletin);
             fingers.push(servo);

@@ -122,6 +122,37 @@ fn lost_exchanges_fault_the_finger_and_it_recovers() {
     assert_eq!(switches.lock().stops, 2);
 }
 
+/// The start takes longer than a servo may take to accept the finger.
+#[test]
+fn a_finger_recovers_although_its_hardware_starts_slowly() {
+    let (hand, switches) = open(&patient(), &[1], true).expect("open");
+    hand.stop(1).expect("finger 1");
+    assert_eq!(fault(&hand, 1), FaultKind::FingerStopCall);
+    switches[0].lock().start_takes = Some(Duration::from_millis(5100));
+    hand.recover(1).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(hand.report(1).expect("a report").stage, Stage::Running);
+    assert_eq!(switches[0].lock().starts, 2);
+}
+
+/// Hardware that starts without a reference for its encoder counts, and whose stop fails.
+#[test]
+fn a_recovery_reports_the_error_of_a_stop_although_the_zeros_were_lost() {
+    let configuration = patient();
+    let hardware = PlantIo::new(&configuration, FingerNumber::ONE, true);
+    let switches = hardware.switches.clone();
+    switches.lock().faults = io::IoFaults::ZERO_LOST;
+    let hand = Hand::open_with_io(configuration, [Some(Box::new(hardware) as Box<dyn FingerIo>), None, None]);
+    let hand = hand.expect("open");
+    switches.lock().stops_fail = u32::MAX;
+    hand.stop(1).expect("finger 1");
+    assert_eq!(fault(&hand, 1), FaultKind::FingerStopCall);
+    let refused = hand.recover(1).expect_err("the hardware does not stop");
+    assert!(refused.errno() == libc::EIO && refused.to_string().contains("failed to stop"), "{refused}");
+    switches.lock().stops_fail = 0;
+    hand.recover(1).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(starts_and_stops(&switches), (2, 1));
+}
+
 #[test]
 fn faults_of_the_hardware_fault_the_finger() {
     let (hand, switches) = open(&patient(), &[1, 2, 3], false).expect("open");

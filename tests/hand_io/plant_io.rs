@@ -17,6 +17,8 @@ use sun2xp::realtime::Mutex;
 pub struct Switchboard {
     /// The errno with which every start fails, if any.
     pub start_fails: Option<i32>,
+    /// Duration of the next start.
+    pub start_takes: Option<Duration>,
     /// The errno with which every exchange fails, if any.
     pub exchange_fails: Option<i32>,
     /// Number of stops that still fail.
@@ -92,6 +94,7 @@ impl FingerIo for PlantIo {
     fn start(&mut self, terms: &IoTerms) -> io::Result<IoSample> {
         let mut switches = self.switches.lock();
         fails(switches.start_fails)?;
+        switches.start_takes.take().into_iter().for_each(sleep);
         assert_eq!(switches.starts, switches.stops, "every start is followed by a stop before the next start");
         switches.starts += 1;
         switches.terms = Some(*terms);

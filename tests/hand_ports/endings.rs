@@ -149,6 +149,8 @@ fn an_emergency_stop_releases_at_once_or_holds_for_a_while_as_configured() {
         let mut configuration = on_boards(&boards);
         configuration.hand.end_state = end_state;
         (configuration.hand.hold_time_ms, configuration.hand.hold_torque_limit) = (1500, MOST_HELD);
+        // The thread that reopens ports must not end a hold.
+        configuration.fingers[1].reconnect = true;
         let hand = open(configuration);
         goes(&hand, 2, TARGET);
         stop_all();

@@ -2,13 +2,18 @@
 
 use crate::pauses::name_pauses;
 use crate::recovery::{fault, faults, held, recovers};
-use crate::rig::{Board, TARGET, close, goes, on_boards, on_ports, open, three_boards, turn, wait_until};
+use crate::rig::{Board, TARGET, close, goes, on_boards, on_one_port, on_ports, open, three_boards, turn, wait_until};
 use std::fs;
 use std::path::Path;
+use std::time::Duration;
+use sun2xp::board::LinkError;
 use sun2xp::board::protocol::Status;
 use sun2xp::finger::FaultKind;
-use sun2xp::hand::{Hand, HandError};
+use sun2xp::hand::{Hand, HandError, stop_all};
 use sun2xp::model::FingerNumber;
+use sun2xp::model::configuration::Configuration;
+use sun2xp::realtime::Priority;
+use sun2xp::simulated::{Defect, Pace, SimulatedBoard, SimulatedPort};
 
 /// Three boards with a finger each, and their hand. The port of finger 2 is behind a link and may be reconnected.
 fn with_finger_2_on_a_link(folder: &Path) -> ([Board; 3], Hand) {
@@ -45,7 +50,7 @@ fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
     assert_eq!(faults(&hand, 2), FaultKind::PortVanished);
     let mut other = Board::start_with(&["--link", &at(folder.path()), "--config", &file.to_string_lossy()], &["2"]);
     refused(FaultKind::IdentityChanged);
-    assert!(!other.state(2).has(Status::ENABLED) && other.state(2).limp());
+    assert!(!other.state(2).has(Status::CONFIGURED | Status::ENABLED) && other.state(2).limp());
     other.kill();
     let mut forgetful = Board::start_at(&at(folder.path()), &["2"]);
     forgetful.order("zero-lost 2");
@@ -54,6 +59,35 @@ fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
     forgetful.order("mend 2");
     wait_until("recovered", || hand.recover(2).is_ok());
     goes(&hand, 2, TARGET);
+    close(hand);
+}
+
+/// Such a board never reports valid zeros. A restart is visible only because the board has lost its terms.
+#[test]
+fn a_finger_does_not_recover_if_a_board_that_does_not_keep_its_zeros_has_restarted() {
+    let _turn = turn();
+    let mut board = SimulatedBoard::new(&Configuration::default(), &FingerNumber::ALL).expect("a board");
+    assert!(board.finger(2).expect("finger 2").inject(&Defect::ZeroLost));
+    let board = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a port");
+    let hand = open(on_one_port(&board.path().to_string_lossy(), 2_000_000));
+    hand.stop(2).expect("a finger");
+    assert_eq!(faults(&hand, 2), FaultKind::FingerStopCall);
+    recovers(&hand, 2);
+    board.with_finger(2, |finger| finger.reset()).expect("finger 2");
+    assert_eq!(faults(&hand, 2), FaultKind::BoardReset);
+    let refused = || match hand.recover(2) {
+        Err(HandError::Faulted { finger: FingerNumber::TWO, fault }) => assert_eq!(fault.kind, FaultKind::ZeroLost),
+        other => panic!("not refused for its zero: {other:?}"),
+    };
+    // The first recovery gives the board its terms again. The neighbours run.
+    refused();
+    refused();
+    // The next one repairs the whole port.
+    stop_all();
+    for finger in [1, 3] {
+        assert_eq!(faults(&hand, finger), FaultKind::EmergencyStopCall);
+    }
+    refused();
     close(hand);
 }
 
@@ -72,6 +106,12 @@ fn a_port_that_is_not_to_be_reconnected_stays_away() {
 
 fn at(folder: &Path) -> String {
     folder.join("board-2").to_string_lossy().into_owned()
+}
+
+/// Whether this process has the port open.
+fn opened(port: &str) -> bool {
+    let descriptors = fs::read_dir("/proc/self/fd").expect("descriptors").flatten();
+    descriptors.filter_map(|descriptor| fs::read_link(descriptor.path()).ok()).any(|file| file == Path::new(port))
 }
 
 /// `SUN2XP_ROUNDS=100 cargo test --test hand_ports unplugged -- --nocapture` runs more rounds.
@@ -101,6 +141,26 @@ fn a_board_that_is_unplugged_again_and_again_recovers_and_nothing_leaks() {
     close(hand);
 }
 
+/// The servo does not use the link of a stopped finger, so it does not notice that the port vanishes.
+#[test]
+fn a_port_that_vanishes_while_its_finger_is_stopped_is_opened_again_by_the_recovery() {
+    let _turn = turn();
+    let folder = tempfile::tempdir().expect("a folder");
+    let ([_first, mut second, _third], hand) = with_finger_2_on_a_link(folder.path());
+    hand.stop(2).expect("a finger");
+    assert_eq!(faults(&hand, 2), FaultKind::FingerStopCall);
+    second.kill();
+    let _second = Board::start_at(&at(folder.path()), &["2"]);
+    wait_until("recovered", || match hand.recover(2) {
+        Ok(()) => true,
+        Err(HandError::Link { source: LinkError::Port(error), .. }) => panic!("{error}"),
+        // A busy machine delays the answers of the board.
+        Err(_) => false,
+    });
+    goes(&hand, 2, TARGET);
+    close(hand);
+}
+
 #[test]
 fn a_finger_recovers_only_on_request() {
     let _turn = turn();
@@ -109,9 +169,14 @@ fn a_finger_recovers_only_on_request() {
     second.kill();
     faults(&hand, 2);
     let mut second = Board::start_at(&at(folder.path()), &["2"]);
-    // The library has found and configured the board, but has not moved it.
-    let state = second.wait_for(2, "configured", |state| state.has(Status::CONFIGURED));
-    assert!(!state.has(Status::ENABLED) && state.limp(), "{state:?}");
+    // The library opens the port and asks for the identity, but does not configure the board.
+    wait_until("reopened", || opened(&second.port));
+    for _ in 0..200 {
+        let state = second.state(2);
+        assert!(!state.has(Status::CONFIGURED | Status::ENABLED) && state.limp(), "{state:?}");
+        // The queries must go on until the Hello is answered.
+        std::thread::sleep(Duration::from_millis(1));
+    }
     assert_eq!(fault(&hand, 2), Some(FaultKind::PortVanished));
     recovers(&hand, 2);
     assert!(second.state(2).has(Status::ENABLED));

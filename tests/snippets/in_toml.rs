@@ -1,7 +1,7 @@
 //! The snippets of configuration files.
 
 use crate::pages::{in_language, pages};
-use sun2xp::hand::parse_configuration;
+use sun2xp::hand::Configured;
 
 #[test]
 fn every_snippet_of_a_configuration_is_accepted() {
@@ -9,7 +9,7 @@ fn every_snippet_of_a_configuration_is_accepted() {
     let blocks = in_language(&pages, "toml");
     assert!(blocks.len() >= 15, "{} snippets were found", blocks.len());
     for block in blocks {
-        if let Err(error) = parse_configuration(block.text) {
+        if let Err(error) = Configured::from_text(block.text) {
             panic!("{}: {error}\n{}", block.page, block.text);
         }
     }

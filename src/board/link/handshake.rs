@@ -1,11 +1,11 @@
-//! The requests outside the servo's cycle. Those for the board's identity and terms are repeated until the board
-//! answers. A Stop is sent once for each call.
+//! The requests outside the servo's cycle. They are repeated until the board answers. Only [`Link::stop`] sends its
+//! request once.
 
 use super::{Allowance, Link};
 use crate::board::link_error::LinkError;
 use crate::board::protocol::{
     ANY_ADDRESS, Configure, Configured, Frame, HIGHEST_ADDRESS, Hello, Identity, Kind, MAX_WIRE, Message, Reason,
-    Refused, Stop, VERSION, WireFrame,
+    Refused, Status, Stop, VERSION, WireFrame,
 };
 use crate::board::terms::Terms;
 use crate::board::transport::Transport;
@@ -26,23 +26,54 @@ impl<T: Transport> Link<T> {
         terms: &Terms,
         deadline: u64,
     ) -> Result<(Identity, Configured), LinkError> {
-        self.transport.discard_input()?;
-        self.unread = 0..0;
-        let identity = self.identify(address, deadline)?;
-        let configure = terms.configure(&identity)?;
-        let configured = self.configure(address, configure, deadline)?;
+        let identity = self.identity(address, deadline)?;
+        let configured = self.agree(address, terms, &identity, deadline)?;
         Ok((identity, configured))
     }
 
-    /// Asks every finger at the port for its identity, and returns the fingers by their addresses. Sends only Hello,
-    /// which changes nothing on a board. Waits until `deadline` (ns on the transport's clock) for the first answer.
+    /// Asks the finger with this address, 1 to 15, for its identity. Sends only Hello, which changes nothing on a
+    /// board. Retries until `deadline` (ns on the transport's clock).
+    ///
+    /// Do not call this in the servo's cycle, because it discards Replies of other fingers on the port.
+    pub fn identity(&mut self, address: u8, deadline: u64) -> Result<Identity, LinkError> {
+        self.transport.discard_input()?;
+        self.unread = 0..0;
+        self.identify(address, deadline)
+    }
+
+    /// Agrees on `terms` with the finger with this address and identity. The motors stay off. A hold ends. Retries
+    /// until `deadline` (ns on the transport's clock).
+    ///
+    /// Do not call this in the servo's cycle, because it discards Replies of other fingers on the port.
+    pub fn agree(
+        &mut self,
+        address: u8,
+        terms: &Terms,
+        identity: &Identity,
+        deadline: u64,
+    ) -> Result<Configured, LinkError> {
+        let configure = terms.configure(identity)?;
+        self.configure(address, configure, deadline)
+    }
+
+    /// Asks every finger at the port for its identity, and returns the fingers that answer, by their addresses. Sends
+    /// only Hello, which changes nothing on a board. Waits until `deadline` (ns on the transport's clock) for the first
+    /// answer, and then 100 ms for each other finger of the board.
+    ///
+    /// # Errors
+    /// Returns an error if the port fails, or if no finger answers.
     pub fn identities(&mut self, deadline: u64) -> Result<Vec<(u8, Identity)>, LinkError> {
         let (first, identity) = self.first_identity(deadline)?;
         let mut found = vec![(first, identity)];
         for address in (1..=HIGHEST_ADDRESS).filter(|&address| address != first) {
             if identity.addresses & 1 << address != 0 {
                 let deadline = self.transport.now() + 2 * PATIENCE;
-                found.push((address, self.identify(address, deadline)?));
+                match self.identify(address, deadline) {
+                    Ok(identity) => found.push((address, identity)),
+                    Err(LinkError::Port(error)) => return Err(error.into()),
+                    // A defective finger must not hide the others of its board.
+                    Err(_) => {}
+                }
             }
         }
         found.sort_by_key(|&(address, _)| address);
@@ -140,6 +171,20 @@ impl<T: Transport> Link<T> {
     pub fn stop(&mut self, address: u8, deadline: u64) -> Result<bool, LinkError> {
         let answer = self.exchange(address, Frame::Stop(Stop), deadline)?;
         Ok(matches!(answer, Some(Message { frame: Frame::Stopped(_), .. })))
+    }
+
+    /// Stops the finger and returns its status. Repeats the Stop until the finger confirms it. Returns an error at
+    /// `deadline` (ns on the transport's clock).
+    pub fn confirmed_stop(&mut self, address: u8, deadline: u64) -> Result<Status, LinkError> {
+        while self.transport.now() < deadline {
+            let Some(answer) = self.exchange(address, Frame::Stop(Stop), deadline)? else { continue };
+            match answer.frame {
+                Frame::Stopped(stopped) => return Ok(stopped.status),
+                Frame::Refused(refused) => return Err(LinkError::Refused { address, refused }),
+                _ => {}
+            }
+        }
+        Err(LinkError::Unanswered { address, request: Kind::Stop })
     }
 
     /// Sends a request and waits for its answer or refusal until `deadline`, at most for [`PATIENCE`].

@@ -1,4 +1,4 @@
-//! Decides whether a finger touches something: thresholds with hysteresis, and the constant error of the torques.
+//! Decides whether a finger touches something: thresholds with hysteresis, and the slowly varying error of the torques.
 
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;

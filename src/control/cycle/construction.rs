@@ -21,6 +21,7 @@ use crate::control::tendons::gains::Gains;
 use crate::control::tendons::low_pass::LowPass;
 use crate::control::tendons::tendon_controller::TendonController;
 use crate::control::tendons::tension_distribution::TensionDistribution;
+use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Scheme, Unusable};
 use nalgebra::{Vector3, Vector4};
 
@@ -75,6 +76,7 @@ impl Controller {
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
         positive("motor.thermal_time", &[finger.motor.thermal_time])?;
         let soft = || Unusable { key: "tendon.stiffness", reason: "cannot hold every joint: check geometry.r".into() };
+        check_continuous_torque(finger, &motor_torque, &tendons, state_feedback.as_ref())?;
         let admissible = AdmissibleStiffness::new(finger, &tendons, rate).ok_or_else(soft)?;
         Ok(Self {
             spring_transition: SpringTransition::new(rate),
@@ -105,5 +107,43 @@ impl Controller {
             radius: tendons.radius * 0.01,
             tight: TIGHT * finger.tendon.minimum,
         })
+    }
+}
+
+/// Checks that warm motors can hold the tensions of a finger at rest against friction. State feedback holds higher
+/// tensions than the pretension. Otherwise a finger that does nothing would overheat.
+fn check_continuous_torque(
+    finger: &ConfiguredFinger,
+    motor_torque: &MotorTorque,
+    tendons: &Tendons,
+    law: Option<&StateFeedback>,
+) -> Result<(), Unusable> {
+    let Some(law) = law else { return Ok(()) };
+    let at_rest = tendons.pretension(finger.tendon.minimum + law.lower_reserve);
+    let held = motor_torque.tensions(&Vector4::from(finger.motor.continuous_torque).component_div(&tendons.radius));
+    let Some(motor) = (0..4).find(|&motor| held[motor] < at_rest[motor]) else { return Ok(()) };
+    let reason = format!(
+        "lets motor {} hold {:.2} N against friction, but at zero joint torque state feedback holds {:.2} N in its \
+         tendon: raise it, or lower tendon.minimum",
+        motor + 1,
+        held[motor],
+        at_rest[motor]
+    );
+    Err(Unusable { key: "motor.continuous_torque", reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_warm_motor_must_hold_the_tensions_of_a_finger_at_rest() {
+        let mut finger = ConfiguredFinger::default();
+        finger.motor.continuous_torque = [0.56; 4];
+        assert_eq!(finger.check(), Ok(()));
+        let refused = Controller::new(&finger, 1000.0).map(|_| ()).map_err(|unusable| unusable.key);
+        assert_eq!(refused, Err("motor.continuous_torque"));
+        finger.controller.scheme = Some(Scheme::Figure10);
+        assert!(Controller::new(&finger, 1000.0).is_ok());
     }
 }

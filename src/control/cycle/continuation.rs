@@ -1,7 +1,7 @@
 //! Continues from an earlier state: with another controller, or anew after the motors were off or replies were lost.
 
-use super::{Controller, State};
-use crate::control::signals::{Activity, Feedback, MotorCommand, Report};
+use super::{Controller, Doing, State};
+use crate::control::signals::{Activity, Feedback, MotorCommand, Report, SetPoint};
 
 impl Controller {
     /// Runs one cycle that continues without a jump in torque from the state of `previous`, another controller of the
@@ -26,12 +26,28 @@ impl Controller {
             pulls.component_mul_assign(&ratio);
         }
         state.heat.scale(&ratio);
+        match &mut state.doing {
+            Doing::TakingUpSlack(slack) => slack.change_radius(&ratio),
+            Doing::Releasing(release) => release.scale(&ratio),
+            _ => {}
+        }
         if let (Some(law), Some(old), Some(elastic)) =
             (&self.state_feedback, &previous.state_feedback, &mut state.state_feedback)
         {
             law.take_over(old, elastic);
         }
         self.cycle(state, feedback, activity)
+    }
+
+    /// Notes that a path begins in the next cycle. The path may differ from the motion of the set point until now. The
+    /// reference then reaches the path through the filter that smooths steps. `set_point` is the set point of that
+    /// cycle.
+    pub fn begin_path(&self, state: &mut State, set_point: &SetPoint) {
+        if let (Some(law), Some(elastic), Some(motion)) =
+            (&self.state_feedback, &mut state.state_feedback, &set_point.motion)
+        {
+            law.begin_path(elastic, &set_point.joints, motion);
+        }
     }
 
     /// Returns the state in which the finger starts anew from this feedback. Only the heat of the motors is kept,

@@ -22,8 +22,9 @@ const SLOW: f64 = 1000.0;
 /// For a finger with other links or tendons, the stiffness is first converted to a stiffness of the default finger.
 /// Both stiffnesses are the same fraction of the stiffness that the tendons of their finger support.
 ///
-/// Because both limits are straight lines, every point between two admitted pairs of stiffness and damping is admitted
-/// too.
+/// A point between two admitted pairs of stiffness and damping is only approximately admitted, because a ratio of 1 is
+/// admitted beyond the straight lines. A transition between two springs can be outside by up to a quarter for some
+/// 40 ms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdmissibleDamping {
     /// Lower limit at zero stiffness, and its change for each N/cm of the default finger.

@@ -1,6 +1,8 @@
 //! The reference of the joints, with its derivatives, which the controller feeds forward. A set point in motion has its
 //! own derivatives. A set point at rest has none, so it is filtered.
 
+mod continuation;
+
 use crate::control::motion::Motion;
 use crate::control::spring::slew::Slew;
 use nalgebra::Vector3;
@@ -148,10 +150,10 @@ mod tests {
     use super::*;
     use std::f64::consts::FRAC_PI_2;
 
-    const RATE: f64 = 1000.0;
+    pub(crate) const RATE: f64 = 1000.0;
 
     /// Sine of amplitude 0.3 rad and 8 rad/s in joint 0.
-    fn path(seconds: f64) -> (Vector3<f64>, Motion) {
+    pub(crate) fn path(seconds: f64) -> (Vector3<f64>, Motion) {
         let wave = |derivative: i32| {
             Vector3::x() * (0.3 * 8f64.powi(derivative) * (8.0 * seconds + f64::from(derivative) * FRAC_PI_2).sin())
         };

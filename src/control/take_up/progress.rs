@@ -39,6 +39,21 @@ pub(crate) struct Slack {
     pub(super) touches_again: bool,
 }
 
+impl Slack {
+    /// Converts lengths and pulls to another motor radius. `ratio` is the old radius of each motor divided by the new
+    /// one. The motor angles and the motor torques stay.
+    pub fn change_radius(&mut self, ratio: &Vector4<f64>) {
+        let Targets { travel, speed, integral } = &mut self.targets;
+        for length in [travel, speed, &mut self.wound, &mut self.taut_at, &mut self.waits_at] {
+            length.component_div_assign(ratio);
+        }
+        integral.component_mul_assign(ratio);
+        for (gauge, ratio) in self.gauges.iter_mut().zip(ratio) {
+            gauge.scale_travel(ratio.recip());
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub(super) enum Phase {
     /// The motors are at rest, and the gauges are read.
@@ -57,4 +72,22 @@ pub(crate) struct Slackness {
     pub speeds: Vector4<f64>,
     /// Tensions, N.
     pub tensions: Vector4<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::take_up::slack::SlackTakeUp;
+    use crate::model::configuration::ConfiguredFinger;
+
+    #[test]
+    fn the_targets_turn_no_motor_when_the_motor_radius_changes() {
+        let finger = ConfiguredFinger::default();
+        let take_up = SlackTakeUp::new(&finger, &finger.tendons().expect("regular"), 1000.0);
+        let travel = Vector4::new(0.01, -0.02, 0.03, 0.0);
+        let mut slack = take_up.start(&Slackness { travel, speeds: Vector4::zeros(), tensions: Vector4::repeat(0.5) });
+        slack.change_radius(&Vector4::repeat(0.5));
+        assert_eq!((slack.targets.travel, slack.taut_at, slack.waits_at), (travel * 2.0, travel * 2.0, travel * 2.0));
+        assert_eq!(slack.targets.integral, Vector4::repeat(0.25));
+    }
 }

@@ -50,6 +50,11 @@ pub(super) struct Gauge {
 }
 
 impl Gauge {
+    /// Converts the travel to another motor radius, by which it is multiplied by `longer`.
+    pub fn scale_travel(&mut self, longer: f64) {
+        self.onset *= longer;
+    }
+
     /// Reads a sample while the motor is at rest. `minimum` is t_min.
     pub fn tare(&mut self, tension: f64, minimum: f64) {
         if self.samples == 0.0 || tension < self.lowest {

@@ -1,7 +1,8 @@
 //! Data other than set points that a servo computes with, on its way from planners to the servo.
 
 use super::{Mailbox, ServoEnd};
-use crate::finger::{Adjustable, Fault, Stage};
+use crate::control::SetPoint;
+use crate::finger::{Adjustable, Fault, Replaced, Stage};
 
 impl Mailbox {
     /// Replaces the data that the servo computes with, unless the finger is faulted.
@@ -14,6 +15,22 @@ impl Mailbox {
             return Err(fault);
         }
         planners.adjustments.write(adjustable);
+        Ok(())
+    }
+
+    /// Replaces the last set point by `corrected`, if it is still `sent`. `replaced` is the part that differs. A
+    /// planner has not sent the correction, so the validity of the last set point neither ends nor begins again.
+    ///
+    /// # Errors
+    /// Returns the fault if the finger is faulted. Nothing is changed in that case.
+    pub fn correct(&self, replaced: Replaced, sent: &SetPoint, corrected: SetPoint) -> Result<(), Fault> {
+        let planners = &mut *self.planners.lock();
+        planners.begin()?;
+        if planners.sent.set_point == *sent {
+            planners.sent.set_point = corrected;
+            planners.sent.correct(replaced);
+            planners.set_points.write(planners.sent);
+        }
         Ok(())
     }
 

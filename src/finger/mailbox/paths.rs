@@ -32,9 +32,11 @@ impl Mailbox {
             return Ok(Err(refusal));
         }
         let number = planners.path.wrapping_add(1).max(1);
-        next.path = Some(SentPath { number, stiffness: !path.stiffness.is_empty() });
+        let length = path.pieces.last().map_or(0.0, |piece| piece.end());
+        next.path = Some(SentPath { number, stiffness: !path.stiffness.is_empty(), origin, length });
         next.valid = valid;
         next.number = next.number.wrapping_add(1);
+        next.planned = next.number;
         (planners.path, planners.sent) = (number, *next);
         // The path is published before the set point, so that a servo that has the set point also has the path.
         planners.paths.input_buffer_mut().fill(number, origin, path);

@@ -12,7 +12,7 @@ impl Mailbox {
     pub fn keep_valid(&self, validity: Validity) -> Result<(), Fault> {
         let planners = &mut *self.planners.lock();
         planners.begin()?;
-        planners.renewals.write(Renewal { number: planners.sent.number, validity });
+        planners.renewals.write(Renewal { number: planners.sent.planned, validity });
         Ok(())
     }
 }

@@ -13,7 +13,7 @@ use thiserror::Error;
 /// never.
 const MOST_SOURCES: usize = 4096;
 
-/// Largest number of controllers that are kept ready.
+/// If more controllers than this number are ready, the next cycle drops those that it does not name.
 const MOST_READY: usize = 8;
 
 /// Recomputes the cycles of one finger. Keyframes and controllers must arrive before the cycles that need them. The

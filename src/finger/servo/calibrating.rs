@@ -60,6 +60,7 @@ impl FingerServo {
         // Set points that planners sent meanwhile had no effect. The next change of a set point must not start from one
         // of them. A new spring phase makes it start from the set point that the servo holds.
         self.report.springs += u32::from(before.stage == Stage::Running);
+        self.report.expired_phase = None;
         self.motion.renewal = None;
         self.enter(before.stage);
         // A path that was sent together with the order to calibrate has not begun.

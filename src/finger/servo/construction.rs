@@ -88,8 +88,7 @@ impl FingerServo {
         stiffness: Matrix3<f64>,
         identity: &Identity,
         configured: &Configured,
-        timings: Producer<CycleTiming>,
-        black_box: Recorder,
+        (timings, black_box): (Producer<CycleTiming>, Recorder),
     ) -> Result<(Self, Mailbox), Unusable> {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[number.index()]);
         let adjustable = Adjustable::new(configuration, number)?;
@@ -124,6 +123,7 @@ impl FingerServo {
             sequence: 0,
             toggle: false,
             answered: true,
+            replied: false,
             last_answer: 0,
             supervision: Supervision::new(hand.rate, link.most(), identity.gauge_bits),
             link,

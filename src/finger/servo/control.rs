@@ -22,6 +22,7 @@ impl FingerServo {
             skipped: if self.link.in_step() { 0 } else { skipped.min(self.link.most().into()) },
             fading: self.link.fading(),
             gravity: Some((*self.mailbox.gravity()).into()),
+            path_begins: std::mem::take(&mut self.motion.path.begins),
         };
         let Adjustable { controller, number, .. } = match &self.calibration {
             Some(calibration) => calibration.computes_with(),
@@ -86,40 +87,31 @@ impl FingerServo {
         previous
     }
 
-    /// Follows the set point that a planner has sent. A set point of another spring phase is discarded.
+    /// Follows the set point that a planner has sent. A set point of another spring phase is discarded, unless a
+    /// planner sent it while its predecessor expired.
     pub(super) fn take_set_point(&mut self, sent: &SentSetPoint) {
         if sent.spring != self.report.springs && self.report.expired_phase != Some(sent.spring) {
             return;
         }
-        self.reflexes.note_set_point(self.motion.next_period);
+        let planned = self.note_planner(sent);
+        if !planned && sent.spring != self.report.springs {
+            // The set point that this one corrects has expired, and the finger holds its pose.
+            return;
+        }
         if self.reflexes.inhibits() {
+            if planned {
+                // The planner is not silent, so the validity begins again.
+                self.begin_validity(sent);
+            }
             return;
         }
         let held = self.report.set_point;
         let mut set_point = sent.set_point;
+        self.report.expired_phase = self.report.expired_phase.filter(|_| !planned);
+        self.report.expired &= !planned;
+        self.motion.target = set_point.joints;
+        self.take_path(sent, &held);
         let motion = &mut self.motion;
-        self.report.expired_phase = None;
-        self.report.expired = false;
-        motion.target = set_point.joints;
-        match &sent.path {
-            Some(path) if path.number != motion.path.number => {
-                // The buffer may already have a later path, whose set point is not published yet.
-                let taken = self.mailbox.take_path();
-                motion.path = Following {
-                    number: taken.number,
-                    follower: Some(Follower::new(held.stiffness)),
-                    // Only the set point of a later path tells whether that path changes the stiffness. The set point
-                    // can switch the change of the stiffness off, but not on, so the change is on until then.
-                    stiffness: path.stiffness || taken.number != path.number,
-                };
-            }
-            Some(path) => motion.path.stiffness &= path.stiffness,
-            None if motion.path.follower.is_some() => {
-                motion.path.follower = None;
-                motion.interpolation = InterpolationState::stopped(held.joints);
-            }
-            None => {}
-        }
         if motion.path.follower.is_some() {
             (set_point.joints, set_point.motion) = (held.joints, held.motion);
             if motion.path.stiffness {
@@ -137,7 +129,43 @@ impl FingerServo {
             // arrival would see that of the set point before.
             self.report.arrival = Arrival::default();
         }
-        self.begin_validity(sent);
+        if planned {
+            self.begin_validity(sent);
+        }
+    }
+
+    /// Begins the path of a set point, continues it, or ends the path before. `held` is the set point in force.
+    fn take_path(&mut self, sent: &SentSetPoint, held: &SetPoint) {
+        let motion = &mut self.motion;
+        match &sent.path {
+            Some(path) if path.number != motion.path.number => {
+                // The buffer may already have a later path, whose set point is not published yet.
+                let taken = self.mailbox.take_path();
+                motion.path = Following {
+                    number: taken.number,
+                    follower: Some(Follower::new(held.stiffness)),
+                    // Only the set point of a later path tells whether that path changes the stiffness. The set point
+                    // can switch the change of the stiffness off, but not on, so the change is on until then.
+                    stiffness: path.stiffness || taken.number != path.number,
+                    begins: true,
+                };
+            }
+            Some(path) => motion.path.stiffness &= path.stiffness,
+            None if motion.path.follower.is_some() => {
+                motion.path.follower = None;
+                motion.interpolation = InterpolationState::stopped(held.joints);
+            }
+            None => {}
+        }
+    }
+
+    /// Notes that a planner has sent a set point. Returns false if the library has only corrected the last one.
+    fn note_planner(&mut self, sent: &SentSetPoint) -> bool {
+        let planned = self.motion.note_planned(sent, self.report.set_point_number);
+        if planned {
+            self.reflexes.note_set_point(self.motion.next_period);
+        }
+        planned
     }
 
     /// Makes the finger follow a set point from this cycle on. `number` is the number of the set point.

@@ -92,12 +92,12 @@ impl FingerServo {
 
     /// Reading of the board's clock when this cycle's command arrived, us modulo 65 536; none without a reply.
     pub fn sampled_at(&self) -> Option<u16> {
-        self.sampled_at.filter(|_| self.answered)
+        self.sampled_at.filter(|_| self.replied)
     }
 
     /// Accepts the reply that answers this cycle's command.
     pub fn take(&mut self, received: &Received) {
-        self.answered = true;
+        (self.answered, self.replied) = (true, true);
         self.last_answer = received.sequence;
         let reply = &received.reply;
         let mut age = self.sample_age as f64;

@@ -12,17 +12,14 @@ use crate::model::Part;
 
 impl FingerServo {
     /// Computes when a set point expires. A path is valid until its end, and from there for the time of a set point.
+    /// This also applies to a path that the finger does not follow because of an inhibition.
     pub(super) fn begin_validity(&mut self, sent: &SentSetPoint) {
-        let mut begin = self.motion.next_period;
-        if self.motion.path.follower.is_some() {
-            let path = self.mailbox.path();
-            let length = path.table().pieces.last().map_or(0.0, |piece| piece.end());
-            begin = begin.max(path.origin + (length / self.limits.period()).ceil() as u64);
-        }
+        let end = sent.path.as_ref().map_or(0, |path| path.end(self.limits.period()));
+        let begin = end.max(self.motion.next_period);
         self.set_validity(begin, &sent.valid);
         // The renewal may have come before its set point.
         if let Some(renewal) = self.motion.renewal
-            && renewal.number == sent.number
+            && renewal.number == sent.planned
         {
             self.set_validity(self.motion.next_period, &renewal.validity);
         }
@@ -32,7 +29,8 @@ impl FingerServo {
     pub(super) fn renew_validity(&mut self) {
         let Some(renewal) = self.mailbox.new_renewal() else { return };
         let ahead = renewal.number.wrapping_sub(self.report.set_point_number).cast_signed();
-        if matches!(self.report.stage, Stage::Running | Stage::Calibrating) && ahead >= 0 {
+        let newest = ahead >= 0 || self.motion.is_planned_last(renewal.number);
+        if matches!(self.report.stage, Stage::Running | Stage::Calibrating) && newest {
             self.motion.renewal = Some(renewal);
             self.set_validity(self.motion.next_period, &renewal.validity);
         }

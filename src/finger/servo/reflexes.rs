@@ -61,9 +61,11 @@ impl FingerServo {
     }
 
     /// Begins a spring phase that continues with the set point in force. The numbers of set points that were sent in
-    /// the phase before are given again, so a renewal of one of them must not renew its successor.
+    /// the phase before are given again, so a renewal of one of them must not renew its successor. A set point of a
+    /// phase that ended because its set point expired is not accepted any more.
     fn begin_phase(&mut self) {
         self.report.springs += 1;
+        self.report.expired_phase = None;
         self.motion.renewal = None;
     }
 
@@ -85,7 +87,8 @@ impl FingerServo {
             self.begin_phase();
         }
         if inhibited_until > self.motion.next_period {
-            self.reflexes.inhibited_until = Some(inhibited_until);
+            // A later reaction does not shorten the inhibition of an earlier one.
+            self.reflexes.inhibited_until = self.reflexes.inhibited_until.max(Some(inhibited_until));
         }
     }
 }

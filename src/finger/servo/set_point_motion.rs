@@ -1,6 +1,7 @@
 //! State of the motion of a set point: its path, its interpolation and its expiry.
 
 use crate::control::motion::{Follower, InterpolationState};
+use crate::finger::sent::SentSetPoint;
 use crate::finger::validity::Renewal;
 use nalgebra::Vector3;
 
@@ -15,6 +16,8 @@ pub(super) struct SetPointMotion {
     pub expiry: Option<Expiry>,
     /// The newest renewal of a validity. Its set point may not have taken effect yet.
     pub renewal: Option<Renewal>,
+    /// The spring phase and the number of the set point that a planner sent last.
+    planned: (u32, u32),
 }
 
 /// The path that is followed, or that was followed last.
@@ -24,6 +27,8 @@ pub(super) struct Following {
     pub follower: Option<Follower>,
     /// Whether the path changes the stiffness.
     pub stiffness: bool,
+    /// Whether the path begins in the next cycle.
+    pub begins: bool,
 }
 
 /// When the set point expires, in periods. [`NEVER`] is later than every period.
@@ -43,12 +48,28 @@ impl SetPointMotion {
     pub fn new() -> Self {
         Self {
             next_period: 1,
-            path: Following { number: 0, follower: None, stiffness: false },
+            path: Following { number: 0, follower: None, stiffness: false, begins: false },
             target: Vector3::zeros(),
             interpolation: InterpolationState::default(),
             expiry: None,
             renewal: None,
+            planned: (0, 0),
         }
+    }
+
+    /// Notes the planner's set point that is in `sent`, and returns whether it is new. It is not new if the library has
+    /// only corrected it. `in_force` is the number of the set point in force.
+    pub fn note_planned(&mut self, sent: &SentSetPoint, in_force: u32) -> bool {
+        let planned = (sent.spring, sent.planned);
+        // A correction can also follow a set point of the servo itself, or one of the phase before.
+        let new = planned != self.planned && sent.planned != in_force;
+        self.planned = planned;
+        new
+    }
+
+    /// Returns whether this is the number of the planner's set point that the servo took last.
+    pub fn is_planned_last(&self, number: u32) -> bool {
+        self.planned.1 == number
     }
 
     /// Begins a spring phase with a set point that rests at `joints`, rad.

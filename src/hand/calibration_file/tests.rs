@@ -21,7 +21,7 @@ fn try_to_store(text: &str, found: &[Found]) -> Result<String, ConfigurationErro
 
 fn stored(text: &str, found: &[Found]) -> String {
     let after = try_to_store(text, found).unwrap_or_else(|error| panic!("{error}"));
-    parse(&after).expect("still usable");
+    parse(&after, FingersWithIo::default()).expect("still usable");
     // Storing again changes nothing.
     assert_eq!(try_to_store(&after, found).expect("stored"), after);
     after
@@ -166,9 +166,9 @@ fn others_findings_stay() {
     // All results were found before any of them was stored.
     let (first, second) =
         (zeros(FingerNumber::ONE, [5, 6, 7, 8], 200.0), zeros(FingerNumber::TWO, [9, 9, 9, 9], 190.0));
-    let bound = Found::bound(7.5, FingerNumber::ONE, &parse(FILE).expect("usable"));
+    let bound = Found::bound(7.5, FingerNumber::ONE, &parse(FILE, FingersWithIo::default()).expect("usable"));
     let text = stored(&stored(FILE, &[first]), &[second, bound]);
-    let hand = parse(&text).expect("usable");
+    let hand = parse(&text, FingersWithIo::default()).expect("usable");
     assert_eq!(hand.fingers.each_ref().map(|finger| finger.encoder.zero[0]), [5, 9, 1]);
     assert_eq!(hand.fingers.each_ref().map(|finger| finger.gauge.zero[0]), [200.0, 190.0, 0.0]);
     assert_eq!(hand.fingers.each_ref().map(|finger| finger.stiffness.bound), [Some(7.5), None, None]);
@@ -214,6 +214,27 @@ fn a_file_that_no_longer_fits_is_unchanged_and_the_reason_is_reported() {
     }
     let error = try_to_store("", &[bound(FingerNumber::ONE, 1e9)]).expect_err("beyond its range").to_string();
     assert!(error.contains("with the new calibration, finger.1.stiffness.bound"), "{error}");
+}
+
+/// The program provides the hardware of finger 1, so that its port and board in the file do not matter.
+#[test]
+fn results_of_hardware_of_the_program_are_stored_beside_any_port() {
+    let mut open = Configuration::default();
+    open.fingers[0].provide(FingerNumber::ONE);
+    let zeros = Zeros { encoder: [5; 4], gauge: [8190.0; 4], joint_error: Vector3::zeros(), range_error: None };
+    let found = Found::by_calibration(&Findings::Zeros(zeros), FingerNumber::ONE, &open);
+    for text in [
+        "",
+        "[finger]\nport = 'simulated'\n",
+        "[hand]\nfingers = [1]\n[finger.1]\nboard = '00 01 02 03 04 05 06 07 08 09 0a 0b'\n",
+        "[finger.2]\nport = '/dev/a'\n[finger.3]\nport = '/dev/b'\n",
+    ] {
+        let after = try_to_store(text, std::slice::from_ref(&found)).unwrap_or_else(|error| panic!("{text}: {error}"));
+        let finger = &parse(&after, found.with_io()).expect("usable").fingers[0];
+        assert_eq!((finger.encoder.zero, finger.gauge.zero), ([5; 4], [8190.0; 4]), "{after}");
+    }
+    let error = try_to_store("[finger.1]\naddress = 5\n", &[found]).expect_err("another address").to_string();
+    assert!(error.contains("finger.1.address"), "{error}");
 }
 
 #[test]

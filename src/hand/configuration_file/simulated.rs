@@ -1,8 +1,9 @@
 //! The configuration of a simulated hand: its name, its rate, and further keys as text.
 
-use super::text::{Said, parse_named};
+use super::text::{Said, parse_with};
 use super::{Configured, invalid_text, parse_configuration};
 use crate::hand::ConfigurationError;
+use crate::model::FingerNumber;
 use crate::model::configuration::{ConfiguredFinger, FINGERS};
 
 impl Configured {
@@ -14,9 +15,13 @@ impl Configured {
     pub fn simulated(name: &str, rate: f64, text: &str) -> Result<Self, ConfigurationError> {
         // The errors of these two lines name the key.
         parse_configuration(&format!("hand.rate = {rate:?}\n[finger.simulation]\nhand = {name:?}\n"))?;
-        let (mut configuration, _) = parse_named(text, Some(name)).map_err(|wrong| invalid_text(text, &wrong))?;
+        let simulate = |_: FingerNumber, finger: &mut ConfiguredFinger| {
+            finger.simulate();
+            true
+        };
+        let parsed = parse_with(text, Some(name), &simulate);
+        let (mut configuration, _) = parsed.map_err(|wrong| invalid_text(text, &wrong))?;
         configuration.hand.rate = rate;
-        configuration.fingers.iter_mut().for_each(ConfiguredFinger::simulate);
         Ok(Self { configuration, file: None, said: Said { ports: [true; FINGERS], remote: false } })
     }
 }
@@ -28,10 +33,14 @@ mod tests {
 
     #[test]
     fn a_simulated_hand_has_no_port_and_no_board() {
-        let text = "[finger]\nthread = 1\nbaud = 2000000\nboard = '00 01 02 03 04 05 06 07 08 09 0a 0b'\n\
-                    [finger.2]\nport = '/dev/ttyUSB0'\n";
-        let hand = Configured::simulated("nominal", 1000.0, text).expect("usable").configuration;
-        assert_eq!(hand.fingers.each_ref().map(ConfiguredFinger::simulated), [true; 3]);
+        let board = "[finger]\nthread = 1\nbaud = 2000000\nboard = '00 01 02 03 04 05 06 07 08 09 0a 0b'\n\
+                     [finger.2]\nport = '/dev/ttyUSB0'\n";
+        // A real hand could not have the ports of the last two texts.
+        let shared = "[finger]\nport = '/dev/ttyUSB0'\n";
+        for text in [board, shared, "[finger.2]\nport = '/dev/ttyUSB0'\n"] {
+            let hand = Configured::simulated("nominal", 1000.0, text).expect("usable").configuration;
+            assert_eq!(hand.fingers.each_ref().map(ConfiguredFinger::simulated), [true; 3], "{text}");
+        }
     }
 
     #[test]

@@ -15,6 +15,9 @@ use toml_edit::{Document, Item, Table, Value};
 /// The tables that a configuration file may have. Other programs read the tables `serve` and `remote`.
 const TABLES: [&str; 5] = ["hand", "telemetry", "finger", "serve", "remote"];
 
+/// The keys of a finger whose tables have one key, which is a choice.
+const CHOICES: [&str; 1] = ["surface"];
+
 /// What the text says, apart from the values.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Said {
@@ -25,12 +28,18 @@ pub(super) struct Said {
 }
 
 /// Reads and checks the text of a configuration file.
+#[cfg(test)]
 pub(super) fn parse(text: &str) -> Result<(Configuration, Said), Wrong> {
-    parse_named(text, None)
+    parse_with(text, None, &|_, _| false)
 }
 
-/// Does the same. A name replaces `simulation.hand` of every finger.
-pub(super) fn parse_named(text: &str, name: Option<&str>) -> Result<(Configuration, Said), Wrong> {
+/// Reads and checks the text of a configuration file. A name replaces `simulation.hand` of every finger.
+/// `replace_port` can replace the port of a finger before the ports are checked, and returns whether it did.
+pub(super) fn parse_with(
+    text: &str,
+    name: Option<&str>,
+    replace_port: &dyn Fn(FingerNumber, &mut ConfiguredFinger) -> bool,
+) -> Result<(Configuration, Said), Wrong> {
     let document = Document::parse(text).map_err(Wrong::in_syntax)?;
     let root = document.as_table();
     if let Some((key, _)) = root.iter().find(|(key, _)| !TABLES.contains(key)) {
@@ -51,10 +60,11 @@ pub(super) fn parse_named(text: &str, name: Option<&str>) -> Result<(Configurati
     }
     let mut fingers: [ConfiguredFinger; FINGERS] = Default::default();
     let mut ports = [false; FINGERS];
-    for ((number, finger), port_named) in numbers().zip(&mut fingers).zip(&mut ports) {
+    for ((number, finger), port_named) in FingerNumber::ALL.into_iter().zip(&mut fingers).zip(&mut ports) {
         let section = format!("finger.{number}");
-        let own = table(&all, &number).map_err(|wrong| wrong.in_key("finger"))?;
+        let own = table(&all, &number.to_string()).map_err(|wrong| wrong.in_key("finger"))?;
         (*finger, *port_named) = finger_of(&common, &own, name).map_err(|wrong| wrong.in_key(&section))?;
+        *port_named |= replace_port(number, finger);
     }
 
     let configuration = Configuration { hand, telemetry, fingers };
@@ -96,7 +106,8 @@ fn refuse_simulated_beside_real(
 ) -> Result<(), Wrong> {
     let (named, unnamed): (Vec<_>, Vec<_>) =
         configuration.hand.fingers.members().partition(|number| ports_named[number.index()]);
-    let real = named.iter().find(|number| !configuration.fingers[number.index()].simulated());
+    let at_port = |finger: &ConfiguredFinger| !finger.simulated() && !finger.has_io();
+    let real = named.iter().find(|number| at_port(&configuration.fingers[number.index()]));
     let (Some(real), Some(missing)) = (real, unnamed.first()) else { return Ok(()) };
     let own = root.get("finger").and_then(|all| all.get(real.to_string()));
     let span = span_of(own, "port").or_else(|| span_of(own, "board"));
@@ -145,12 +156,13 @@ fn table(parent: &Table, key: &str) -> Result<Table, Wrong> {
     }
 }
 
-/// Merges `over` into `base`, table by table. Keys that `over` does not contain keep their values.
+/// Merges `over` into `base`, table by table. Keys that `over` does not contain keep their values, except in a table
+/// whose only key is a choice: another choice replaces the table.
 pub(in crate::hand) fn overlay(base: &mut Table, over: &Table) {
     for (key, item) in over.iter() {
         let both = (table(base, key), table(over, key));
         let merged = match both {
-            (Ok(mut below), Ok(above)) if base.contains_key(key) => {
+            (Ok(mut below), Ok(above)) if base.contains_key(key) && !is_other_choice(key, &below, &above) => {
                 overlay(&mut below, &above);
                 Item::Table(below)
             }
@@ -167,6 +179,11 @@ pub(in crate::hand) fn overlay(base: &mut Table, over: &Table) {
             }
         }
     }
+}
+
+/// Whether the tables of this key choose differently.
+fn is_other_choice(key: &str, below: &Table, above: &Table) -> bool {
+    CHOICES.contains(&key) && !above.is_empty() && !above.iter().any(|(choice, _)| below.contains_key(choice))
 }
 
 /// The position of a dotted key in the file, if the file contains it.

@@ -29,6 +29,10 @@ pub(super) fn collect(
     mut publishing: Option<Publishing>,
     stopped: &Receiver<()>,
 ) {
+    if folder.is_some() {
+        // A finger may recover before the thread has looked at its fault.
+        fingers.iter().for_each(|collected| collected.lock().black_box.wait_at_faults());
+    }
     let mut ended = false;
     let mut writing = Vec::new();
     let mut planner = PlannerWatch::default();

@@ -9,7 +9,11 @@ impl HandError {
     #[must_use]
     pub fn errno(&self) -> i32 {
         match self {
-            Self::NoSuchFinger(_) | Self::NoSuchStage(_) | Self::NoSuchElement { .. } => libc::EINVAL,
+            Self::NoSuchFinger(_)
+            | Self::NotOpened(_)
+            | Self::NotInHand { .. }
+            | Self::NoSuchStage(_)
+            | Self::NoSuchElement { .. } => libc::EINVAL,
             Self::SetPoint(error) => error.errno(),
             Self::Path(error) => error.errno(),
             Self::Configuration(error) => error.errno(),
@@ -26,7 +30,7 @@ impl HandError {
             Self::Calibration { .. } | Self::Interrupted(_) => libc::ECANCELED,
             Self::WrongWiring { .. } => libc::EIO,
             Self::SameNumber { .. } => libc::ENOTUNIQ,
-            Self::NotOpened(_) | Self::NotInHand { .. } | Self::NoSuchBoard { .. } => libc::ENODEV,
+            Self::NoSuchBoard { .. } => libc::ENODEV,
             Self::Busy(_) => libc::EBUSY,
             Self::BlackBox { source, .. } => errno(source),
             Self::NotStored { source, .. } => source.errno(),

@@ -61,8 +61,8 @@ impl Admission {
         }
     }
 
-    /// Returns joint angles at equal times on each piece of the tip's path. If there are several solutions, the one
-    /// nearest to the previous joint angles is used.
+    /// Returns joint angles at equal intervals of time on each piece of the tip's path. If there are several solutions,
+    /// the one nearest to the previous joint angles is used.
     fn joint_knots(&self, start: &Start, path: &[Piece], per_pose: usize) -> Result<Vec<Knot>, PathError> {
         let mut knots: Vec<Knot> = Vec::with_capacity(path.len() * per_pose);
         let mut present = start.place;

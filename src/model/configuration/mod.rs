@@ -38,7 +38,6 @@ pub use friction::ConfiguredFriction;
 pub use gauge::{ConfiguredGauge, GaugeReference};
 pub use geometry::ConfiguredGeometry;
 pub use hand::{ConfiguredHand, EndState, OnFault, OutOfRange, PeriodClock, RATES, RealTime};
-pub use io::IO_PORT;
 pub use joints::ConfiguredJoints;
 pub use links::ConfiguredLinks;
 pub use monitors::ConfiguredMonitors;

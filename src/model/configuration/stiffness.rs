@@ -19,8 +19,8 @@ impl Default for ConfiguredStiffness {
 }
 
 impl ConfiguredStiffness {
-    /// Returns the bound that is valid for the default finger with every controller at `rate` Hz, N/cm. It is less than
-    /// the result of `sun2xp bound --nominal --free` for each of these controllers (`docs/stiffness.md`).
+    /// Returns the default bound at `rate` Hz, N/cm. It is less than the result of `sun2xp bound --nominal --free` for
+    /// the default finger with each controller, except Figure 10 at 500 Hz (`docs/stiffness.md`).
     #[must_use]
     pub fn default_bound(rate: f64) -> f64 {
         if rate >= 1000.0 { 6.0 } else { 5.0 }

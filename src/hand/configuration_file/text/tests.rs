@@ -1,4 +1,5 @@
 use super::*;
+use crate::model::configuration::Surface;
 
 fn refusal(text: &str) -> (Option<usize>, String) {
     let wrong = parse(text).expect_err("refused");
@@ -20,6 +21,23 @@ fn a_finger_overrides_what_all_fingers_share() {
     assert_eq!(hand.fingers.each_ref().map(|f| f.tendon.maximum), [50.0; 3]);
     assert_eq!(hand.fingers[1].port, "/dev/ttyUSB1");
     assert_eq!(hand.fingers[0].port, "simulated");
+}
+
+#[test]
+fn a_surface_of_a_finger_replaces_a_surface_of_another_kind() {
+    let ball = "ball = { centre = [0, 1, 9], radius = 2, stiffness = 30 }";
+    let wall = "wall = { point = [0, 1, 9], normal = [0, -1, 0], stiffness = 30 }";
+    let text = format!(
+        "[finger.simulation]\nsurface = {{ {ball} }}\n[finger.2.simulation]\nsurface = {{ {wall} }}\n\
+         [finger.3.simulation.surface]\nball = {{ radius = 3 }}\n"
+    );
+    let (hand, _) = parse(&text).unwrap_or_else(|wrong| panic!("{wrong}"));
+    let surfaces = hand.fingers.map(|finger| finger.simulation.surface);
+    let [Some(Surface::Ball { .. }), Some(Surface::Wall { .. }), Some(third)] = surfaces else {
+        panic!("{surfaces:?}");
+    };
+    // The ball of finger 3 keeps the other values of the ball of all fingers.
+    assert_eq!(third, Surface::Ball { centre: [0.0, 1.0, 9.0], radius: 3.0, stiffness: 30.0 });
 }
 
 #[test]

@@ -1,0 +1,106 @@
+//! Boards that a repair finds: the one of open, another one, and one that has lost its counts.
+
+use super::*;
+use crate::board::OutgoingCommand;
+use crate::board::protocol::Command;
+use crate::finger::link_handover;
+use crate::model::configuration::{Configuration, EndState};
+use crate::simulated::{Defect, SimulatedBoard, SimulatedCable, SimulatedFinger};
+
+fn configuration() -> Configuration {
+    let mut configuration = Configuration::default();
+    configuration.hand.end_state = EndState::Hold;
+    (configuration.hand.hold_time_ms, configuration.hand.hold_torque_limit) = (1000, 0.5);
+    configuration
+}
+
+fn board() -> SimulatedBoard {
+    SimulatedBoard::new(&configuration(), &[FingerNumber::ONE]).expect("a board")
+}
+
+/// A board after the handshake of open.
+fn opened(mut board: SimulatedBoard, keeps_zero: bool) -> (Link<SimulatedCable>, KnownBoard) {
+    if !keeps_zero {
+        assert!(board.finger(1).expect("finger 1").inject(&Defect::ZeroLost));
+    }
+    let configuration = configuration();
+    let terms = Terms::new(&configuration.hand, &configuration.fingers[0]);
+    let mut link = Link::new(SimulatedCable::new(board));
+    let (identity, configured) = link.shake_hands(1, &terms, ANSWER).expect("the board answers");
+    let zero_valid = configured.status.has(Status::ZERO_VALID);
+    assert_eq!(zero_valid, keeps_zero);
+    let finger = FingerNumber::ONE;
+    (link, KnownBoard { finger, address: 1, terms, identity, zero_valid, has_io: false, restarted: false })
+}
+
+fn finger(link: &mut Link<SimulatedCable>) -> &mut SimulatedFinger {
+    link.transport().board().finger(1).expect("finger 1")
+}
+
+fn kind(error: &HandError) -> Option<FaultKind> {
+    match error {
+        HandError::Faulted { finger: FingerNumber::ONE, fault } => Some(fault.kind),
+        _ => None,
+    }
+}
+
+/// The comparison also ensures that the numbers of a hand's boards still differ after a recovery.
+#[test]
+fn a_board_with_another_number_is_not_the_one_of_open_and_gets_no_terms() {
+    let (mut link, known) = opened(board(), true);
+    known.compare(&mut link).expect("the same board");
+    let mut link = Link::new(SimulatedCable::new(board().numbered(7)));
+    let error = known.compare(&mut link).expect_err("another board");
+    assert_eq!(kind(&error), Some(FaultKind::IdentityChanged), "{error}");
+    assert!(!finger(&mut link).status().has(Status::CONFIGURED));
+}
+
+#[test]
+fn only_terms_end_a_hold() {
+    let (mut link, mut known) = opened(board(), true);
+    let command = Command { enable: true, torques: [1000; 4], ..Command::default() };
+    link.send(&[OutgoingCommand { address: 1, sequence: 1, command }]).expect("sent");
+    let deadline = link.transport().now() + ANSWER;
+    assert!(link.stop(1, deadline).expect("the board answers"));
+    known.compare(&mut link).expect("the same board");
+    assert!(finger(&mut link).status().has(Status::HOLDING));
+    known.configure(&mut link).expect("the same board");
+    assert!(!finger(&mut link).status().has(Status::HOLDING));
+}
+
+/// The counts of a board that does not keep its zeros are those of open until it restarts.
+#[test]
+fn a_board_that_does_not_keep_its_zeros_must_not_have_restarted() {
+    let (mut link, mut known) = opened(board(), false);
+    known.configure(&mut link).expect("it has counted on");
+    finger(&mut link).reset();
+    for attempt in 0..2 {
+        // The first attempt has given the board its terms, but not its counts.
+        let error = known.configure(&mut link).expect_err("its counts began again");
+        assert_eq!(kind(&error), Some(FaultKind::ZeroLost), "attempt {attempt}: {error}");
+    }
+    let (mut link, mut known) = opened(board(), true);
+    finger(&mut link).reset();
+    known.configure(&mut link).expect("it keeps its zeros");
+}
+
+/// A finger that the servo takes and that faults at once must not have more recoveries than repairs, so its repair
+/// is counted before the servo gets it. A finger that the servo does not take has no repair.
+#[test]
+fn a_repair_is_counted_exactly_if_the_servo_can_take_the_finger() {
+    let (_servo, repair_end) = link_handover();
+    let mut repair = PortRepair::new(PathBuf::new(), 0, false, Vec::new(), repair_end);
+    let repairs = [const { AtomicU32::new(0) }; FINGERS];
+    let counts = || repairs.each_ref().map(|repairs| repairs.load(Ordering::Acquire));
+    let board = RestoredBoard { configured: Configured::default(), stops: StopCounts::default() };
+    let mut give = |place: usize| {
+        let address = place as u8 + 1;
+        (repair.give(place, RestoredFinger { address, board }, &repairs[place]), counts())
+    };
+    assert_eq!(give(1), (true, [0, 1, 0]));
+    assert_eq!(give(2), (false, [0, 1, 0]), "finger 2 still waits");
+    // The servo has released the link without taking finger 2.
+    repair.discard_given(&repairs);
+    repair.discard_given(&repairs);
+    assert_eq!(counts(), [0, 0, 0]);
+}

@@ -1,0 +1,89 @@
+// late.cpp - sun2xp.hpp with a library that calls a callback after its end, and refuses to close a hand. This program
+// defines the calls of such a library itself.
+#include <cstdio>
+#include <cstdlib>
+#include "sun2xp.hpp"
+
+#define CHECK(Condition) \
+    do { \
+        if (!(Condition)) { \
+            std::fprintf(stderr, "%s:%d: not so: %s\n", __FILE__, __LINE__, #Condition); \
+            std::exit(1); \
+        } \
+    } while (0)
+
+static char place;
+static int result_of_close, closed;
+static void (*callback)(const struct sun2xp_event *, void *);
+static void *context;
+
+int sun2xp_open_named(const char *, sun2xp_hand **hand)
+{
+    *hand = reinterpret_cast<sun2xp_hand *>(&place);
+    return 0;
+}
+
+int sun2xp_close(sun2xp_hand *)
+{
+    closed++;
+    return result_of_close;
+}
+
+int sun2xp_on_event(sun2xp_hand *, void (*next)(const struct sun2xp_event *, void *), void *its_context)
+{
+    // The last function is kept, to be called later.
+    if (next != nullptr) {
+        callback = next;
+        context = its_context;
+    }
+    return 0;
+}
+
+static void is_called_late()
+{
+    sun2xp::hand hand = sun2xp::hand::named("nominal");
+    const struct sun2xp_event event = {};
+    int calls = 0;
+
+    hand.on_event([&calls](const sun2xp_event &) { calls++; });
+    callback(&event, context);
+    CHECK(calls == 1);
+    hand.on_event(nullptr);
+    callback(&event, context);
+    CHECK(calls == 1);
+    // The function replaces itself, and is called again after that.
+    hand.on_event([&hand, &calls](const sun2xp_event &) {
+        int *const counted = &calls;
+        hand.on_event(nullptr);
+        ++*counted;
+    });
+    callback(&event, context);
+    callback(&event, context);
+    CHECK(calls == 2);
+}
+
+static void is_refused()
+{
+    sun2xp::hand hand = sun2xp::hand::named("nominal");
+
+    result_of_close = -SUN2XP_ERROR_BUSY;
+    try {
+        hand.close();
+        CHECK(false);
+    } catch (const sun2xp::error &refused) {
+        CHECK(refused.number() == SUN2XP_ERROR_BUSY);
+    }
+    CHECK(hand.handle() != nullptr);
+    result_of_close = 0;
+    hand.close();
+    CHECK(hand.handle() == nullptr);
+}
+
+int main()
+{
+    is_called_late();
+    CHECK(closed == 1);
+    is_refused();
+    CHECK(closed == 3);
+    return 0;
+}

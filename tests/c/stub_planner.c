@@ -1,0 +1,22 @@
+/* A planner with a hand of another machine, which stub_remote.c stands for. */
+#include <string.h>
+#include "Sun2Xp.h"
+#include "sun2xp.h"
+#include "check.h"
+
+int main(void)
+{
+    struct sun2xp_set_point one;
+    sun2xp_hand *hand;
+    double seen[3];
+
+    memset(&one, 0, sizeof one);
+    CHECK(sun2xp_open_text("[remote]\nendpoint = \"tcp/127.0.0.1:9\"\n", &hand) == 0);
+    /* The emergency stop that was called while the library was being loaded. */
+    CHECK(sun2xp_position(hand, 1, seen) == 0 && seen[0] == 1);
+    /* A group without commands does not need a set point, or memory for one. */
+    CHECK(sun2xp_send_group(hand, 0, &one) == 0 && sun2xp_send_group(hand, 0, NULL) == 0);
+    CHECK(sun2xp_position(hand, 1, seen) == 0 && seen[1] == 0);
+    CHECK(sun2xp_close(hand) == 0);
+    return 0;
+}
