@@ -92,7 +92,12 @@ using event_callback = std::function<void(const struct sun2xp_event &)>;
 /// The functions that get the events of all hands, by numbers that are never used again. The library gets the number
 /// and not the address: if the callback of one hand ends the callback of another hand, sun2xp_on_event does not wait,
 /// and the library may still be about to call the function that was ended.
+#if defined(__GNUC__)
+// One table for all shared objects of the process, because a hand can be moved from one to another.
+class __attribute__((visibility("default"))) callbacks {
+#else
 class callbacks {
+#endif
 public:
     /// The callbacks of the process. They are never destroyed, because the library may call until the process ends.
     static callbacks &all()
@@ -341,9 +346,11 @@ public:
     /// Closes the hand. After the refusal SUN2XP_ERROR_BUSY the hand is still open, and its handle is still here.
     void close()
     {
-        const int result = sun2xp_close(hand_);
-        if (result != -SUN2XP_ERROR_BUSY)
-            hand_ = nullptr;
+        // A callback may destroy this object as soon as the hand is closed.
+        sun2xp_hand *const handle = std::exchange(hand_, nullptr);
+        const int result = sun2xp_close(handle);
+        if (result == -SUN2XP_ERROR_BUSY)
+            hand_ = handle;
         detail::checked(result);
     }
 

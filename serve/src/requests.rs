@@ -121,12 +121,16 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
     let begin = move |shared: &Shared, recovered: Result<(), HandError>| {
         let mut desk = shared.desk.lock();
         let time = now();
-        if !desk.begin(&client, epoch, time) {
+        if !desk.admits(&client, epoch) {
             let text = "another client has taken the hand over meanwhile".into();
             return desk.answer(Code::Owned, text, 0, time);
         }
         match recovered {
-            Ok(()) => Answer { number, ..desk.answer(Code::Done, String::new(), epoch, time) },
+            Ok(()) => {
+                desk.begin(&client, epoch, time);
+                Answer { number, ..desk.answer(Code::Done, String::new(), epoch, time) }
+            }
+            // No epoch begins, so fingers that were caught stay soft.
             Err(error) => {
                 desk.abandon(time);
                 desk.answer(code_of(&error), error.to_string(), 0, time)

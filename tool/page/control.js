@@ -122,6 +122,7 @@ export class Control {
       ...(finger.simulated ? [this.pushes(finger)] : []),
       this.message,
     );
+    if (this.stopping) this.warn();
   }
 
   jointRows(finger) {
@@ -244,11 +245,14 @@ export class Control {
     else setTimeout(() => this.stopping && this.warn(), STOP_ANSWER_MS);
   }
 
-  /// Sends a stop that has no answer again, as soon as there is a connection.
-  link(connected) {
-    if (!this.stopping) return;
-    if (connected) this.order("stop");
-    else this.warn();
+  /// Sends a stop that has no answer again, as soon as the page knows that it may stop this hand.
+  connected(hand) {
+    if (this.stopping && hand.control) this.order("stop");
+    this.stopping &&= hand.control;
+  }
+
+  disconnected() {
+    if (this.stopping) this.warn();
   }
 
   warn() {
@@ -261,10 +265,10 @@ export class Control {
 
   answer({ done, text }) {
     if (text === STOPPED) this.stopping = false;
-    if (!this.message) return;
+    if (!done) this.wanted = null;
+    if (!this.message || this.stopping) return;
     this.message.textContent = text;
     this.message.className = done ? "message" : "message refused";
-    if (!done) this.wanted = null;
     clearTimeout(this.forget);
     this.forget = setTimeout(() => (this.message.textContent = ""), MESSAGE_MS);
   }

@@ -44,7 +44,7 @@ let linked = { socket: false, hand: false, reason: "" };
 const stream = new Stream({
   link(connected, reason) {
     linked = { socket: connected, hand: connected && linked.hand, reason };
-    control.link(connected);
+    if (!connected) control.disconnected();
   },
   hand: begin,
   gone({ reason }) {
@@ -76,6 +76,7 @@ function begin(message) {
   linked.hand = true;
   const again = hand && hand.identity === message.identity;
   hand = message;
+  control.connected(hand);
   if (again) return;
   samples = new Map(hand.fingers.map((finger) => [finger.number, new Samples(hand.columns)]));
   [states, statuses, clock, received] = [new Map(), new Map(), new Clock(), nothingReceived()];
