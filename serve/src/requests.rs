@@ -121,19 +121,18 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
     let begin = move |shared: &Shared, recovered: Result<(), HandError>| {
         let mut desk = shared.desk.lock();
         let time = now();
-        if !desk.admits(&client, epoch) {
-            let text = "another client has taken the hand over meanwhile".into();
-            return desk.answer(Code::Owned, text, 0, time);
-        }
         match recovered {
-            Ok(()) => {
-                desk.begin(&client, epoch, time);
+            Ok(()) if desk.begin(&client, epoch, time) => {
                 Answer { number, ..desk.answer(Code::Done, String::new(), epoch, time) }
             }
             // No epoch begins, so fingers that were caught stay soft.
-            Err(error) => {
+            Err(error) if desk.admits(&client, epoch) => {
                 desk.abandon(time);
                 desk.answer(code_of(&error), error.to_string(), 0, time)
+            }
+            _ => {
+                let text = "another client has taken the hand over meanwhile".into();
+                desk.answer(Code::Owned, text, 0, time)
             }
         }
     };

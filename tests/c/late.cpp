@@ -1,16 +1,7 @@
 // late.cpp - sun2xp.hpp with a library that calls a callback after its end, and refuses to close a hand. This program
 // defines the calls of such a library itself.
-#include <cstdio>
-#include <cstdlib>
 #include "sun2xp.hpp"
-
-#define CHECK(Condition) \
-    do { \
-        if (!(Condition)) { \
-            std::fprintf(stderr, "%s:%d: not so: %s\n", __FILE__, __LINE__, #Condition); \
-            std::exit(1); \
-        } \
-    } while (0)
+#include "check.hpp"
 
 static char place;
 static int result_of_close, closed;

@@ -1,19 +1,10 @@
 // parts.cpp - events, groups, paths, reflexes, kinematics and ownership of sun2xp.hpp.
 #include <atomic>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <future>
 #include <memory>
 #include "sun2xp.hpp"
-
-#define CHECK(Condition) \
-    do { \
-        if (!(Condition)) { \
-            std::fprintf(stderr, "%s:%d: not so: %s\n", __FILE__, __LINE__, #Condition); \
-            std::exit(1); \
-        } \
-    } while (0)
+#include "check.hpp"
 
 using namespace std::chrono_literals;
 
