@@ -30,6 +30,8 @@ pub struct Rig {
     owner: ClientName,
     epoch: u64,
     sequence: u64,
+    /// The newest refusal of a Target, for the message of a wait that fails.
+    refusal: Option<Answer>,
 }
 
 impl Rig {
@@ -42,7 +44,7 @@ impl Rig {
         prepare(&mut configuration, &settings.limits);
         let hand = Arc::new(Hand::open(configuration).expect("the simulated hand"));
         let desk = Desk::new(hand.clone(), settings.limits, now());
-        Self { hand, desk, owner: "nobody".parse().expect("a name"), epoch: 0, sequence: 0 }
+        Self { hand, desk, owner: "nobody".parse().expect("a name"), epoch: 0, sequence: 0, refusal: None }
     }
 
     /// Makes this client the owner, as an acquire does that recovers fingers. The recovery does not end.
@@ -66,7 +68,9 @@ impl Rig {
         self.sequence += 1;
         let (epoch, sequence, seen) = (self.epoch, self.sequence, now());
         let target = Target { validity_ms: 100, epoch, sequence, sent: sequence, seen, parts: parts.to_vec() };
-        self.desk.take_target(&self.owner, &target.encode().expect("a Target"), now())
+        let refusal = self.desk.take_target(&self.owner, &target.encode().expect("a Target"), now());
+        self.refusal = refusal.clone().or(self.refusal.take());
+        refusal
     }
 
     /// Lets the desk look until `found` returns something.
@@ -76,7 +80,8 @@ impl Rig {
             if let Some(found) = found(self) {
                 return found;
             }
-            assert!(begun.elapsed() < PATIENCE, "no {what} in time");
+            let stages = || [1, 2, 3].map(|finger| self.hand.report(finger).map(|report| report.stage));
+            assert!(begun.elapsed() < PATIENCE, "no {what} in time: {:?}, refusal: {:?}", stages(), self.refusal);
             std::thread::sleep(LOOK);
             self.desk.look(now());
         }
