@@ -20,10 +20,8 @@ const ORDER: usize = 5;
 pub(crate) struct Reference {
     /// Fraction of the remaining difference by which a stage moves in a cycle.
     gain: f64,
-    /// Time constant of a stage, s.
-    time: f64,
-    /// The equivalent of `time` for a filter that advances in steps, s. The input of a stage minus its output equals
-    /// `lag` times the slope of the output from the last cycle to this one. `lag` is a little smaller than `time`.
+    /// The input of a stage minus its output, divided by the slope of the output from the last cycle to this one, s.
+    /// `lag` is smaller than the time constant of a stage by about half a cycle, because the filter advances in steps.
     lag: f64,
 }
 
@@ -33,13 +31,13 @@ pub(crate) struct ReferenceState([Vector3<f64>; ORDER]);
 
 impl ReferenceState {
     /// Returns the outputs of the stages of a filter whose last output has the given motion.
-    fn of(joints: &Vector3<f64>, motion: &Motion, time: f64) -> Self {
-        // The input of a stage is its output plus `time` times the rate of its output. The last stage has the joint
-        // angles as its output. So the output of the stage n places before it is (1 + time d/dt)^n applied to the joint
+    fn of(joints: &Vector3<f64>, motion: &Motion, lag: f64) -> Self {
+        // The input of a stage is its output plus `lag` times the rate of its output. The last stage has the joint
+        // angles as its output. So the output of the stage n places before it is (1 + lag d/dt)^n applied to the joint
         // angles.
         let Motion { rates, accelerations, jerk, snap } = motion;
         let (one, two, three, four) =
-            (rates * time, accelerations * time.powi(2), jerk * time.powi(3), snap * time.powi(4));
+            (rates * lag, accelerations * lag.powi(2), jerk * lag.powi(3), snap * lag.powi(4));
         Self([
             joints + one * 4.0 + two * 6.0 + three * 4.0 + four,
             joints + one * 3.0 + two * 3.0 + three,
@@ -68,7 +66,7 @@ impl Reference {
     /// Constructs the filter from the time constant of each stage, s, and the rate, Hz.
     pub fn new(time: f64, rate: f64) -> Self {
         let cycles = 1.0 / (time * rate);
-        Self { gain: -(-cycles).exp_m1(), time, lag: 1.0 / (rate * cycles.exp_m1()) }
+        Self { gain: -(-cycles).exp_m1(), lag: 1.0 / (rate * cycles.exp_m1()) }
     }
 
     /// Returns the state of a reference at rest.
@@ -83,7 +81,7 @@ impl Reference {
             *stage += (input - *stage) * self.gain;
             input = *stage;
         }
-        derivatives(state, self.time)
+        self.motion(state)
     }
 
     /// Advances the reference by one cycle with a set point that has its own motion. The reference is the set point
@@ -126,22 +124,18 @@ impl Reference {
         }
     }
 
-    /// Returns the motion of the last stage. Its derivatives are the slopes from cycle to cycle.
+    /// Returns the motion of the last stage. Each derivative follows from x_n' = (x_(n-1) - x_n) / `lag`, so the rates
+    /// are the slopes of the angles from cycle to cycle. The time constant instead of `lag` would make them too small.
     pub fn motion(&self, state: &ReferenceState) -> ReferenceMotion {
-        derivatives(state, self.lag)
-    }
-}
-
-/// Returns the motion of the last stage. Each derivative follows from x_n' = (x_(n-1) - x_n) / `time`.
-fn derivatives(state: &ReferenceState, time: f64) -> ReferenceMotion {
-    let [first, second, third, fourth, last] = state.0;
-    let per = 1.0 / time;
-    ReferenceMotion {
-        joints: last,
-        rates: (fourth - last) * per,
-        accelerations: (third - fourth * 2.0 + last) * per.powi(2),
-        jerk: (second - third * 3.0 + fourth * 3.0 - last) * per.powi(3),
-        snap: (first - second * 4.0 + third * 6.0 - fourth * 4.0 + last) * per.powi(4),
+        let [first, second, third, fourth, last] = state.0;
+        let per = 1.0 / self.lag;
+        ReferenceMotion {
+            joints: last,
+            rates: (fourth - last) * per,
+            accelerations: (third - fourth * 2.0 + last) * per.powi(2),
+            jerk: (second - third * 3.0 + fourth * 3.0 - last) * per.powi(3),
+            snap: (first - second * 4.0 + third * 6.0 - fourth * 4.0 + last) * per.powi(4),
+        }
     }
 }
 
@@ -181,6 +175,21 @@ mod tests {
             });
         }
         all
+    }
+
+    #[test]
+    fn the_rates_are_the_slopes_of_the_angles() {
+        let (filter, slew) = (Reference::new(0.008, RATE), Slew::new(5.0, RATE));
+        let mut anchor = Vector3::zeros();
+        let mut state = filter.start(&anchor);
+        let mut last = anchor;
+        for _ in 0..300 {
+            slew.advance(&mut anchor, &Vector3::x());
+            let motion = filter.advance(&mut state, &anchor);
+            let slope = (motion.joints - last) * RATE;
+            assert!((motion.rates - slope).amax() < 1e-9, "{} and {slope}", motion.rates);
+            last = motion.joints;
+        }
     }
 
     #[test]
