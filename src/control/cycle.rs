@@ -234,7 +234,12 @@ impl Controller {
     pub fn reference(&self, state: &State, set_point: &SetPoint) -> (Vector3<f64>, Motion) {
         match (&self.state_feedback, &state.state_feedback, &state.doing) {
             (Some(law), Some(elastic), Doing::Following(_)) => law.reference(elastic),
-            (None, _, Doing::Following(anchor)) => (*anchor, set_point.motion.unwrap_or_default()),
+            (None, _, Doing::Following(anchor)) => {
+                let mut motion = set_point.motion.unwrap_or_default();
+                // An anchor that has not reached the set point also moves relative to it.
+                motion.rates += self.slew.next_step(anchor, &set_point.joints) / self.period;
+                (*anchor, motion)
+            }
             _ => (state.report.joints, Motion::default()),
         }
     }

@@ -22,5 +22,6 @@ mod reflexes;
 mod refused_paths;
 mod rig;
 mod set_points;
+mod slewing;
 mod slow_planner;
 mod touch;

@@ -26,4 +26,11 @@ impl Slew {
         let farthest = way.amax();
         *anchor = if farthest > self.step { *anchor + way * (self.step / farthest) } else { *target };
     }
+
+    /// Returns the step by which the next cycle moves `anchor` toward `target`, rad.
+    pub fn next_step(&self, anchor: &Vector3<f64>, target: &Vector3<f64>) -> Vector3<f64> {
+        let mut next = *anchor;
+        self.advance(&mut next, target);
+        next - anchor
+    }
 }

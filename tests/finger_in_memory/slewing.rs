@@ -1,0 +1,31 @@
+//! The reference while the anchor of Figures 9, 10 and 11 moves toward a set point at a limited speed.
+
+use crate::motion::Track;
+use crate::rig::{Bench, TARGET};
+use nalgebra::Vector3;
+use sun2xp::model::configuration::Scheme;
+
+#[test]
+fn a_slewing_anchor_is_reported_with_its_rates() {
+    for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11] {
+        let mut bench = Bench::with(|configuration| {
+            configuration.fingers.iter_mut().for_each(|finger| finger.controller.scheme = Some(scheme));
+        });
+        bench.opens();
+        bench.goes(TARGET);
+        bench.mailbox.send(|set_point| set_point.joints = TARGET + Vector3::new(0.2, 0.1, 0.0)).expect("not faulted");
+        let mut track = Track(Vec::new());
+        track.run(&mut bench, 600);
+        let mut fastest = 0.0f64;
+        for pair in track.0.windows(2) {
+            let slope = (pair[1].joints - pair[0].joints) * 1000.0;
+            let rates = pair[0].motion.rates;
+            // The set point arrives in one of these periods. The rates before it are zero.
+            assert!((slope - rates).amax() < 1e-9 || rates == Vector3::zeros(), "{scheme:?}: {rates} and {slope}");
+            fastest = fastest.max(rates.amax());
+        }
+        assert!(fastest > 1.0, "{scheme:?}: {fastest} rad/s");
+        let last = track.0.last().expect("600 periods");
+        assert!(last.motion.rates.amax() == 0.0, "{scheme:?}: {last:?}");
+    }
+}
