@@ -210,3 +210,25 @@ fn a_frictionless_point_slides() {
         law().joint_stiffness(&set_point(theta, &contact, Law::Report).into(), &theta).symmetric_eigenvalues();
     assert_eq!(eigenvalues.iter().filter(|&&value| value.abs() > 1e-9).count(), 1);
 }
+
+/// A soft finger that is turned away keeps its direction beyond half a turn. Contact type 4 resists the rotation about
+/// the normal, here the axis of joints 1 and 2.
+#[test]
+fn beyond_half_a_turn_the_torque_of_a_soft_finger_keeps_its_direction() {
+    let theta = Vector3::new(0.0, -0.5, 0.1);
+    let contact = Contact::soft_finger(Matrix4::from_diagonal_element(1.0), Vector3::x()).expect("a spring");
+    let mut last = 0.0;
+    for step in 1..=40 {
+        let turned = theta + Vector3::new(0.0, f64::from(step) * 0.05, f64::from(step) * 0.05);
+        let vector = LINKS.rotation_between(&theta, &turned);
+        assert!((vector - Vector3::x() * f64::from(step) * 0.1).amax() < 1e-12, "{step}: {vector}");
+        // The translation acts too, so two springs are compared: one has a rotational stiffness, one has none.
+        let mut k = Matrix4::from_diagonal_element(1.0);
+        k[(3, 3)] = 0.0;
+        let without = Contact::soft_finger(k, Vector3::x()).expect("a spring");
+        let torque = |contact: &Contact| law().spring(&set_point(turned, contact, Law::Exact).into(), &theta);
+        let rotational = torque(&contact)[1] - torque(&without)[1];
+        assert!(rotational > last, "{step}: {rotational} after {last}");
+        last = rotational;
+    }
+}

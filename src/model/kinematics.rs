@@ -56,6 +56,20 @@ impl Links {
             * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), theta[1] + theta[2])
     }
 
+    /// Returns the rotation vector, rad, that turns the last link from its rotation at `from` to its rotation at `to`.
+    /// This vector is continuous in the joint angles. Beyond half a turn it is longer than pi, because the shorter
+    /// rotation to the same place has the opposite direction.
+    pub fn rotation_between(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
+        // A quaternion contains half of the angle, so its real part is negative beyond half a turn. `scaled_axis` would
+        // return the shorter rotation.
+        let turned = self.tip_rotation(to) * self.tip_rotation(from).inverse();
+        let length = turned.imag().norm();
+        if length == 0.0 {
+            return Vector3::zeros();
+        }
+        turned.imag() * (2.0 * length.atan2(turned.w) / length)
+    }
+
     /// Returns the Jacobian of the tip's complete motion in the finger's frame. Rows 0 to 2 are those of
     /// [`Links::jacobian`], cm/rad. Rows 3 to 5 belong to the rotation of [`Links::tip_rotation`], rad/rad, and their
     /// columns are the axes of the joints.

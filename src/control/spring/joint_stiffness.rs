@@ -109,15 +109,6 @@ impl JointStiffness {
         let tip = tip(&jacobian);
         PosedSpring { of: self, joints: *joints, exact, damping, tip, stiffened, scale: 1.0, hold, k_theta }
     }
-
-    /// Returns the rotation vector, rad, from the tip's pose at `joints` to the pose at `desired`.
-    ///
-    /// The rotation vector describes the complete rotation between the two poses. It is not J (theta_d - theta). Like
-    /// x_d - x, it depends only on the two poses. So the deflection of the exact law is zero when the tip is at the
-    /// desired pose, for any joint solution.
-    fn rotation(&self, desired: &Vector3<f64>, joints: &Vector3<f64>) -> Vector3<f64> {
-        (self.links.tip_rotation(desired) * self.links.tip_rotation(joints).inverse()).scaled_axis()
-    }
 }
 
 /// Returns the position of the tip, cm, from the Jacobian of its motion, which already contains the sines of the pose.
@@ -189,7 +180,9 @@ impl PosedSpring<'_> {
         if rotational.iter().all(|&entry| entry == 0.0) {
             return torques;
         }
-        torques + rotational.tr_mul(&self.of.rotation(desired, &self.joints))
+        // The deflection is the rotation between the two poses, and not J (theta_d - theta). Like x_d - x it is zero
+        // where the tip is at the desired pose, for any joint solution.
+        torques + rotational.tr_mul(&self.of.links.rotation_between(&self.joints, desired))
     }
 
     /// Returns tau of the damper, N cm, at joint rates, rad/s. Its matrix is symmetric, positive definite, and
