@@ -2,11 +2,13 @@
 //! A file always has its complete old content or its complete new content, even if a write fails or if several
 //! processes write at the same time.
 
+mod layout;
 mod privileges;
 mod regular;
 mod replace;
 mod update;
 
+pub use layout::with_line_ends_of;
 pub use privileges::raised_privileges;
 pub use regular::{open_regular_file, read_regular_file};
 #[cfg(feature = "internals")]

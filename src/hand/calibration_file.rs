@@ -4,16 +4,13 @@
 mod editing;
 
 use super::configuration_file::{FingersWithIo, LARGEST, parse, to_document};
-use crate::files::{UpdateError, update_file};
+use crate::files::{UpdateError, update_file, with_line_ends_of};
 use crate::hand::ConfigurationError;
 use crate::hand::found::{Found, FoundValue, Misfit};
 use crate::model::configuration::{Configuration, ConfiguredFinger};
 use editing::{child, same, set, written};
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, Value};
-
-/// Some editors put this at the beginning of a file.
-const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// Compares the results with the configuration file at `path`, and writes those that differ into it. Everything else
 /// in the file is kept, including changes that others have made since it was read. Several processes may store at the
@@ -50,21 +47,10 @@ fn change(path: &Path, text: &str, found: &[Found]) -> Result<Option<String>, Co
     if !changed {
         return Ok(None);
     }
-    let changed = like(text, document.to_string());
+    let changed = with_line_ends_of(text, document.to_string());
     match parse(&changed, with_io) {
         Ok(_) => Ok(Some(changed)),
         Err(wrong) => Err(unusable(format!("with the new calibration, {wrong}"))),
-    }
-}
-
-/// Gives a changed text the byte order mark and the line ends of the original, which the parser drops.
-fn like(before: &str, mut changed: String) -> String {
-    if before.contains("\r\n") && before.matches("\r\n").count() == before.matches('\n').count() {
-        changed = changed.replace("\r\n", "\n").replace('\n', "\r\n");
-    }
-    match before.strip_prefix(BYTE_ORDER_MARK) {
-        Some(_) if !changed.starts_with(BYTE_ORDER_MARK) => format!("{BYTE_ORDER_MARK}{changed}"),
-        _ => changed,
     }
 }
 

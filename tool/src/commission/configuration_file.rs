@@ -2,10 +2,11 @@
 
 use crate::failure::Failure;
 use std::path::Path;
-use sun2xp::files::{UpdateError, update_file};
+use sun2xp::control::Controller;
+use sun2xp::files::{UpdateError, update_file, with_line_ends_of};
 use sun2xp::hand::parse_configuration;
 use sun2xp::model::ShownPath;
-use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::model::configuration::{ConfiguredFinger, Unusable};
 use toml_edit::{Array, DocumentMut, Formatted, Item, Table, Value};
 
 /// Largest configuration file, bytes.
@@ -96,8 +97,14 @@ fn with(text: &str, finger: i32, changed: &[Changed], comment: &dyn Fn(&str) -> 
             key.leaf_decor_mut().set_prefix(format!("{kept}{gap}{MARK}{comment}\n"));
         }
     }
-    let text = document.to_string();
-    parse_configuration(&text).map_err(|error| format!("the results do not fit the configuration file: {error}"))?;
+    let text = with_line_ends_of(text, document.to_string());
+    let configuration = parse_configuration(&text)
+        .map_err(|error| format!("the results do not fit the configuration file: {error}"))?;
+    // A hand would refuse to open with values with which no controller can be constructed.
+    let found = configuration.fingers.get(finger as usize - 1).ok_or("a finger has vanished")?;
+    Controller::new(found, configuration.hand.rate).map_err(|Unusable { key, reason }| {
+        format!("with the results, no hand opens: finger.{finger}.{key} {reason}")
+    })?;
     Ok(text)
 }
 
@@ -164,6 +171,23 @@ mod tests {
         let again = changed(|finger| finger.motor.sign[2] = -1, &new);
         assert_eq!(again.matches(MARK).count(), 1, "{again}");
         assert!(again.contains("sign = [1, 1, -1, 1]"), "{again}");
+    }
+
+    #[test]
+    fn line_ends_and_the_byte_order_mark_are_kept() {
+        let text = "\u{feff}# my hand\r\n[finger.2]\r\nport = \"simulated\"\r\n";
+        let new = changed(|finger| finger.motor.sign[1] = -1, text);
+        assert!(new.starts_with(text) && new.matches('\n').count() == new.matches("\r\n").count(), "{new:?}");
+    }
+
+    #[test]
+    fn results_with_which_no_hand_opens_are_refused() {
+        let before = ConfiguredFinger::default();
+        let mut after = before.clone();
+        after.motor.continuous_torque = [0.1; 4];
+        let [before, after] = [&before, &after].map(|finger| toml_edit::ser::to_document(finger).expect("a document"));
+        let refused = with("", 2, &differences(&before, &after), &|key| key.into()).expect_err("refused").to_string();
+        assert!(refused.contains("finger.2.motor.continuous_torque"), "{refused}");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::port_search::{Answer, Taken, search};
 use crate::failure::{Failure, wrong_usage};
 use std::io::{self, Write};
 use std::path::Path;
-use sun2xp::files::{UpdateError, update_file};
+use sun2xp::files::{UpdateError, update_file, with_line_ends_of};
 use sun2xp::hand::parse_configuration;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::model::{FingerNumber, ShownPath};
@@ -55,7 +55,7 @@ fn with(text: &str, finger: FingerNumber, answer: &Answer, ports: &[String]) -> 
         encoder.set_implicit(false);
         set(encoder, "counts_per_revolution", [i64::from(counts); 4].into_iter().collect::<Array>());
     }
-    let text = document.to_string();
+    let text = with_line_ends_of(text, document.to_string());
     parse_configuration(&text).map_err(|error| format!("the finger does not fit the configuration file: {error}"))?;
     Ok(text)
 }

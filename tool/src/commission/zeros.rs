@@ -31,7 +31,8 @@ pub fn zeros(desk: &mut Desk) -> Result<Outcome, Failure> {
 /// Zeros the finger by its method. Returns whether it was done. `held` says whether the person may still hold the
 /// finger.
 pub fn zero(desk: &mut Desk, outcome: &mut Outcome, held: bool) -> Result<bool, Failure> {
-    let at_pose = desk.finger.zeroing_method() == ZeroingMethod::Pose;
+    let method = desk.finger.zeroing_method();
+    let at_pose = method == ZeroingMethod::Pose;
     let act = match at_pose {
         true => Some(Act::HoldPose(desk.finger.zeroing.pose_degrees)),
         false => held.then_some(Act::LetGo),
@@ -57,8 +58,12 @@ pub fn zero(desk: &mut Desk, outcome: &mut Outcome, held: bool) -> Result<bool, 
         Err(Refused::Failure(failure)) => return Err(failure),
     };
     note(desk, outcome, &zeros);
-    let place = if at_pose { "in its pose" } else { "at its stops" };
-    outcome.about("encoder.zero", format!("zeroed {place}"));
+    let how = match method {
+        ZeroingMethod::Pose => "zeroed in its pose",
+        ZeroingMethod::Kept => "kept, because zeroing.method is \"kept\"",
+        _ => "zeroed at its stops",
+    };
+    outcome.about("encoder.zero", how);
     if at_pose {
         desk.person.show("The finger is zeroed and is a spring now.");
         return desk.prepare(outcome, Act::LetGo);
