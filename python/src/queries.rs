@@ -185,7 +185,7 @@ impl Hand {
 
     /// Makes the newest count of each tactile element of a finger its zero, and returns the zeros.
     fn tare_touch(&self, py: Python<'_>, finger: i32) -> PyResult<Vec<u16>> {
-        self.quick(py, |hand| hand.tare_touch(finger))
+        self.quick(py, |hand| hand.tare_touch(finger).and_then(|()| hand.touch_zeros(finger)))
     }
 
     /// Returns the time of `count` calls of the Rust function behind `position`, s. For the benchmark of the package.

@@ -2,7 +2,7 @@
 
 use super::protocol::{Kind, TURNAROUND_MICROSECONDS};
 use crate::model::Counted;
-use crate::model::configuration::RATES;
+use crate::model::configuration::{BAUDS, RATES};
 use thiserror::Error;
 
 /// Start bit, eight data bits, stop bit.
@@ -46,17 +46,21 @@ pub struct TooFast {
 }
 
 fn remedy(least_baud: u32, fastest_rate: f64, fingers: usize) -> String {
-    let mut ways = vec![format!("Set baud = {least_baud} or more for every finger of the port and in its board")];
+    let mut ways = Vec::new();
+    if least_baud <= *BAUDS.end() {
+        ways.push(format!("set baud = {least_baud} or more for every finger of the port and in its board"));
+    }
     if fastest_rate >= *RATES.start() {
         ways.push(format!("set hand.rate = {fastest_rate:.0} or less"));
     }
     if fingers > 1 {
         ways.push("put fewer fingers on the port".into());
     }
-    match ways.split_last() {
+    let ways = match ways.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{}, or {last}", others.join(", ")),
         _ => ways.concat(),
-    }
+    };
+    ways.replacen(|_: char| true, &ways[..1].to_uppercase(), 1)
 }
 
 /// Returns how long one exchange with `fingers` fingers takes on the line, us. `more` is the number of additional bytes
@@ -157,6 +161,12 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_baud_rate_that_no_configuration_may_have_is_not_a_remedy() {
+        let text = capacity(12_000_000, 3, 5000.0).unwrap_err().to_string();
+        assert!(!text.contains("baud =") && text.contains("Set hand.rate = "), "{text}");
     }
 
     #[test]

@@ -103,5 +103,5 @@ pub unsafe extern "C" fn sun2xp_touch(
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_tare_touch(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
     let hand = Handle::of(hand);
-    guarded("sun2xp_tare_touch", hand, || hand_table::with(hand, |hand| hand.tare_touch(finger).map(|_| ())))
+    guarded("sun2xp_tare_touch", hand, || hand_table::with(hand, |hand| hand.tare_touch(finger)))
 }

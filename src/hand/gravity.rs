@@ -1,7 +1,7 @@
 //! Gravity that changes while the hand is open, because the hand is on a moving arm.
 
-use crate::hand::{Hand, HandError};
-use crate::model::{Section, UnusableConfiguration};
+use crate::hand::{Hand, HandError, SetPointError};
+use crate::model::configuration::LARGEST_GRAVITY as LARGEST;
 
 impl Hand {
     /// Sets gravity in the palm's frame, m/s^2. It replaces `hand.gravity` until the hand is closed. Every finger
@@ -16,13 +16,13 @@ impl Hand {
     /// Returns an error if a component is NaN, infinite or beyond 100 m/s^2. Then nothing is changed. Returns an error
     /// if a finger is faulted. The other fingers then have the new gravity, and this finger takes it when it recovers.
     pub fn set_gravity(&self, gravity: [f64; 3]) -> Result<(), HandError> {
+        // The configuration has the same range. Its check would allocate the text of a refusal.
+        if let Some(component) = gravity.iter().position(|value| !(-LARGEST..=LARGEST).contains(value)) {
+            return Err(SetPointError::Gravity { component, value: gravity[component] }.into());
+        }
         // The lock is held throughout, so that the fingers take the values of two concurrent calls in the same order.
         let mut configuration = self.configuration.write();
-        let before = std::mem::replace(&mut configuration.hand.gravity, gravity);
-        if let Err(unusable) = configuration.hand.check_gravity() {
-            configuration.hand.gravity = before;
-            return Err(UnusableConfiguration { section: Section::Hand, unusable }.into());
-        }
+        configuration.hand.gravity = gravity;
         let mut refusal = None;
         for member in self.dispatcher.members() {
             let finger = member.number;

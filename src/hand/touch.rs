@@ -30,13 +30,23 @@ impl Hand {
     }
 
     /// Tares the tactile elements of finger 1, 2 or 3: the newest count of each element becomes its zero. An element
-    /// without a valid reading keeps its zero. Returns the zeros of all elements. They are in force until the hand is
-    /// closed. To keep them, write them as `zero` into `[finger.touch]`.
+    /// without a valid reading keeps its zero. The zeros are in force until the hand is closed. To keep them, write
+    /// those of [`Hand::touch_zeros`] as `zero` into `[finger.touch]`. The call does not allocate.
     ///
     /// # Errors
     /// Returns an error if there is no such finger.
-    pub fn tare_touch(&self, finger: i32) -> Result<Vec<u16>, HandError> {
+    pub fn tare_touch(&self, finger: i32) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
-        Ok(self.dispatcher.member(finger)?.touch.tare())
+        self.dispatcher.member(finger)?.touch.tare();
+        Ok(())
+    }
+
+    /// Returns the zeros of the tactile elements of finger 1, 2 or 3, counts.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger.
+    pub fn touch_zeros(&self, finger: i32) -> Result<Vec<u16>, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
+        Ok(self.dispatcher.member(finger)?.touch.zeros())
     }
 }

@@ -13,7 +13,9 @@ mod simulation;
 mod telemetry;
 mod touch;
 
-use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, RATES, RealTime, Unusable};
+use crate::model::configuration::{
+    BAUDS, Configuration, ConfiguredFinger, ConfiguredHand, LARGEST_GRAVITY, RATES, RealTime, Unusable,
+};
 use crate::model::{FingerNumber, TendonsError};
 use ranges::{each, path, unusable, within};
 use std::fmt;
@@ -108,16 +110,8 @@ impl ConfiguredHand {
         }
         path("black_box", self.black_box.as_deref().unwrap_or_default())?;
         self.search_ports.iter().try_for_each(|pattern| path("search_ports", pattern))?;
-        self.check_gravity()?;
+        each("gravity", &self.gravity, -LARGEST_GRAVITY, LARGEST_GRAVITY, "m/s^2")?;
         self.check_simulated_object()
-    }
-
-    /// Checks `gravity`, which can change while the hand is open.
-    ///
-    /// # Errors
-    /// Returns an error if a component is unusable.
-    pub fn check_gravity(&self) -> Result<(), Unusable> {
-        each("gravity", &self.gravity, -100.0, 100.0, "m/s^2")
     }
 }
 
@@ -131,7 +125,7 @@ impl ConfiguredFinger {
             return unusable("port", "is empty: set it to the path of a serial port or to \"simulated\"".into());
         }
         path("port", &self.port)?;
-        within("baud", self.baud.into(), 9600.0, 12_000_000.0, "baud")?;
+        within("baud", self.baud.into(), (*BAUDS.start()).into(), (*BAUDS.end()).into(), "baud")?;
         within("address", self.address.into(), 0.0, 15.0, "")?;
         within("thread", self.thread.into(), 0.0, 3.0, "")?;
         within("priority", self.priority.into(), 0.0, 99.0, "")?;

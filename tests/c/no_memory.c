@@ -68,6 +68,9 @@ static void quick_calls(void)
     CHECK(sun2xp_fault(HAND, 1, &Fault) == 0 && Fault.number == 0);
     REFUSED(SendPos(9, Pos), EINVAL, "no finger 9");
     REFUSED(SendPos(1, (float *)NULL), EFAULT, "null pointer");
+    CHECK(sun2xp_set_gravity(HAND, Tip) == 0);
+    Tip[1] = 101;
+    REFUSED(sun2xp_set_gravity(HAND, Tip), EINVAL, "gravity[1] is 101.0 m/s^2");
     Pos[0] = 9;
     REFUSED(SendPos(1, Pos), ERANGE, "outside the limits");
 }

@@ -87,17 +87,19 @@ impl Elements {
         self.0.elements.get(element).map(Element::reading)
     }
 
-    /// Makes the newest count of every element its zero. An element without a valid reading keeps its zero. Returns the
-    /// zeros.
-    pub fn tare(&self) -> Vec<u16> {
-        let tare = |element: &Element| {
+    /// Makes the newest count of every element its zero. An element without a valid reading keeps its zero.
+    pub fn tare(&self) {
+        for element in self.0.elements.iter() {
             let reading = element.reading();
             if reading.valid {
                 element.zero.store(reading.count.into(), Ordering::Release);
             }
-            element.zero.load(Ordering::Acquire) as u16
-        };
-        self.0.elements.iter().map(tare).collect()
+        }
+    }
+
+    /// Returns the zeros of all elements, counts.
+    pub fn zeros(&self) -> Vec<u16> {
+        self.0.elements.iter().map(|element| element.zero.load(Ordering::Acquire) as u16).collect()
     }
 
     /// Returns the number of events that the board has lost since open, because they did not fit into its queue.

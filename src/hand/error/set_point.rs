@@ -144,6 +144,14 @@ pub enum SetPointError {
     /// A time limit is negative or NaN.
     #[error("the time limit of {0} s is negative or not a number: pass zero or a positive time")]
     NoSuchLimit(f64),
+    /// A component of gravity is NaN, infinite or beyond 100 m/s^2.
+    #[error("gravity[{component}] is {value:?} m/s^2: pass a number from -100 to 100")]
+    Gravity {
+        /// 0, 1 and 2 for x, y and z.
+        component: usize,
+        /// The component, m/s^2.
+        value: f64,
+    },
     /// A command of a group has joint angles and a position of the tip.
     #[error("the command for finger {0} has joint angles and a position of the tip: leave one of them out")]
     TwoPoses(i32),
@@ -183,6 +191,7 @@ impl SetPointError {
         match self {
             Self::NotFinite { .. } | Self::NoSuchContact(_) | Self::TwiceInGroup(_) => libc::EINVAL,
             Self::GroupSize(_) | Self::TwoPoses(_) | Self::NoSuchCondition(_) | Self::NoSuchLimit(_) => libc::EINVAL,
+            Self::Gravity { .. } => libc::EINVAL,
             Self::GroupsWaiting(_) => libc::EBUSY,
             Self::Contact { source: ContactError::NotFinite(_), .. } => libc::EINVAL,
             Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,

@@ -8,6 +8,12 @@ use std::ops::RangeInclusive;
 /// Admissible rates of a hand, Hz. The gains for 500 Hz are stable down to 470 Hz, and the finger oscillates at 450 Hz.
 pub const RATES: RangeInclusive<f64> = 500.0..=5000.0;
 
+/// The largest magnitude of a component of gravity, m/s^2.
+pub const LARGEST_GRAVITY: f64 = 100.0;
+
+/// Permitted baud rates of a port, bit/s.
+pub const BAUDS: RangeInclusive<u32> = 9600..=12_000_000;
+
 /// The behaviour of the motors when commands stop because the hand is closed, or because the planner exits or dies.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

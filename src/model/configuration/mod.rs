@@ -37,7 +37,7 @@ pub use events::ConfiguredEvents;
 pub use friction::ConfiguredFriction;
 pub use gauge::{ConfiguredGauge, GaugeReference};
 pub use geometry::ConfiguredGeometry;
-pub use hand::{ConfiguredHand, EndState, OnFault, OutOfRange, PeriodClock, RATES, RealTime};
+pub use hand::{BAUDS, ConfiguredHand, EndState, LARGEST_GRAVITY, OnFault, OutOfRange, PeriodClock, RATES, RealTime};
 pub use joints::ConfiguredJoints;
 pub use links::ConfiguredLinks;
 pub use monitors::ConfiguredMonitors;
