@@ -2,9 +2,10 @@
 
        CanDrives INTERFACE | FOLDER
 
-   Answers every frame of torques with encoder counts and tensions, and then advances that finger by 1 ms. Each drive
-   has a watchdog. The frame that starts the drive sets the watchdog's time. If no torques arrive for this time, the
-   drive releases its motors. The program ends after 10 s without a frame. */
+   Answers a frame that starts or stops a drive with encoder counts and tensions. Answers a frame of torques for a
+   started drive in the same way, and then advances that finger by 1 ms. Each drive has a watchdog. The frame that
+   starts the drive sets the watchdog's time. If no torques arrive for this time, the drive releases its motors. The
+   program ends after 10 s without a frame. */
 
 #define _GNU_SOURCE
 #include <stdlib.h>

@@ -254,6 +254,7 @@ extern "C" {
 
  Returns 0, or -1 with
    EPERM    forked child
+   ENOMEM   there is not enough memory
    EBUSY    a hand is open and stays open, or another thread is opening or closing one
    ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
    EINVAL   the configuration is unusable; HandError names file, line and reason

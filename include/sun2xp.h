@@ -52,7 +52,7 @@
    returns the negative of a SUN2XP_ERROR_ number, sets errno, and changes nothing unless its entry says
    otherwise. sun2xp_error gives number, text and remedy of the calling thread's last refused call, for
    one hand or for any. A call that succeeds changes neither errno nor these. If several reasons apply, a
-   call reports the one that its entry lists first:
+   call reports the one that its entry lists first. The errnos and the numbers that belong to them are:
 
        EPERM      SUN2XP_ERROR_FORKED          the process is a forked child (chapter 5)
        EFAULT     SUN2XP_ERROR_ARGUMENT        an argument is a null pointer
@@ -93,9 +93,9 @@
    4. STRUCTS
 
    The first member of every struct is size. Set it to the sizeof of the struct before the call. A smaller
-   size is refused. Later versions of the library add members at the end. If a program was compiled with a
-   newer header and runs with an older library, the result members that this library does not know are
-   zero. The library never changes size.
+   size is refused, and so is one above 4096. Later versions of the library add members at the end. If a
+   program was compiled with a newer header and runs with an older library, the result members that this
+   library does not know are zero. The library never changes size.
 
 
    5. THREADS, SIGNALS, FORK, EXIT
@@ -139,8 +139,9 @@
    sun2xp_recover, sun2xp_zero, sun2xp_identify, sun2xp_adjust and
    sun2xp_write_black_box (4 MiB), sun2xp_send_path (1 MiB), sun2xp_wait, sun2xp_on_event,
    sun2xp_event_descriptor and sun2xp_wait_event (64 KiB) are refused with ENOMEM if that much memory is
-   not free. They test this directly after EPERM, and sun2xp_send_path tests it after EFAULT. If memory runs
-   out while one of them runs, the process is aborted, and the boards' watchdogs end the motion. If less
+   not free. They test this directly after EPERM. There are two exceptions: sun2xp_send_path tests it after
+   EFAULT, and sun2xp_wait_event after its other reasons, if there is no event. If memory runs out while one
+   of them runs, the process is aborted, and the boards' watchdogs end the motion. If less
    than 4 MiB are free when a finger faults, no black box is written, and a message says so. If the library
    was loaded with dlopen, the first call of a thread needs memory for its thread-local data. If there is
    none, the C library aborts the process.
@@ -232,9 +233,9 @@ typedef struct sun2xp_hand sun2xp_hand;
 #define SUN2XP_ERROR_FORKED 2               /* The process is a forked child, which has no servo threads. */
 #define SUN2XP_ERROR_EXITING 3              /* The process is exiting, and its hands are closed. */
 #define SUN2XP_ERROR_NO_HAND 4              /* The handle does not belong to an open hand. */
-#define SUN2XP_ERROR_BUSY 5                 /* Hand or finger is busy: being opened, closed, calibrated or recovered.
-                                               Call again later. */
-#define SUN2XP_ERROR_TOO_MANY 6             /* Too many hands, groups or reflexes. */
+#define SUN2XP_ERROR_BUSY 5                 /* Hand or finger is busy: it is being opened, closed, calibrated or
+                                               recovered, or 16 groups wait for the finger. Call again later. */
+#define SUN2XP_ERROR_TOO_MANY 6             /* Too many hands or reflexes. */
 #define SUN2XP_ERROR_ARGUMENT 7             /* An argument makes no sense: null, NaN, no such finger, a struct that
                                                is too small. */
 #define SUN2XP_ERROR_LIMIT 8                /* An argument is outside the limits of the finger: out of reach, too
@@ -275,8 +276,9 @@ struct sun2xp_error {
    error   result; set error->size before the call
 
  Every thread has its own refusals. A thread remembers the last refusal of each of the four hands that
- have refused its calls most recently. The refusal of a call without a usable handle belongs to no
- hand, and only hand = null returns it. A call that succeeds does not change the refusals.
+ have refused its calls most recently. The refusal of a call that gets no handle, such as sun2xp_open, or a
+ null handle belongs to no hand, and only hand = null returns it. A call that succeeds does not change the
+ refusals.
 
  Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
 
@@ -581,7 +583,7 @@ struct sun2xp_io {
  or has died.
 
  A tension may be from -8191 to 57342 steps. A tension that is NaN or outside this range faults the
- finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by 32768 counts between two exchanges.
+ finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by more than 32767 counts between two exchanges.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -592,7 +594,8 @@ struct sun2xp_io {
    EFAULT   a function of io is null
    EMFILE   16 hands are open
    ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
-   EINVAL   the configuration is unusable, or gauge.newton_per_count or gauge.zero was set for another board
+   EINVAL   the configuration is unusable; gauge.newton_per_count or gauge.zero was set for another board;
+            tension_unit is negative, infinite or NaN
    others   as sun2xp_open, and the errno that start has returned
 
  Threads: any.
@@ -842,7 +845,9 @@ int sun2xp_send_contact(sun2xp_hand *hand, int finger, int dimensions, const dou
    finger   1 to 3
    ratio    damping relative to what the controller chooses from the stiffness; 1 after sun2xp_open
 
- The ratio changes without a jump in torque and stays until another ratio is sent. A finger with much
+ The ratio changes without a jump in torque and stays until another ratio is sent. It becomes 1 again when
+ the finger becomes a spring after a fault or a calibration, when a set point expires, and at the reaction
+ SUN2XP_THEN_SOFTEN. SUN2XP_THEN_DAMP replaces it. A finger with much
  less or much more damping does not come to rest. The range therefore depends on controller, rate and the
  largest eigenvalue k of the stiffness, N/cm:
 
@@ -1071,7 +1076,8 @@ struct sun2xp_path_pose {
  continuous. Because they are fed forward, the finger follows without the lag of sun2xp_send_position.
  Between two poses that have a Kx, Kx changes linearly. Until the first pose that has a Kx, Kx changes
  linearly from its value at the beginning of the path. After sun2xp_send_joint_stiffness this value is 0,
- and the joint stiffness ends when the path begins, so send Kx before the path.
+ and the joint stiffness ends when a path with a Kx begins. So send Kx before such a path. A path without a
+ Kx leaves the joint stiffness as it is.
 
  The whole path is checked before anything moves: against the joint limits, and against speed,
  acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -1094,6 +1100,7 @@ struct sun2xp_path_pose {
    EIO      the finger is faulted
    EBUSY    the finger is being opened or calibrated, or is limp
    EAGAIN   the finger has become a spring again during the call
+   ERANGE   a Kx is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio instead)
 
  Threads: any. Never waits for a servo. Takes about 1 ms, depending on the number of poses.
 
@@ -1321,7 +1328,7 @@ struct sun2xp_limits {
    finger   1 to 3
    limits   result; set limits->size before the call
 
- The limits come from the configuration; sun2xp_adjust can change them.
+ The limits come from the configuration. sun2xp_adjust can change all of them except motor_torque.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1501,7 +1508,7 @@ int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
    EINVAL   no such finger; keys is not TOML
    EBUSY    a key cannot change while the hand is open
    EINVAL   an unknown key; an unusable configuration
-   ERANGE   the position or stiffness sent last is outside the new limits (hand.out_of_range =
+   ERANGE   the position, stiffness, torque or damping sent last is outside the new limits (hand.out_of_range =
             "clamp" clamps it instead)
    EIO      the finger is faulted
 
@@ -1518,8 +1525,9 @@ int sun2xp_adjust(sun2xp_hand *hand, int finger, const char *keys);
 
 #define SUN2XP_STATE_RUNNING 1              /* The fingertip is the spring that the planner has commanded. */
 #define SUN2XP_STATE_FAULTED 2              /* The finger has stopped because of a fault. Its motors are in the
-                                               configured end state. Calls for the finger are refused with EIO until
-                                               sun2xp_recover, or sun2xp_close and sun2xp_open. */
+                                               configured end state. Calls that command the finger or read its pose
+                                               are refused with EIO until sun2xp_recover, or sun2xp_close and
+                                               sun2xp_open. */
 #define SUN2XP_STATE_LIMP 3                 /* The motors are off after a failed calibration. Set points have no
                                                effect. The finger becomes a spring again after another calibration,
                                                or after sun2xp_close and sun2xp_open. */
@@ -1748,7 +1756,9 @@ struct sun2xp_fault {
     size_t size;                            /* sizeof (struct sun2xp_fault), set before the call. */
     int number;                             /* Fault that has stopped the finger: SUN2XP_FAULT_..., or 0 if none has. */
     int part;                               /* Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0. */
-    int warning;                            /* Warning of the last second: SUN2XP_FAULT_..., or 0 if there was none. */
+    int warning;                            /* Newest warning of the last second: SUN2XP_FAULT_..., or 0 if there was
+                                               none. If the system has refused SCHED_FIFO to the hand,
+                                               SUN2XP_FAULT_REALTIME_REFUSED takes the place of 0. */
     int warning_part;                       /* Part that the warning concerns, numbered as in part. */
     double value;                           /* Value of the fault, in its unit (docs/faults.md). */
     double warning_value;                   /* Value of the warning. */
@@ -1799,14 +1809,15 @@ const char *sun2xp_fault_text(int number);
  sun2xp_stop_all - emergency stop
 
  Every finger of every open hand faults (SUN2XP_FAULT_EMERGENCY_STOP_CALL) at the start of its next cycle. The servo
- commands its board to enter the configured end state, and calls for the finger are refused with EIO
- until sun2xp_recover, or sun2xp_close and sun2xp_open. A hand that is opened later is not
+ commands its board to enter the configured end state. Calls that command the finger or read its pose are
+ refused with EIO until sun2xp_recover, or sun2xp_close and sun2xp_open. A hand that is opened later is not
  affected.
 
  With hand.end_state = "release", the default, the torque goes to zero at once. With "hold" the motors
  keep their last torque, up to hand.hold_torque_limit, for hand.hold_time_ms, by default 2 s and at most
- a minute. Configure "hold" only for objects that must not be dropped, because no call releases the torque
- earlier. Only the emergency stop input of the board, or cutting the board's power, releases it earlier.
+ a minute. Configure "hold" only for objects that must not be dropped. Only the emergency stop input of the
+ board, cutting the board's power, or starting the finger again releases the torque earlier: sun2xp_recover, or
+ sun2xp_close and sun2xp_open, configure the board again, and that ends the hold.
 
  sun2xp_stop_all is not a safety function: it needs this process, this machine and the cable.
 
@@ -2134,7 +2145,7 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 #define SUN2XP_WHEN_PLANNER_SILENT 9        /* The planner has sent no set point for the time in the member bound, s. */
 #define SUN2XP_THEN_STOP 1                  /* The finger stops with a fault. */
 #define SUN2XP_THEN_HOLD 2                  /* The finger stays where it is. */
-#define SUN2XP_THEN_SOFTEN 3                /* The tip gets the Kx in the member stiffness. */
+#define SUN2XP_THEN_SOFTEN 3                /* The tip gets the Kx in the member stiffness, and the damping ratio 1. */
 #define SUN2XP_THEN_RETRACT 4               /* The finger goes to the joint angles in the member position. */
 #define SUN2XP_THEN_GRIP 5                  /* The tip presses harder. Its force rises by the amount in the member
                                                value, but to at most the amount in the member largest, both in N.
@@ -2188,7 +2199,7 @@ struct sun2xp_reflex {
    EFAULT   reflex is null
    ENODEV   no such hand
    EINVAL   size is too small; no such finger, joint, condition, reaction or event; the member position
-            or stiffness is NaN
+            or stiffness is NaN or infinite
    ERANGE   another value is NaN or outside its range; sun2xp_send_position would refuse the member
             position, or sun2xp_send_stiffness the member stiffness, with ERANGE
    EDOM     sun2xp_send_stiffness would refuse the member stiffness with EDOM
@@ -2251,7 +2262,8 @@ struct sun2xp_record {
     int computed;                           /* 1: the controller ran and computed the members below. */
     int follows;                            /* 1: position_sent is the set point in force. 0: none is in force. */
     double position[3];                     /* Measured joint angles, rad. */
-    double position_sent[3];                /* Joint angles at which the spring is anchored, rad. */
+    double position_sent[3];                /* Joint angles of the set point in force, rad. The anchor of the spring
+                                               moves toward them. */
     double tension[4];                      /* Measured tendon tensions, N. */
     double tension_sent[4];                 /* Commanded tendon tensions, N. */
     double torque[4];                       /* Commanded motor torques, N cm, sent in the next cycle. */
@@ -2305,8 +2317,8 @@ int sun2xp_record(sun2xp_hand *hand, int finger, unsigned long cycle, struct sun
 
  The library writes a temporary file in the same folder, whose name begins with ".sun2xp-", and renames
  it when it is complete and on the disk. So the folder must be writable, and a refused call leaves an old
- file unchanged. The call takes about 50 ms plus the time that the disk needs for some MB. The servos
- continue.
+ file unchanged. Exception: if only the flush of the folder after the renaming fails, the new file is in place.
+ The call takes about 50 ms plus the time that the disk needs for some MB. The servos continue.
 
  Returns 0, or a negative number with
    EPERM    forked child

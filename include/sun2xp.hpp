@@ -296,9 +296,9 @@ private:
 /// An open hand. Its destructor closes it.
 class hand {
 public:
-    /// Called with each event of a hand, in a thread of the library. It must not throw. It may replace or end itself
-    /// with on_event, and may destroy the hand: it stays alive until it returns. If it ends the function of another
-    /// hand, that function may still be running.
+    /// A function that is called with each event of a hand, in a thread of the library. It must not throw. It may
+    /// replace or end itself with on_event, and may destroy the hand. The function object stays alive until the call
+    /// returns. If it ends the function of another hand, that function may still be running.
     using event_callback = detail::event_callback;
 
     /// Opens the hand of a configuration file.

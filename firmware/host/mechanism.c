@@ -86,8 +86,8 @@ void mechanism_sample(const struct mechanism *finger, struct sensors *sensors)
         /* The encoders read zero when the finger is straight and its tendons have the tensions of the start. */
         double angle = finger->motor[i] - home_tension[i] / stiffness / pulley;
         random = random * 1664525u + 1013904223u;
-        double noise = (double)(random >> 16) * 3 / 65536 - 1;
-        double count = fmax(floor(tension(finger, i) * gauge_counts / gauge_range + 0.5 + noise), 0.0);
+        double noise = floor((double)(random >> 16) * 3 / 65536) - 1;
+        double count = fmax(floor(tension(finger, i) * gauge_counts / gauge_range + 0.5) + noise, 0.0);
         sensors->encoders[i] = (int32_t)floor(angle * counts_a_revolution / (2 * pi));
         sensors->gauges[i] = (uint16_t)fmin(count, gauge_counts - 1);
     }

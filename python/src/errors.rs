@@ -124,7 +124,8 @@ impl Refusal {
         }
     }
 
-    /// What the caller should do. The texts of the library end with the remedy, after the last colon.
+    /// What the caller should do. The texts of the library end with the remedy. What follows the last colon contains
+    /// it, in some texts after more about the cause.
     fn remedy(&self) -> String {
         // The text about wrong wiring has a remedy for what was found.
         if let Some((_, fault)) = self.fault()

@@ -42,7 +42,8 @@ def begins_in(message: Any, now: float) -> float:
 
 def paths(message: Any, prefix: str, fingers: Sequence[int], now: float, *, waited: bool = False) -> List[Path]:
     """Returns the paths of a trajectory with at least one point. A path begins at once, so a trajectory whose stamp is
-    in the future must be sent at its stamp. Its times are those from the stamp.
+    in the future must be sent at its stamp. The times of its paths are then those from the stamp. If the stamp has
+    passed, the paths begin now, and the points that have passed are left out.
 
     Args:
         message: a trajectory_msgs/JointTrajectory. It names all joints of each finger that it moves.

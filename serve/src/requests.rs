@@ -43,7 +43,7 @@ pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload:
         Some(_) if action == Action::Stop => {}
         _ => {
             let text = format!(
-                "{client} may not {}: list it in [serve.clients] of the server as `{client} = \"command\"`",
+                "{client} may not {}: list it in [serve.clients] of the server as `\"{client}\" = \"command\"`",
                 action.name()
             );
             return reply.send(&refuse(Code::NotOwner, text));

@@ -43,7 +43,7 @@ pub struct Zeros {
     pub range_error: Option<Vector3<f64>>,
 }
 
-/// Friction and elasticity.
+/// Friction, elasticity, gauge gains and moment arms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Identified {
     /// `tendon.stiffness`, N/cm.

@@ -32,7 +32,7 @@ use std::ffi::{CStr, c_char, c_int};
 ///   EINVAL   no such finger; keys is not TOML
 ///   EBUSY    a key cannot change while the hand is open
 ///   EINVAL   an unknown key; an unusable configuration
-///   ERANGE   the position or stiffness sent last is outside the new limits (hand.out_of_range =
+///   ERANGE   the position, stiffness, torque or damping sent last is outside the new limits (hand.out_of_range =
 ///            "clamp" clamps it instead)
 ///   EIO      the finger is faulted
 ///

@@ -47,7 +47,7 @@ pub struct sun2xp_record {
     pub follows: c_int,
     /// Measured joint angles, rad.
     pub position: [f64; 3],
-    /// Joint angles at which the spring is anchored, rad.
+    /// Joint angles of the set point in force, rad. The anchor of the spring moves toward them.
     pub position_sent: [f64; 3],
     /// Measured tendon tensions, N.
     pub tension: [f64; 4],
@@ -116,8 +116,8 @@ pub unsafe extern "C" fn sun2xp_record(
 ///
 /// The library writes a temporary file in the same folder, whose name begins with ".sun2xp-", and renames
 /// it when it is complete and on the disk. So the folder must be writable, and a refused call leaves an old
-/// file unchanged. The call takes about 50 ms plus the time that the disk needs for some MB. The servos
-/// continue.
+/// file unchanged. Exception: if only the flush of the folder after the renaming fails, the new file is in place.
+/// The call takes about 50 ms plus the time that the disk needs for some MB. The servos continue.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -36,8 +36,9 @@ pub struct sun2xp_error {
 ///   error   result; set error->size before the call
 ///
 /// Every thread has its own refusals. A thread remembers the last refusal of each of the four hands that
-/// have refused its calls most recently. The refusal of a call without a usable handle belongs to no
-/// hand, and only hand = null returns it. A call that succeeds does not change the refusals.
+/// have refused its calls most recently. The refusal of a call that gets no handle, such as sun2xp_open, or a
+/// null handle belongs to no hand, and only hand = null returns it. A call that succeeds does not change the
+/// refusals.
 ///
 /// Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
 ///

@@ -16,10 +16,11 @@ pub const SUN2XP_ERROR_EXITING: c_int = 3;
 /// The handle does not belong to an open hand.
 pub const SUN2XP_ERROR_NO_HAND: c_int = 4;
 
-/// Hand or finger is busy: being opened, closed, calibrated or recovered. Call again later.
+/// Hand or finger is busy: it is being opened, closed, calibrated or recovered, or 16 groups wait for the finger. Call
+/// again later.
 pub const SUN2XP_ERROR_BUSY: c_int = 5;
 
-/// Too many hands, groups or reflexes.
+/// Too many hands or reflexes.
 pub const SUN2XP_ERROR_TOO_MANY: c_int = 6;
 
 /// An argument makes no sense: null, NaN, no such finger, a struct that is too small.

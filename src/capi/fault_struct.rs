@@ -18,7 +18,8 @@ pub struct sun2xp_fault {
     pub number: c_int,
     /// Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0.
     pub part: c_int,
-    /// Warning of the last second: SUN2XP_FAULT_..., or 0 if there was none.
+    /// Newest warning of the last second: SUN2XP_FAULT_..., or 0 if there was none. If the system has refused
+    /// SCHED_FIFO to the hand, SUN2XP_FAULT_REALTIME_REFUSED takes the place of 0.
     pub warning: c_int,
     /// Part that the warning concerns, numbered as in part.
     pub warning_part: c_int,

@@ -170,7 +170,9 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 ///   finger   1 to 3
 ///   ratio    damping relative to what the controller chooses from the stiffness; 1 after sun2xp_open
 ///
-/// The ratio changes without a jump in torque and stays until another ratio is sent. A finger with much
+/// The ratio changes without a jump in torque and stays until another ratio is sent. It becomes 1 again when
+/// the finger becomes a spring after a fault or a calibration, when a set point expires, and at the reaction
+/// SUN2XP_THEN_SOFTEN. SUN2XP_THEN_DAMP replaces it. A finger with much
 /// less or much more damping does not come to rest. The range therefore depends on controller, rate and the
 /// largest eigenvalue k of the stiffness, N/cm:
 ///

@@ -44,7 +44,7 @@ use std::path::PathBuf;
 /// or has died.
 ///
 /// A tension may be from -8191 to 57342 steps. A tension that is NaN or outside this range faults the
-/// finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by 32768 counts between two exchanges.
+/// finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by more than 32767 counts between two exchanges.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -55,7 +55,8 @@ use std::path::PathBuf;
 ///   EFAULT   a function of io is null
 ///   EMFILE   16 hands are open
 ///   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
-///   EINVAL   the configuration is unusable, or gauge.newton_per_count or gauge.zero was set for another board
+///   EINVAL   the configuration is unusable; gauge.newton_per_count or gauge.zero was set for another board;
+///            tension_unit is negative, infinite or NaN
 ///   others   as sun2xp_open, and the errno that start has returned
 ///
 /// Threads: any.

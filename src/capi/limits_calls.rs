@@ -15,7 +15,7 @@ use std::ffi::c_int;
 ///   finger   1 to 3
 ///   limits   result; set limits->size before the call
 ///
-/// The limits come from the configuration; sun2xp_adjust can change them.
+/// The limits come from the configuration. sun2xp_adjust can change all of them except motor_torque.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -50,7 +50,8 @@ pub struct sun2xp_path_pose {
 /// continuous. Because they are fed forward, the finger follows without the lag of sun2xp_send_position.
 /// Between two poses that have a Kx, Kx changes linearly. Until the first pose that has a Kx, Kx changes
 /// linearly from its value at the beginning of the path. After sun2xp_send_joint_stiffness this value is 0,
-/// and the joint stiffness ends when the path begins, so send Kx before the path.
+/// and the joint stiffness ends when a path with a Kx begins. So send Kx before such a path. A path without a
+/// Kx leaves the joint stiffness as it is.
 ///
 /// The whole path is checked before anything moves: against the joint limits, and against speed,
 /// acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -73,6 +74,7 @@ pub struct sun2xp_path_pose {
 ///   EIO      the finger is faulted
 ///   EBUSY    the finger is being opened or calibrated, or is limp
 ///   EAGAIN   the finger has become a spring again during the call
+///   ERANGE   a Kx is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio instead)
 ///
 /// Threads: any. Never waits for a servo. Takes about 1 ms, depending on the number of poses.
 ///

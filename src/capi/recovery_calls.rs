@@ -15,14 +15,15 @@ use std::ffi::c_int;
 /// sun2xp_stop_all - emergency stop
 ///
 /// Every finger of every open hand faults (SUN2XP_FAULT_EMERGENCY_STOP_CALL) at the start of its next cycle. The servo
-/// commands its board to enter the configured end state, and calls for the finger are refused with EIO
-/// until sun2xp_recover, or sun2xp_close and sun2xp_open. A hand that is opened later is not
+/// commands its board to enter the configured end state. Calls that command the finger or read its pose are
+/// refused with EIO until sun2xp_recover, or sun2xp_close and sun2xp_open. A hand that is opened later is not
 /// affected.
 ///
 /// With hand.end_state = "release", the default, the torque goes to zero at once. With "hold" the motors
 /// keep their last torque, up to hand.hold_torque_limit, for hand.hold_time_ms, by default 2 s and at most
-/// a minute. Configure "hold" only for objects that must not be dropped, because no call releases the torque
-/// earlier. Only the emergency stop input of the board, or cutting the board's power, releases it earlier.
+/// a minute. Configure "hold" only for objects that must not be dropped. Only the emergency stop input of the
+/// board, cutting the board's power, or starting the finger again releases the torque earlier: sun2xp_recover, or
+/// sun2xp_close and sun2xp_open, configure the board again, and that ends the hold.
 ///
 /// sun2xp_stop_all is not a safety function: it needs this process, this machine and the cable.
 ///

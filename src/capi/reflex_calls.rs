@@ -49,7 +49,7 @@ pub const SUN2XP_THEN_STOP: c_int = 1;
 /// The finger stays where it is.
 pub const SUN2XP_THEN_HOLD: c_int = 2;
 
-/// The tip gets the Kx in the member stiffness.
+/// The tip gets the Kx in the member stiffness, and the damping ratio 1.
 pub const SUN2XP_THEN_SOFTEN: c_int = 3;
 
 /// The finger goes to the joint angles in the member position.
@@ -122,7 +122,7 @@ pub struct sun2xp_reflex {
 ///   EFAULT   reflex is null
 ///   ENODEV   no such hand
 ///   EINVAL   size is too small; no such finger, joint, condition, reaction or event; the member position
-///            or stiffness is NaN
+///            or stiffness is NaN or infinite
 ///   ERANGE   another value is NaN or outside its range; sun2xp_send_position would refuse the member
 ///            position, or sun2xp_send_stiffness the member stiffness, with ERANGE
 ///   EDOM     sun2xp_send_stiffness would refuse the member stiffness with EDOM

@@ -93,8 +93,8 @@ pub trait RemoteHand: Send + Sync {
     fn close(&self);
 }
 
-/// A function that opens a hand on another machine. The configuration comes from the source: its table `[hand]` says
-/// whether values out of range are refused.
+/// A function that opens a hand on another machine. The configuration was read from the source. The table `[hand]` of
+/// the configuration says whether values out of range are refused.
 pub type RemoteOpener = fn(RemoteSource, &Configuration) -> Result<Arc<dyn RemoteHand>, RemoteRefusal>;
 
 static OVER_THE_NETWORK: OnceLock<RemoteOpener> = OnceLock::new();

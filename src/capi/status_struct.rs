@@ -8,8 +8,8 @@ use std::ffi::{c_int, c_ulong};
 /// The fingertip is the spring that the planner has commanded.
 pub const SUN2XP_STATE_RUNNING: c_int = 1;
 
-/// The finger has stopped because of a fault. Its motors are in the configured end state. Calls for the
-/// finger are refused with EIO until sun2xp_recover, or sun2xp_close and sun2xp_open.
+/// The finger has stopped because of a fault. Its motors are in the configured end state. Calls that command the
+/// finger or read its pose are refused with EIO until sun2xp_recover, or sun2xp_close and sun2xp_open.
 pub const SUN2XP_STATE_FAULTED: c_int = 2;
 
 /// The motors are off after a failed calibration. Set points have no effect. The finger becomes a spring

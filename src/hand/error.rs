@@ -110,8 +110,8 @@ pub enum HandError {
     /// The board that the configuration names by its unique number was not found.
     #[error(
         "finger {finger}: the board with the number {number} of finger.{finger}.board was {twice} at {patterns}. \
-         Found: {found}. Connect the board and switch it on, correct finger.{finger}.board, or add its port to \
-         hand.search_ports"
+         Found: {found}. Connect exactly one board with this number and switch it on, correct finger.{finger}.board, \
+         or add its port to hand.search_ports"
     )]
     NoSuchBoard {
         /// The finger.

@@ -32,7 +32,10 @@ pub enum AttachError {
     )]
     Foreign(String),
     /// The hand's process does not answer.
-    #[error("the process of the hand \"{0}\" does not answer: it is stopped, or too busy to run its ordinary threads")]
+    #[error(
+        "the process of the hand \"{0}\" does not answer, because it is stopped or too busy to run its ordinary \
+         threads: continue it (kill -CONT), or reduce the load of the machine"
+    )]
     Silent(String),
     /// The hand refuses the reader.
     #[error("the hand \"{name}\" refuses this reader: {reason}")]
@@ -43,7 +46,7 @@ pub enum AttachError {
         reason: String,
     },
     /// The hand was closed meanwhile.
-    #[error("the hand \"{0}\" was closed, or already has {MOST_READERS} readers")]
+    #[error("the hand \"{0}\" was closed, or already has {MOST_READERS} readers: open it again, or end a reader")]
     Closed(String),
     /// The hand's answer cannot be understood.
     #[error(

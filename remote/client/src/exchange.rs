@@ -1,4 +1,5 @@
-//! What is exchanged with a hand: the view of it, and the outbox. It has no clock and no thread; callers hold a lock.
+//! What is exchanged with a hand: the view of the hand, and the outbox. An [`Exchange`] has no clock and no thread. Its
+//! callers hold a lock.
 
 mod checks;
 

@@ -2,14 +2,16 @@
 
 use sun2xp_remote_client::Record;
 
-/// The records of a finger from which its measured rate follows: the first and the newest one since the server started.
+/// The records of a finger from which its measured rate follows: the first and the newest one that this client has
+/// noted since the server started.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MeasuredRate(Option<(Record, Record)>);
 
 impl MeasuredRate {
     /// Notes the newest record of the finger.
     pub fn note(&mut self, newest: &Record) {
-        // If the server was started again, its cycles begin at 1. If its machine was, so does its clock.
+        // If the server was started again, its cycles begin at 1. If the machine of the server was started again, its
+        // clock begins anew too.
         let continues = |before: &Record| newest.cycle >= before.cycle && newest.begin >= before.begin;
         let first = self.0.filter(|(_, before)| continues(before)).map_or(*newest, |(first, _)| first);
         self.0 = Some((first, *newest));

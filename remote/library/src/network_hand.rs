@@ -41,7 +41,8 @@ struct Connection {
 
 impl Stoppable for NetworkHand {
     fn stop_every_finger(&self) -> bool {
-        // The result cannot be reported, because the call that requested the stop has returned.
+        // A closed hand has nothing to stop. The refusal cannot be reported, because the call that requested the stop
+        // has returned.
         let Ok(connection) = self.connection() else { return true };
         // A planner that has lost the hand must not stop the hand of the next owner later.
         connection.hand.emergency_stop().is_ok() || !connection.hand.is_owner()

@@ -86,7 +86,7 @@ pub(crate) fn closed() -> RemoteRefusal {
 /// The refusal to a client that may not command the hand.
 pub(crate) fn forbidden(hand: &HandName) -> RemoteRefusal {
     let text = format!(
-        "the server does not let this client command the hand {hand}: set the client's name to \"command\" in \
+        "the server does not let this client command the hand {hand}: give the client the permission \"command\" in \
          [serve.clients] of the server, and start the server again"
     );
     RemoteRefusal::Other { number: number::SYSTEM, errno: libc::EACCES, text, actions: Vec::new() }

@@ -81,7 +81,7 @@ impl Fingers {
         let jacobian = self.hand.jacobian(number, Some(joints.into()));
         match (goal.spring, jacobian) {
             (Some((kx, _)), Ok(jacobian)) => admitted_part(&matrix(&jacobian), &kx, &joints, end, self.lead_force),
-            // Without a measured pose nothing is ahead of the finger.
+            // Without a measured pose or a Kx, the lead admits no part of the way.
             _ => 0.0,
         }
     }

@@ -8,9 +8,9 @@ use nalgebra::{Vector3, Vector4};
 
 /// A gauge is dead if it rises by less than this part of the usual rise.
 const DEAD: f64 = 0.12;
-/// Two gauges count as swapped if each responds to the other's motor more strongly than that motor's own gauge does.
-/// Each response is divided by the largest response to the same motor, and the sum of the two differences, at most 2,
-/// must exceed this value.
+/// Two gauges count as swapped if the gauge of the other motor responds more strongly to a motor than the motor's own
+/// gauge, in the sum over both motors. Each response is divided by the largest response to the same motor. The sum of
+/// the two differences must exceed this value. The sum is at most 2.
 const LEADING: f64 = 0.15;
 /// A gauge is reported if its scale differs from the usual scale by more than this fraction.
 const SCALE: f64 = 0.13;
@@ -78,7 +78,8 @@ fn tendons_are_swapped(
 ) -> bool {
     let expected = (instruments.pretension[one] / instruments.pretension[other]).ln();
     if expected.abs() > DIFFERENT {
-        // Each rise is already divided by the expected rise, which the gauge also shows if the tendons are swapped.
+        // Each rise is already divided by the expected rise. If the tendons are swapped, each gauge still shows the
+        // expected rise.
         let shown = (responses.raised[one].abs() / responses.raised[other].abs()).ln();
         return shown.abs() < expected.abs() / 2.0;
     }

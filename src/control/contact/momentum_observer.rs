@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 /// the noise of the rates to torque.
 const CREEP: f64 = 0.1;
 
-/// The constant part of the observer, in N cm.
+/// The constant part of the observer.
 #[derive(Clone, Debug)]
 pub(super) struct MomentumObserver {
     /// K, 1/s.

@@ -117,7 +117,7 @@ impl Interpolation {
     /// another period of the planner run. The rest of the limit is for these steps.
     fn share(&self, state: &InterpolationState) -> f64 {
         let others = state.steps[..state.count].iter().filter(|step| step.time != self.time);
-        // The largest rate of a step is three quarters of its way in a period of the planner.
+        // The largest rate of a step is three quarters of its way per period of the planner.
         let fastest: f64 = others.map(|step| 0.75 * step.way.amax() / step.time).sum();
         (1.0 - fastest / self.speed).max(0.0)
     }

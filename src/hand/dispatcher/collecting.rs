@@ -49,7 +49,8 @@ pub(super) fn collect(
                 drop(collected);
                 report(
                     Severity::Warning,
-                    "a finger faulted, but there is not enough free memory to write its black box",
+                    "a finger faulted, but there is not enough free memory to write its black box: free memory, or \
+                     raise the memory limit of this process (ulimit -v)",
                 );
                 continue;
             }

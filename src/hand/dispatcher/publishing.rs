@@ -68,8 +68,8 @@ impl Publishing {
             }),
             Err(error) => {
                 print_notice(&format!(
-                    "no process can attach to this hand, because its socket cannot be made: {error} (set \
-                     `telemetry.enabled = false` to open the hand without it)"
+                    "no process can attach to this hand, because its socket cannot be made: {error} (the hand opens \
+                     nevertheless; with `telemetry.enabled = false` it makes no socket)"
                 ));
                 None
             }

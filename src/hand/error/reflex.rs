@@ -44,7 +44,10 @@ pub enum ReflexError {
     #[error("finger {0} already has {MOST_RULES} reflexes: remove one first")]
     TooMany(FingerNumber),
     /// There is no rule with this number.
-    #[error("finger {finger} has no reflex {rule}: it was removed, or never installed")]
+    #[error(
+        "finger {finger} has no reflex {rule}, because it was removed or never installed: use the number that \
+         installing the reflex has returned"
+    )]
     NoSuchRule {
         /// The finger.
         finger: FingerNumber,

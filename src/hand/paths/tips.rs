@@ -82,7 +82,8 @@ impl Admission {
         Ok(knots)
     }
 
-    /// Returns the largest distance of the tip from its path between the knots, cm, and its pose.
+    /// Returns the largest distance of the tip from its path between the knots, cm, and the number of the pose to which
+    /// the finger moves there.
     fn deviation(&self, pieces: &[Piece], path: &[Piece], per_pose: usize) -> (f64, usize) {
         let mut worst = (0.0, 0);
         for (index, piece) in pieces.iter().enumerate() {

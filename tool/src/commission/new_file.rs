@@ -42,7 +42,7 @@ fn text(finger: FingerNumber, answer: &Answer, ports: &[String]) -> String {
         format!("\n[finger.{finger}.encoder]\ncounts_per_revolution = [{counts}, {counts}, {counts}, {counts}]\n")
     });
     format!(
-        "# Created by sun2xp commission. docs/configuration.md describes every key.\n[hand]\nfingers = [{finger}]\n\
+        "# Created by sun2xp commission. docs/sun2xp.toml describes every key.\n[hand]\nfingers = [{finger}]\n\
          {search}\n[finger.{finger}]\nboard = \"{number}\"\naddress = {address}\n{counts}"
     )
 }

@@ -98,9 +98,10 @@ fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) 
         };
         return Finding::good(subject, format!("{wanted} is permitted by {by}"));
     }
+    let permitted = wanted.max(90);
     let advice = format!(
-        "The servos would have the jitter of ordinary threads. Write `@realtime - rtprio 90` into {LIMITS}, join the \
-         group (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
+        "The servos would have the jitter of ordinary threads. Write `@realtime - rtprio {permitted}` into {LIMITS}, \
+         join the group (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
     );
     lacking(
         configuration,

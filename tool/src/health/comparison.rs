@@ -129,10 +129,10 @@ fn heat(vitals: &Vitals, finger: &ConfiguredFinger) -> Option<[f64; 4]> {
 /// Compares the scales of the gauges and the tensions at rest.
 fn gauges_and_tensions(all: &mut Vec<Complaint>, before: &Vitals, today: &Vitals, found: &ConfiguredFinger) {
     let relative = |limit: f64| move |before: f64, today: f64| (today / before - 1.0).abs() > limit;
-    let gauge = "Weigh the gauge again: sun2xp commission --step gauges";
+    let gauge = "Weigh the gauge again: sun2xp commission --config FILE --finger N --step gauges";
     let gains = before.newton_per_count.map(|_| found.gauge.newton_per_count);
     each(all, ("gauge_gain", "scale of gauge", "N"), (before.newton_per_count, gains), relative(GAIN), gauge);
-    let loose = "Tension the tendon, and look for friction in its path";
+    let loose = "Look for friction in the path of the tendon; if its tension has fallen, tension it";
     each(
         all,
         ("tension", "tension at rest of tendon", "N"),

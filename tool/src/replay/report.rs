@@ -17,7 +17,7 @@ pub struct Report {
     pub pass: bool,
     /// Version of the library that made the recording.
     library: String,
-    /// Whether the file has no end, because its recorder was killed.
+    /// Whether the file has no end, because its recorder was killed or still runs.
     truncated: bool,
     fingers: Vec<FingerReport>,
 }
@@ -88,7 +88,8 @@ impl Report {
     pub fn text(&self, screen: &Screen) -> String {
         let mut texts: Vec<String> = self.fingers.iter().map(|finger| finger.text(self, screen)).collect();
         if self.truncated {
-            texts.push("The file has no end, because its recorder was killed. What it contains was replayed.\n".into());
+            let text = "The file has no end: its recorder was killed, or still runs. What it contains was replayed.\n";
+            texts.push(text.into());
         }
         texts.join("\n")
     }

@@ -81,7 +81,8 @@ impl Control {
             return;
         }
         if self.waiting.load(Ordering::Relaxed) >= WAITING {
-            let _ = answers.send(Answer::new(false, "the hand is busy: too many commands wait".into()));
+            let text = "the hand is busy, and too many commands wait: send the command again later";
+            let _ = answers.send(Answer::new(false, text.into()));
             return;
         }
         self.queue(command, Some(answers));

@@ -15,7 +15,8 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, Sleep, sleep};
 
-/// Largest number of connections. A browser opens up to six for a page, and keeps one of them.
+/// Largest number of connections that are not pages. A browser opens up to six for a page. One of them becomes the
+/// page, and the others end.
 const CONNECTIONS: usize = 64;
 
 /// A connection that sends nothing for this time is closed. The server pings each WebSocket more often than this, and
@@ -25,7 +26,8 @@ pub const SILENCE: Duration = Duration::from_secs(30);
 /// Time after which the listener tries again if the system has no more file descriptors.
 const RETRY: Duration = Duration::from_millis(100);
 
-/// A listener that limits the number of open connections. A further connection waits until another one is closed.
+/// A listener that limits the number of open connections that are not pages. A further connection waits until another
+/// one is closed or becomes a page.
 pub struct Limited {
     listener: TcpListener,
     free: Arc<Semaphore>,
@@ -54,7 +56,7 @@ impl Connection {
         Self { stream, silence, deadline, accepted: Instant::now(), place }
     }
 
-    /// Returns whether the time for the header or the answer is over. Otherwise the task is woken at its end.
+    /// Returns whether the time for the header or the answer is over. If it is not, the task is woken when it is over.
     fn late(&mut self, context: &mut Context) -> bool {
         while self.deadline.as_mut().poll(context).is_ready() {
             let Some(time) = self.place.time() else { return false };
@@ -67,7 +69,7 @@ impl Connection {
         false
     }
 
-    /// Passes a result on, except that a late connection has no more time.
+    /// Returns the result. For a late connection, a pending result becomes a time-out error.
     fn in_time<T>(&mut self, result: Poll<io::Result<T>>, context: &mut Context) -> Poll<io::Result<T>> {
         if result.is_pending() && self.late(context) { Poll::Ready(Err(ErrorKind::TimedOut.into())) } else { result }
     }

@@ -125,7 +125,7 @@ async fn stream(
         return refused(refusal);
     }
     let Ok(permit) = shared.pages.try_acquire_owned() else {
-        return files::status(StatusCode::SERVICE_UNAVAILABLE, "Too many pages are open.\n");
+        return files::status(StatusCode::SERVICE_UNAVAILABLE, "Too many pages are open: close one of them.\n");
     };
     let Server { hub, control, .. } = shared.server;
     upgrade.max_message_size(LARGEST_MESSAGE).max_frame_size(LARGEST_MESSAGE).on_upgrade(async move |socket| {

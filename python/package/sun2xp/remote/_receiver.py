@@ -170,7 +170,7 @@ class Receiver:
         """Returns the newest record of a finger.
 
         Raises:
-            Stale: it is older than `stale` s.
+            Stale: the record is older than `stale` s, or no record of the finger has arrived.
         """
         with self.changed:
             record = self._newest.get(finger)

@@ -36,15 +36,15 @@ impl Link {
         let payload = request.encode().map_err(|error| RemoteError::NotConnected(error.to_string()))?;
         let key = self.keys.request(action, &self.client);
         let reply = match action {
-            // If it were repeated, a calibration that has ended meanwhile would begin again.
+            // If the get were repeated, a calibration that has ended meanwhile would begin again.
             Action::Calibrate | Action::Identify => self.get_once(&key, Some(payload), CALIBRATION),
             Action::Release | Action::Stop => self.get(&key, Some(payload), QUICK_ANSWER),
             Action::Acquire | Action::Recover => self.get(&key, Some(payload), ANSWER),
         };
         let Some(payload) = reply? else {
             let reason = format!(
-                "the request `{}` has no answer. Check the line, and whether the server lists the client {} in \
-                 [serve.clients]",
+                "the request `{}` has no answer. Check the line, and whether the client {} has the permission \
+                 \"command\" in [serve.clients] of the server (a stop needs only \"read\")",
                 action.name(),
                 self.client
             );

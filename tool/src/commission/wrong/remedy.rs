@@ -106,7 +106,7 @@ impl Wrong {
     fn remedy_of_tendons(&self) -> String {
         match self {
             Self::TendonLoose(tendon) => {
-                format!("Check tendon {tendon}: it is off its drum or a pulley, broken, or looser than 10 mm")
+                format!("Check tendon {tendon}: it is off its drum or a pulley, broken, or looser than 8 mm")
             }
             Self::TendonTension(tendon, part) if *part < 1.0 => {
                 format!("Shorten tendon {tendon}, or look for friction in its path")
@@ -120,7 +120,7 @@ impl Wrong {
                     .into()
             }
             Self::PoseRefused(_) => {
-                "If a jig held the finger still, its gauges probably lag, so that the finger trembles at the pose: \
+                "If a jig held the finger still, the finger's gauges probably lag, so that it trembles at the pose: \
                  zero it at its stops. For that, leave with q, set zeroing.method = \"stops\" for this finger in the \
                  configuration file, and start the tool again. The tool reads the file only when it starts"
                     .into()
