@@ -142,7 +142,8 @@ fn a_caught_finger_waits_while_an_acquire_recovers_another_one() {
 
 #[test]
 fn a_path_ends_as_soon_as_another_client_acquires() {
-    let mut rig = Rig::new("");
+    // A pause of the machine must not catch the finger, because a caught finger drops its path.
+    let mut rig = Rig::new("catch_ms = 10000\nend_ms = 60000");
     rig.acquire("alice");
     rig.wait_until("path", &[path(2, 1, 30.0, FAR)], |rig| rig.report(2).set_point_number > 0);
     let number = rig.report(2).set_point_number;

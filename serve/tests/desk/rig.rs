@@ -67,7 +67,8 @@ impl Rig {
     pub fn send(&mut self, parts: &[Part]) -> Option<Answer> {
         self.sequence += 1;
         let (epoch, sequence, seen) = (self.epoch, self.sequence, now());
-        let target = Target { validity_ms: 100, epoch, sequence, sent: sequence, seen, parts: parts.to_vec() };
+        // The desk shortens the validity to its catch_ms.
+        let target = Target { validity_ms: 10_000, epoch, sequence, sent: sequence, seen, parts: parts.to_vec() };
         let refusal = self.desk.take_target(&self.owner, &target.encode().expect("a Target"), now());
         self.refusal = refusal.clone().or(self.refusal.take());
         refusal
