@@ -22,7 +22,8 @@ static void set_field(volatile uint32_t *address, unsigned pin, unsigned width, 
 void pins_start(void)
 {
     RCC->AHB1ENR |= RCC_AHB1ENR_GPIOA | RCC_AHB1ENR_GPIOB | RCC_AHB1ENR_GPIOC;
-    /* The enable clock needs two cycles before the first access (7.3.10, and the errata of the processor). */
+    /* A port that was just enabled needs two clock cycles before the first access (7.3.10, and the errata of the
+       processor). This read takes them. */
     (void)RCC->AHB1ENR;
     GPIOB->BSRR = 1u << PIN_GAUGE_SELECT;
     for (unsigned i = 0; i < sizeof pins / sizeof pins[0]; i++) {

@@ -8,7 +8,8 @@ static PENDING: Mutex<State> = Mutex::new(State { generation: 0, ending: false, 
 static CHANGED: Condvar = Condvar::new();
 
 struct State {
-    /// The generation of the process to which the other fields belong. A forked child has none of these threads.
+    /// The generation of the process to which the other fields belong. A forked child does not have the threads that
+    /// open and close hands.
     generation: u32,
     /// Whether the interpreter is ending.
     ending: bool,

@@ -55,15 +55,15 @@ class Double:
         self.session = zenoh.open(zenoh.Config.from_json5(json.dumps(settings)))
         self.prefix = f"sun2xp/{name}/"
         self.lock = threading.RLock()
-        #: The epoch in force, and its number. 0 if there is no owner.
+        #: The epoch in force, or 0 if there is no owner; and the number of the newest epoch.
         self.epoch, self.number = 0, 0
-        #: (sent, seen, validity, parts) of every Target.
+        #: (sent, seen, validity, parts) of every Target with the epoch in force.
         self.targets = []
         #: (action, finger, bits) of every Request.
         self.requests = []
         #: The reason why set points are refused; None if they are not.
         self.refusal = None
-        #: The code of every Answer to recover, calibrate, identify and stop.
+        #: The code of every Answer to a permitted release, recover, calibrate, identify or stop.
         self.code = 0
         self.publishing = True
         self.records = numpy.zeros(3, _messages.RECORD)

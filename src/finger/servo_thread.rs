@@ -118,8 +118,8 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         self.announce_events();
     }
 
-    /// Wakes a thread that waits for events, if there are new ones. This makes at most one system call, after the
-    /// reports of all fingers are published, because all fingers of a hand have the same readers.
+    /// Wakes a thread that waits for events, if there are new events. All fingers of a hand have the same readers, so
+    /// this makes at most one system call. It must be called after the reports of all fingers are published.
     fn announce_events(&self) {
         let mut fingers = self.ports.iter().flat_map(|port| port.fingers.iter());
         if let Some(finger) = fingers.find(|finger| finger.has_new_events()) {

@@ -20,8 +20,9 @@ use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RAT
 
 /// Finds the bound on the eigenvalues of Kx up to which a finger is stable in every pose.
 ///
-/// The search simulates the configured controller, links, tendons and motors, without friction, with exact measurements
-/// and one cycle of delay. It covers a set of plants that differ from the configuration: rotors, links, tendons and
+/// The search simulates the configured controller, links, tendons and motors, with viscous friction, without Coulomb
+/// friction, with exact measurements and one cycle of delay. At a wall, the configured Coulomb friction of the joints
+/// acts as a damper. The search covers a set of plants that differ from the configuration: rotors, links, tendons and
 /// motors, amplifier lag, an extra cycle of delay, held masses, lost replies. The samples are random: poses within the
 /// joint limits, axes of Kx, contact types, both laws, damping and loads. Each plant is searched without walls, and
 /// with walls of 30 to 1000 N/cm. Every motion must decay to 1/e within 10 s. In a pose whose tendons support less than
@@ -62,8 +63,8 @@ pub struct Arguments {
     /// tip receives energy from the finger. The plant is the nominal one, at the configured bound of Kx.
     #[arg(long, conflicts_with_all = ["write", "nominal", "free"])]
     passivity: bool,
-    /// Number of samples for each plant, or of poses for the passivity. The default is 400 for each plant of the set,
-    /// 2000 for the nominal plant, and 4 for the passivity.
+    /// Number of samples for each plant, or of poses with --passivity. The default is 400 samples, 2000 samples with
+    /// --nominal, and 4 poses with --passivity.
     #[arg(long, value_name = "N")]
     samples: Option<usize>,
     /// Seed of the random numbers.

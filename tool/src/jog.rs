@@ -48,8 +48,7 @@ pub struct Arguments {
     address: web::Address,
 }
 
-/// Opens the hand, and closes it when a key ends the program. With a page, closes it at
-/// SIGINT, SIGTERM, SIGHUP or SIGQUIT.
+/// Opens the hand, and closes it at SIGINT, SIGTERM, SIGHUP or SIGQUIT. Without a page, a key closes it too.
 ///
 /// # Errors
 /// Returns an error if there is no terminal, if the configuration cannot be used, if the person does not confirm, or

@@ -95,7 +95,7 @@ trait Plot {
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if (0.0..=1e9).contains(&seconds) => Ok(seconds),
-        _ => Err("not a time of 0 s or more".into()),
+        _ => Err("not a time from 0 to 1e9 s".into()),
     }
 }
 

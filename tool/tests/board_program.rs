@@ -106,6 +106,8 @@ fn defects_occur_while_it_runs_and_are_repaired() {
     assert!(tensions(&mut board)[1] > 1.0);
     assert!(board.order("jam 7 1").starts_with("error this board has no finger 7"));
     assert!(board.order("jam 1 7").starts_with("error"));
+    // The default finger has no tactile elements.
+    assert_eq!(board.order("dead-element 1 0"), "error finger 1 has no part with this number");
     let answer = board.order("shove 1");
     let orders = ["force", "state", "cut", "drift-gauge", "mend", "drop", "commands", "unplug", "replug"];
     assert!(answer.starts_with("error there is no order shove: "), "{answer}");

@@ -34,7 +34,7 @@ class Hand(_sun2xp.Hand):
         return events
 
     async def events_async(self) -> AsyncIterator[Event]:
-        """Yields the hand's events from now on in asyncio, until the hand is closed."""
+        """Yields the hand's events in asyncio, from the first step of the generator until the hand is closed."""
         async for event in self.events():
             yield event
 
@@ -80,7 +80,9 @@ class Hand(_sun2xp.Hand):
             store: whether to store the zeros in the configuration file with which the hand was opened.
 
         Raises:
-            Error: the calibration failed. The previous one is in force.
+            ConfigurationError: the zeros could not be stored. They are in force until the hand is closed.
+            Error: the calibration failed, and the previous one is in force. If the finger faulted when the zeros had
+                been found already, the zeros are in force.
         """
         return self._calibrated(finger, "zero", progress, store)
 
@@ -129,7 +131,8 @@ def simulated(name: str = "nominal", *, rate: float = 1000.0, text: str = "") ->
     Args:
         name: "nominal", or a hand that differs from its configuration: "worn", "sheathed" or "cheap".
         rate: rate of the servos, Hz, 500 to 5000.
-        text: further configuration. Names of hands, rate, ports and boards of this text are ignored.
+        text: further configuration. The names of hands, the rate, the ports, the boards and the table `[remote]` of
+            this text are ignored.
 
     Raises:
         ConfigurationError: there is no such name or rate, or the text is wrong.

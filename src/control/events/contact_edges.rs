@@ -5,7 +5,8 @@ use crate::control::contact::ContactEstimate;
 use crate::model::Part;
 use crate::model::configuration::ConfiguredEvents;
 
-/// The force must fall below this fraction of the bound before the detector observes it again.
+/// After the force has exceeded the bound, it must fall to this fraction of the bound before the detector reports
+/// another crossing.
 const HYSTERESIS: f64 = 0.9;
 
 /// Detects contacts, from the contact estimate of the controller.

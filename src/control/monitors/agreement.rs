@@ -25,8 +25,8 @@ use crate::model::{Part, Tendons};
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 
 /// Possible difference between the mean tension of a tendon and the tension at its gauge, as a part of the friction
-/// along the tendon. It is a third if the friction acts at one point between the motor and a gauge in the middle. It is
-/// a half if the friction is distributed evenly and the gauge is at one end.
+/// along the tendon. It is a third if all friction acts at one point, at a third of the tendon's length from the motor,
+/// and the gauge is beyond this point. It is a half if the friction is distributed evenly and the gauge is at one end.
 pub(crate) const SHARE_OF_FRICTION: f64 = 0.4;
 
 /// Expected factor of a joint's term, as a part of the largest possible factor. The largest factor occurs only if the

@@ -54,7 +54,7 @@ pub enum ReflexError {
         /// The number of the rule.
         rule: u32,
     },
-    /// There is no condition or reaction with this number, which a C program has passed.
+    /// A C program has passed a number that no condition, reaction or event has.
     #[error("there is no {what} {number}: use one of the constants of sun2xp.h that begin with {prefix}")]
     NoSuchKind {
         /// Condition, reaction or event.

@@ -46,7 +46,8 @@ impl EventListener {
         self.queue.lost()
     }
 
-    /// Ends the listener without waiting for the function, which may be running. It is not called again afterwards.
+    /// Ends the listener without waiting for the function. A call that is running or about to begin is still completed.
+    /// No later event causes a call.
     pub fn detach(mut self) {
         self.thread = None;
     }

@@ -8,7 +8,7 @@ impl SimulatedFinger {
     pub(in crate::simulated) fn stop(&mut self, now: u64) -> Frame {
         match self.state {
             State::Enabled => self.end(now),
-            State::Ready => self.state = State::Ended { holds_until: None },
+            State::Ready => (self.state, self.ended_at) = (State::Ended { holds_until: None }, Some(now)),
             // A repeated Stop does not prolong the hold.
             State::Idle | State::Ended { .. } => {}
         }

@@ -1,7 +1,7 @@
 //! Orders of `sun2xp board` that cause faults.
 
 use sun2xp::model::Shown;
-use sun2xp::simulated::{Defect, LineFault, SimulatedPort, WiredPart};
+use sun2xp::simulated::{Defect, LineFault, SimulatedFinger, SimulatedPort, WiredPart};
 
 /// A fault of the board or its cable, or the end of faults.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,16 +121,19 @@ impl Trouble {
 
     /// Causes the fault and returns the answer. `address` maps the number of a finger to its address.
     pub fn apply(&self, port: &SimulatedPort, seed: u64, address: impl Fn(u8) -> Option<u8>) -> String {
-        let finger = |number: u8, act: &dyn Fn(&mut sun2xp::simulated::SimulatedFinger)| {
-            let found = address(number).and_then(|address| port.with_finger(address, |finger| act(finger)));
-            found.map_or_else(|| format!("error this board has no finger {number}"), |()| "ok".into())
+        let finger = |number: u8, act: &dyn Fn(&mut SimulatedFinger) -> bool| match address(number)
+            .and_then(|address| port.with_finger(address, |finger| act(finger)))
+        {
+            Some(true) => "ok".into(),
+            Some(false) => format!("error finger {number} has no part with this number"),
+            None => format!("error this board has no finger {number}"),
         };
         match *self {
-            Trouble::Finger(number, defect) => finger(number, &|finger| {
-                // The number of the part was checked when the order was read.
-                finger.inject(&defect);
+            Trouble::Finger(number, defect) => finger(number, &|finger| finger.inject(&defect)),
+            Trouble::Mend(number) => finger(number, &|finger| {
+                finger.repair();
+                true
             }),
-            Trouble::Mend(number) => finger(number, &sun2xp::simulated::SimulatedFinger::repair),
             Trouble::Line(fault, probability, time) => {
                 port.inject(fault, probability, time, seed);
                 "ok".into()

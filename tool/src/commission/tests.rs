@@ -1,4 +1,4 @@
-//! Commissionings of fingers in memory, whose person does what the tool asks for.
+//! Commissionings of fingers in memory. A simulated person does what the tool asks for, or makes a mistake.
 
 mod ageing;
 mod bench;

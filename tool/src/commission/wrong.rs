@@ -127,8 +127,8 @@ mod tests {
     #[test]
     fn readings_that_no_exchange_explains_are_listed() {
         let text = Wrong::GaugesUnclear([2, 2, 0, 4]).to_string();
-        let seen = "gauge 2 showed the weight on tendon 1, gauge 2 that on tendon 2, no gauge that on tendon 3, \
-                    gauge 4 that on tendon 4";
+        let seen = "gauge 2 showed the weight on tendon 1, gauge 2 showed the weight on tendon 2, \
+                    no gauge showed the weight on tendon 3, gauge 4 showed the weight on tendon 4";
         assert_eq!(text, seen);
         let text = Wrong::EncodersUnclear([2, 2, 0, 4]).to_string();
         assert!(text.starts_with("motor 1 turned encoder 2, motor 2 turned encoder 2, motor 3 turned no"), "{text}");

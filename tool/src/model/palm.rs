@@ -1,5 +1,5 @@
-//! The shapes of the palm and of the bases of the fingers. The configuration contains only the positions of the bases,
-//! so these shapes are only for display.
+//! The shapes of the palm and of the bases of the fingers. The configuration contains only the positions and rotations
+//! of the bases, so these shapes are only for display.
 
 use super::geometry::Finger;
 use super::shape::{Colour, Form, Shape};

@@ -11,8 +11,8 @@ use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
-/// Number of batches that a page may have received without an acknowledgement: one second. A page that is slower gets
-/// no further batches until it has caught up.
+/// Number of batches that a page may have received without an acknowledgement: one second. A page with this many
+/// unacknowledged batches gets no further batch until it acknowledges one.
 const AHEAD: u64 = 20;
 
 /// Largest message from a page, bytes. Commands have some 200.

@@ -13,8 +13,8 @@ FAULTED = 7
 
 
 class NotOwner(Error):
-    """Another client commands the hand, or this one has lost it: by a take-over, or because it was silent for too
-    long. `hand.acquire()` gets it again."""
+    """This client does not own the hand: another client commands it, or this client was silent for too long.
+    `hand.acquire()` makes this client the owner again."""
 
 
 class Stale(TimedOut):

@@ -23,8 +23,9 @@ def group(set_points: Sequence[SetPoint], fingers: Dict[int, FingerStatus]) -> L
     """Returns the parts of a group. Their command numbers are not set.
 
     Raises:
-        Refused: a wrong shape, a number that is not finite, a joint angle outside its limits, a Kx that is not
-            symmetric, both a position and a tip for one finger, or two set points for one finger.
+        Refused: no set point, a set point that changes nothing, a wrong shape, a number that is not finite, a joint
+            angle outside its limits, a Kx that is not symmetric or above the finger's bound, both a position and a tip
+            for one finger, or two set points for one finger.
     """
     numbers = [set_point.finger for set_point in set_points]
     if not numbers or len(set(numbers)) < len(numbers):
@@ -83,7 +84,8 @@ def _symmetric(finger: int, kx: Any, status: FingerStatus) -> List[float]:
         raise _refused(f"Kx of finger {finger} is not symmetric: {array.tolist()}")
     largest = numpy.linalg.eigvalsh((array + array.T) / 2)[-1]
     if largest > status.stiffness * (1 + 8 * _ROUNDING):
-        text = f"Kx of finger {finger} has {largest:.3g} N/cm, and {status.stiffness:.3g} N/cm are admitted"
+        bound = f"the bound of {status.stiffness:.3g} N/cm"
+        text = f"the largest eigenvalue of Kx of finger {finger}, {largest:.3g} N/cm, exceeds {bound}"
         raise _refused(text, ErrorNumber.LIMIT)
     return array.ravel().tolist()
 

@@ -110,7 +110,8 @@ impl Machine for Bench {
     }
 }
 
-/// The person at the bench. The person turns and weighs inexactly, and may repair the wiring.
+/// The person at the bench. The person turns motors by not exactly one turn, hangs the weights that `hung` returns, and
+/// may repair the wiring.
 pub struct Helper {
     pub world: Rc<RefCell<World>>,
     /// What the tool has shown at the end of each step.
@@ -126,7 +127,7 @@ pub struct Helper {
     pub patience: usize,
     /// Whether the person says that the motors were turned the right way.
     pub right_way: bool,
-    /// The true weight, N, of what the person hangs for a weight.
+    /// The weight, N, that the person really hangs when the tool asks for a weight, N.
     pub hung: fn(f64) -> f64,
     /// What the person cannot do.
     pub cannot: Option<fn(Act) -> bool>,

@@ -30,10 +30,9 @@ fn turned(motor: usize, encoder: usize) -> String {
 }
 
 fn showed(tendon: usize, gauge: usize) -> String {
-    let what = if tendon == 1 { "showed the weight" } else { "that" };
     match gauge {
-        0 => format!("no gauge {what} on tendon {tendon}"),
-        _ => format!("gauge {gauge} {what} on tendon {tendon}"),
+        0 => format!("no gauge showed the weight on tendon {tendon}"),
+        _ => format!("gauge {gauge} showed the weight on tendon {tendon}"),
     }
 }
 
