@@ -2,6 +2,8 @@
 
 use crate::motion::{configuration, joints};
 use crate::rig::TARGET;
+use nalgebra::Vector3;
+use sun2xp::control::Motion;
 use sun2xp::finger::Reference;
 use sun2xp::hand::{PathError, PathPose, Pose, plan_path};
 use sun2xp::model::FingerNumber;
@@ -48,4 +50,39 @@ fn a_path_that_is_too_fast_is_made_slower_if_commands_are_clamped() {
     }
     let again = plan_path(&configuration(), FingerNumber::ONE, &rest, &poses);
     assert!(matches!(again, Err(PathError::TooFast { .. })));
+}
+
+/// A finger that still settles has small derivatives, which a single polynomial over 30 s would turn into many rad.
+#[test]
+fn a_slow_path_of_a_finger_in_motion_is_accepted() {
+    let small = Vector3::new(1.0, -1.0, 0.5);
+    for scale in [0.1, 1.0] {
+        let motion = Motion {
+            rates: small * (0.1 * scale),
+            accelerations: small * (3.0 * scale),
+            jerk: small * (50.0 * scale),
+            ..Motion::default()
+        };
+        let moving = Reference { joints: TARGET, motion, ..Reference::default() };
+        let angles = [0.4, 0.9, 1.2];
+        let tip = configuration().fingers[0].links().tip(&angles.into());
+        for pose in [Pose::Joints(angles), Pose::Tip(tip.into())] {
+            let poses = [PathPose { time: 30.0, pose, stiffness: None }];
+            let plan = plan_path(&configuration(), FingerNumber::ONE, &moving, &poses);
+            let plan = plan.unwrap_or_else(|error| panic!("{scale}: {error}"));
+            let pieces = plan.table().pieces;
+            let begin = pieces[0].at(0.0);
+            assert!((begin.place - TARGET).amax() < 1e-12 && (begin.rates - motion.rates).amax() < 1e-9);
+            assert!((plan.end() - Vector3::from(angles)).amax() < 1e-3);
+            // The finger stays between both places, but for the braking.
+            let [low, high] = [TARGET.inf(&angles.into()), TARGET.sup(&angles.into())];
+            for piece in pieces {
+                for step in 0..=10 {
+                    let place = piece.at(piece.begin + piece.length * f64::from(step) / 10.0).place;
+                    let off = (low - place).sup(&(place - high)).max();
+                    assert!(off < 0.05, "{scale}: {off} rad");
+                }
+            }
+        }
+    }
 }

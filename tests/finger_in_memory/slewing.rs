@@ -1,6 +1,6 @@
-//! The reference while the anchor of Figures 9, 10 and 11 moves toward a set point at a limited speed.
+//! The reference while the anchor moves toward a set point at a limited speed, and paths that begin meanwhile.
 
-use crate::motion::Track;
+use crate::motion::{Track, joints, send};
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;
 use sun2xp::model::configuration::Scheme;
@@ -27,5 +27,24 @@ fn a_slewing_anchor_is_reported_with_its_rates() {
         assert!(fastest > 1.0, "{scheme:?}: {fastest} rad/s");
         let last = track.0.last().expect("600 periods");
         assert!(last.motion.rates.amax() == 0.0, "{scheme:?}: {last:?}");
+    }
+}
+
+/// A polynomial over 30 s that continued the motion would lead far beyond the joint limits.
+#[test]
+fn a_slow_path_begins_smoothly_while_the_finger_settles() {
+    for cycles in [5, 20, 50, 100] {
+        let mut bench = Bench::new();
+        bench.opens();
+        bench.goes(TARGET);
+        let step = TARGET + Vector3::new(0.1, -0.1, 0.05);
+        bench.mailbox.send(|set_point| set_point.joints = step).expect("not faulted");
+        bench.cycles(cycles);
+        send(&bench, &[joints(30.0, [0.4, 0.9, 1.2])]);
+        let mut track = Track(Vec::new());
+        track.run(&mut bench, 1000);
+        track.is_smooth([0.3, 40.0, 12_000.0]);
+        let farthest = track.0.iter().map(|reference| (reference.joints - TARGET).amax()).fold(0.0, f64::max);
+        assert!(farthest < 0.3, "{cycles}: {farthest} rad");
     }
 }

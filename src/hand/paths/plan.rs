@@ -4,7 +4,7 @@ use super::PathPose;
 use super::limits::Excess;
 use crate::control::motion::{PathTable, TimedStiffness};
 use crate::control::{Law, spatial};
-use crate::finger::{MOST_POSES, Reference};
+use crate::finger::{MOST_PIECES, MOST_POSES, Reference};
 use crate::hand::admission::Admission;
 use crate::hand::opening::admission;
 use crate::hand::{PathError, Pose, SetPointError};
@@ -15,6 +15,9 @@ use nalgebra::{Matrix6, Vector3};
 
 /// Shortest time from one pose to the next, s.
 const LEAST_STEP: f64 = 1e-3;
+
+/// Time in which a finger in motion comes to rest before a path that could not continue its motion, s.
+const BRAKING: f64 = 0.15;
 
 /// Longest path, s.
 const LONGEST: f64 = 3600.0;
@@ -74,19 +77,46 @@ impl Plan {
 
 impl Admission {
     /// Computes the path from `reference` through `poses`, and checks it.
+    ///
+    /// A slow path that begins in motion would leave the joint limits: an acceleration of 0.1 rad/s^2 that a path
+    /// changes over 30 s moves a joint by several rad. If a path is refused, the motion therefore ends first.
     pub fn path(&self, reference: &Reference, poses: &[PathPose]) -> Result<Plan, PathError> {
+        self.direct_path(reference, poses).or_else(|refusal| self.path_after_braking(reference, poses).ok_or(refusal))
+    }
+
+    /// Computes a path that begins with [`BRAKING`]. Returns none if the finger rests, or would refuse this path, too.
+    fn path_after_braking(&self, reference: &Reference, poses: &[PathPose]) -> Option<Plan> {
+        let start = start_of(reference);
+        if [start.rates, start.accelerations, start.jerk].iter().all(|derivative| derivative.amax() == 0.0) {
+            return None;
+        }
+        // Large accelerations and jerks of a filtered step end by themselves. The servo filters the difference.
+        let start = Start { accelerations: Vector3::zeros(), jerk: Vector3::zeros(), ..start };
+        // A constant deceleration ends here.
+        let place = start.place + start.rates * (BRAKING / 2.0);
+        let mut pieces = spline(&start, &[Knot { time: BRAKING, place }]);
+        self.check_joint_limits(&pieces, 1, &start.place).ok()?;
+        if self.excess(&pieces, &start).is_some() {
+            return None;
+        }
+        let rest = Reference { joints: place, ..Reference::default() };
+        let earlier: Vec<_> = poses.iter().map(|pose| PathPose { time: pose.time - BRAKING, ..*pose }).collect();
+        let Plan { pieces: mut later, mut stiffness, law } = self.direct_path(&rest, &earlier).ok()?;
+        later.iter_mut().for_each(|piece| piece.begin += BRAKING);
+        stiffness.iter_mut().for_each(|timed| timed.time += BRAKING);
+        pieces.append(&mut later);
+        (pieces.len() <= MOST_PIECES).then_some(Plan { pieces, stiffness, law })
+    }
+
+    /// Computes and checks a path that continues the motion of `reference`.
+    fn direct_path(&self, reference: &Reference, poses: &[PathPose]) -> Result<Plan, PathError> {
         if !(1..=MOST_POSES).contains(&poses.len()) {
             return Err(PathError::Count { count: poses.len(), most: MOST_POSES });
         }
         let times = self.times(poses)?;
         self.check_kinds(poses)?;
         let mut stiffness = self.stiffness_along(poses)?;
-        let start = Start {
-            place: reference.joints,
-            rates: reference.motion.rates,
-            accelerations: reference.motion.accelerations,
-            jerk: reference.motion.jerk,
-        };
+        let start = start_of(reference);
         let law = if matches!(poses[0].pose, Pose::Tip(_)) { Law::Exact } else { self.law };
         let mut scale = 1.0;
         for _ in 0..ATTEMPTS {
@@ -163,6 +193,12 @@ impl Admission {
         }
         if tips.is_empty() { Ok((spline(start, &joints), 1)) } else { self.tip_pieces(start, &tips) }
     }
+}
+
+/// Returns the motion with which a path begins.
+fn start_of(reference: &Reference) -> Start {
+    let Reference { joints, motion, .. } = reference;
+    Start { place: *joints, rates: motion.rates, accelerations: motion.accelerations, jerk: motion.jerk }
 }
 
 pub(super) fn in_pose(pose: usize, source: SetPointError) -> PathError {
