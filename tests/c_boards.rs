@@ -122,7 +122,7 @@ fn settle(hand: &Hand, targets: [[f64; 3]; 3]) -> Attempt {
         hand.send_position(finger, target).map_err(text)?;
     }
     let settling = Settling { tolerance: CLOSE, rest: Duration::from_millis(200), patience: PATIENCE };
-    settling.wait(hand, [(1, targets[0]), (2, targets[1]), (3, targets[2])]).map(drop)
+    settling.wait(hand, &[(1, targets[0]), (2, targets[1]), (3, targets[2])]).map(drop)
 }
 
 #[test]

@@ -27,7 +27,7 @@ fn farthest(hand: &Hand, finger: i32, target: [f64; 3]) -> f64 {
 /// Waits until the finger has been within 0.02 rad of `target` for 100 ms.
 fn settles(hand: &Hand, finger: i32, target: [f64; 3]) {
     let settling = Settling { tolerance: 0.02, rest: Duration::from_millis(100), patience: Duration::from_secs(10) };
-    settling.wait(hand, [(finger, target)]).unwrap_or_else(|error| panic!("finger {finger}: {error}"));
+    settling.wait(hand, &[(finger, target)]).unwrap_or_else(|error| panic!("finger {finger}: {error}"));
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn fingers_with_the_tendons_of_real_hands_open_and_go_where_they_are_sent() {
         for finger in 1..=3 {
             hand.send_position(finger, target).expect("sent");
         }
-        settling.wait(&hand, [(1, target), (2, target), (3, target)]).unwrap_or_else(|error| panic!("{error}"));
+        settling.wait(&hand, &[(1, target), (2, target), (3, target)]).unwrap_or_else(|error| panic!("{error}"));
     }
     hand.close();
 }

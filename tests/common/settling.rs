@@ -15,15 +15,13 @@ pub struct Settling {
 
 impl Settling {
     /// Waits until all these fingers rest at their targets at the same time, and returns their positions.
-    pub fn wait<const N: usize>(&self, hand: &Hand, targets: [(i32, [f64; 3]); N]) -> Result<[[f64; 3]; N], String> {
+    pub fn wait(&self, hand: &Hand, targets: &[(i32, [f64; 3])]) -> Result<Vec<[f64; 3]>, String> {
         let begun = Instant::now();
         let mut since = begun;
         loop {
-            let mut positions = [[0.0; 3]; N];
-            for (position, (finger, _)) in positions.iter_mut().zip(targets) {
-                *position = hand.position(finger).map_err(|error| error.to_string())?;
-            }
-            let distances = positions.iter().zip(targets).map(|(&position, (_, target))| distance(position, target));
+            let positions = targets.iter().map(|&(finger, _)| hand.position(finger));
+            let positions = positions.collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?;
+            let distances = positions.iter().zip(targets).map(|(&position, &(_, target))| distance(position, target));
             if distances.fold(0.0, f64::max) > self.tolerance {
                 since = Instant::now();
             } else if since.elapsed() > self.rest {

@@ -24,7 +24,7 @@ fn plan(ports_and_keys: &str) -> ! {
     loop {
         // A pause of the machine may trip the short watchdog. The planner then opens the hand again.
         let Ok(hand) = Hand::open(configuration(&ports, keys)) else { continue };
-        while (1..=3).all(|finger| hand.position(finger).is_ok()) {
+        while hand.fingers().numbers().all(|finger| hand.position(finger).is_ok()) {
             std::thread::sleep(Duration::from_millis(1));
         }
     }
@@ -65,8 +65,9 @@ impl Drop for Planner {
 /// killed.
 fn ended_by_watchdog(machine: &Machine) -> bool {
     let ports = machine.ports();
-    let fingers = 3 / ports.len();
-    (1..=3).all(|address| reports_watchdog(&ports[usize::from(address - 1) / fingers], address))
+    let fingers_a_port = machine.fingers().len() / ports.len();
+    let mut addresses = (1..).zip(machine.fingers());
+    addresses.all(|(address, finger)| reports_watchdog(&ports[finger / fingers_a_port], address))
 }
 
 fn reports_watchdog(port: &Path, address: u8) -> bool {
@@ -89,22 +90,20 @@ fn kill_a_planner(
     machine: &Machine,
     planner: &mut Planner,
     in_end_state: impl Fn([i32; 4]) -> bool,
-) -> Result<[u32; 3], String> {
+) -> Result<Vec<u32>, String> {
+    let asked = || machine.fingers().map(|finger| machine.finger(finger).asked);
     let pulls = |currents: [i32; 4]| currents != [0; 4] && !in_end_state(currents);
-    let running = || (0..3).all(|finger| pulls(machine.finger(finger).asked.currents));
-    let begun = [0, 1, 2].map(|finger| machine.finger(finger).asked.samples);
-    let moved_on = || (0..3).all(|finger| machine.finger(finger).asked.samples > begun[finger] + 200);
+    let running = || asked().all(|asked| pulls(asked.currents));
+    let begun: Vec<u32> = asked().map(|asked| asked.samples).collect();
+    let moved_on = || asked().zip(&begun).all(|(asked, begun)| asked.samples > begun + 200);
     let ran = wait_until(PATIENCE / 2, || moved_on() && running());
     // The kill may take longer than the watchdog's time, so the currents are not checked after it. `ended_by_watchdog`
     // detects a finger that the planner stopped itself.
     planner.kill();
     // Commands in transit still arrive. 400 ms after the last of them, the slowest watchdog has had time to trip.
     let long_ago = |asked: Asked| asked.now.saturating_sub(asked.arrived_at) > 400_000;
-    assert!(
-        wait_until(PATIENCE, || (0..3).all(|finger| long_ago(machine.finger(finger).asked))),
-        "commands still arrive"
-    );
-    let asked = [0, 1, 2].map(|finger| machine.finger(finger).asked);
+    assert!(wait_until(PATIENCE, || asked().all(long_ago)), "commands still arrive");
+    let asked: Vec<Asked> = asked().collect();
     if !ran {
         return Err("the planner's fingers did not all run before it was killed".into());
     }
@@ -112,11 +111,9 @@ fn kill_a_planner(
         return Err("a finger was not ended by its watchdog".into());
     }
     assert!(asked.iter().all(|asked| in_end_state(asked.currents)), "motors are not in their end state");
-    match asked.map(|asked| asked.set_at.checked_sub(asked.arrived_at)) {
-        [Some(one), Some(two), Some(three)] => Ok([one, two, three]),
-        // The planner sent this command before it noticed that the finger had been ended.
-        _ => Err("a command came after the end".into()),
-    }
+    // The planner sends a command after the end if it has not noticed yet that the finger was ended.
+    let after = asked.iter().map(|asked| asked.set_at.checked_sub(asked.arrived_at));
+    after.collect::<Option<_>>().ok_or_else(|| "a command came after the end".into())
 }
 
 #[test]
@@ -161,7 +158,7 @@ fn motors_reach_their_end_state(emulated: Emulated) {
                 if figures.iter().all(|figure| expected.contains(figure)) { Ok(()) } else { Err(found) }
             },
         );
-        let over = wait_until(PATIENCE, || (0..3).all(|finger| none(machine.finger(finger).asked.currents)));
+        let over = wait_until(PATIENCE, || machine.fingers().all(|finger| none(machine.finger(finger).asked.currents)));
         assert!(over, "the hold does not end");
     }
 }

@@ -3,6 +3,8 @@
 use std::ffi::CString;
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Read, Write};
+use std::num::NonZero;
+use std::ops::Range;
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
@@ -24,18 +26,36 @@ const FIRMWARE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/firmware");
 pub struct Emulated {
     /// Name of the board in the emulator.
     pub board: &'static str,
-    /// One image for each board. The fingers are divided evenly among the boards.
+    /// The images that a hand may use, one for each board.
     images: &'static [&'static str],
+    /// Number of fingers on each board.
+    fingers_a_board: usize,
 }
 
 /// A Cortex-M3 with three fingers.
-pub const LM3S6965: Emulated = Emulated { board: "lm3s6965evb", images: &["lm3s6965.elf"] };
+pub const LM3S6965: Emulated = Emulated { board: "lm3s6965evb", images: &["lm3s6965.elf"], fingers_a_board: 3 };
 
 /// An STM32F405, a Cortex-M4, for each finger.
-pub const STM32F405: Emulated =
-    Emulated { board: "netduinoplus2", images: &["netduinoplus2-1.elf", "netduinoplus2-2.elf", "netduinoplus2-3.elf"] };
+pub const STM32F405: Emulated = Emulated {
+    board: "netduinoplus2",
+    images: &["netduinoplus2-1.elf", "netduinoplus2-2.elf", "netduinoplus2-3.elf"],
+    fingers_a_board: 1,
+};
 
 impl Emulated {
+    /// Number of boards of the hand. Each emulator of a board with one finger needs up to two thirds of a processor, so
+    /// there are no more of them than processors. With three emulators on two processors, the kernel's threads that
+    /// carry the bytes of the terminals get too little time, and replies are lost for a second.
+    pub fn boards(self) -> usize {
+        let processors = std::thread::available_parallelism().map_or(1, NonZero::get);
+        self.images.len().min(processors.max(2))
+    }
+
+    /// Number of fingers of the hand.
+    pub fn fingers(self) -> usize {
+        self.boards() * self.fingers_a_board
+    }
+
     /// Compiles the images of all emulated boards into `folder`.
     pub fn build(self, folder: &Path) {
         let output = Command::new("make")
@@ -47,26 +67,26 @@ impl Emulated {
     }
 }
 
-/// The boards of a hand with three fingers.
+/// The boards of a hand.
 pub struct Machine {
     /// Dropped before the plants.
     emulators: Vec<Emulator>,
-    plants: Arc<[Mutex<Finger>; 3]>,
+    plants: Arc<[Mutex<Finger>]>,
 }
 
 impl Machine {
     /// Starts the boards with the images in `folder`.
     pub fn start(emulated: Emulated, folder: &Path) -> Self {
-        let plants = Arc::new(std::array::from_fn(|index| Mutex::new(Finger::new(index))));
-        let fingers = 3 / emulated.images.len();
+        let plants: Arc<[_]> = (0..emulated.fingers()).map(|index| Mutex::new(Finger::new(index))).collect();
+        let fingers = emulated.fingers_a_board;
         // One emulator of three fingers needs more than one processor. If it stays on one, its measurements are so old
         // that the fingers oscillate while they come under tension.
-        let stays = emulated.images.len() > 1;
+        let stays = fingers == 1;
         let start = |(index, image)| {
             let processor = stays.then_some(index);
             Emulator::start(emulated.board, &folder.join(image), processor, plants.clone(), fingers * index)
         };
-        Self { emulators: emulated.images.iter().enumerate().map(start).collect(), plants }
+        Self { emulators: emulated.images[..emulated.boards()].iter().enumerate().map(start).collect(), plants }
     }
 
     /// The port of each board.
@@ -79,7 +99,12 @@ impl Machine {
         self.emulators.iter().map(|emulator| emulator.process.id()).collect()
     }
 
-    /// Locks finger 0 to 2. The physics stands still meanwhile, so the lock must be brief.
+    /// The indices of the fingers.
+    pub fn fingers(&self) -> Range<usize> {
+        0..self.plants.len()
+    }
+
+    /// Locks the finger with this index. The physics stands still meanwhile, so the lock must be brief.
     pub fn finger(&self, index: usize) -> MutexGuard<'_, Finger> {
         self.plants[index].lock().expect("no panic holding it")
     }
@@ -100,13 +125,7 @@ struct Emulator {
 impl Emulator {
     /// `processor` is the index of the processor on which the emulator stays. With `None` the emulator may use every
     /// processor. `first` is the index of the board's first finger.
-    fn start(
-        board: &str,
-        image: &Path,
-        processor: Option<usize>,
-        plants: Arc<[Mutex<Finger>; 3]>,
-        first: usize,
-    ) -> Self {
+    fn start(board: &str, image: &Path, processor: Option<usize>, plants: Arc<[Mutex<Finger>]>, first: usize) -> Self {
         let folder = tempfile::tempdir().expect("a scratch folder");
         let [to_plant, from_plant] = ["plant_to", "plant_from"].map(|name| pipe(&folder.path().join(name)));
         let mut command = Command::new("qemu-system-arm");

@@ -38,16 +38,18 @@ fn alone() -> Option<MutexGuard<'static, ()>> {
     usable.then(|| ONE.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Returns the configuration of a hand on one port, or on a port for each finger. `keys` are added to the table
-/// `[hand]`.
+/// Returns the configuration of a hand with three fingers on one port, or with a finger on each port. `keys` are added
+/// to the table `[hand]`.
 fn configuration(ports: &[PathBuf], keys: &str) -> Configuration {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let path = folder.path().join("sun2xp.toml");
     // The fingers move in the emulated time, which is slow on a busy machine, so opening may take long.
-    let mut text = format!("[hand]\nopen_timeout_ms = 60000\n{keys}\n");
+    let mut text = String::from("[hand]\nopen_timeout_ms = 60000\n");
     match ports {
-        [port] => text += &format!("[finger]\nthread = 1\nport = \"{}\"\n", port.display()),
+        [port] => text += &format!("{keys}\n[finger]\nthread = 1\nport = \"{}\"\n", port.display()),
         ports => {
+            let fingers: Vec<usize> = (1..=ports.len()).collect();
+            text += &format!("fingers = {fingers:?}\n{keys}\n");
             for (finger, port) in (1..).zip(ports) {
                 text += &format!("[finger.{finger}]\nport = \"{}\"\n", port.display());
             }
@@ -65,21 +67,22 @@ const CLOSE: f64 = 0.02;
 /// On a busy machine the finger moves more slowly than real time.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-fn farthest(found: [[f64; 3]; 3], wanted: [[f64; 3]; 3]) -> f64 {
-    found.into_iter().zip(wanted).map(|(is, wanted)| distance(is, wanted)).fold(0.0, f64::max)
+fn farthest(found: &[[f64; 3]], wanted: &[[f64; 3]]) -> f64 {
+    found.iter().zip(wanted).map(|(&is, &wanted)| distance(is, wanted)).fold(0.0, f64::max)
 }
 
 fn text(error: HandError) -> String {
     error.to_string()
 }
 
-/// Sends all fingers to their targets, and returns their positions when they have been at rest for a while.
-fn settled(hand: &Hand) -> Result<[[f64; 3]; 3], String> {
-    for (finger, target) in (1..).zip(TARGETS) {
+/// Sends the fingers to their targets, and returns their positions when they have been at rest for a while.
+fn settled(hand: &Hand, fingers: usize) -> Result<Vec<[f64; 3]>, String> {
+    let targets: Vec<_> = (1..).zip(TARGETS).take(fingers).collect();
+    for &(finger, target) in &targets {
         hand.send_position(finger, target).map_err(text)?;
     }
     let settling = Settling { tolerance: CLOSE, rest: Duration::from_millis(500), patience: PATIENCE };
-    settling.wait(hand, [(1, TARGETS[0]), (2, TARGETS[1]), (3, TARGETS[2])])
+    settling.wait(hand, &targets)
 }
 
 /// Opens a hand on the firmware and calls `work` with it. An attempt may fail, because a busy machine may slow the
@@ -105,7 +108,8 @@ fn with_configured_hand(
         }
         let hand = Hand::open(configuration(&machine.ports(), keys)).map_err(text)?;
         work(&machine, &hand).map_err(|failure| {
-            let losses = [1, 2, 3].map(|finger| hand.losses(finger).expect("a finger"));
+            let losses = (1..).take(emulated.fingers()).map(|finger| hand.losses(finger).expect("a finger"));
+            let losses: Vec<_> = losses.collect();
             format!("{failure}; {losses:?}")
         })
     });
@@ -130,12 +134,13 @@ fn a_hand_settles_on_the_stm32f405_where_it_does_on_the_simulated_board() {
 fn settles(emulated: Emulated) {
     let Some(_alone) = alone() else { return };
     let simulated = Hand::open(configuration(&["simulated".into()], KEYS)).expect("simulated boards answer");
-    let expected = settled(&simulated).expect("the simulated hand runs");
+    let fingers = emulated.fingers();
+    let expected = settled(&simulated, fingers).expect("the simulated hand runs");
     with_hand(emulated, "a hand on the firmware settles", |machine, hand| {
-        let positions = settled(hand)?;
-        let joints = [0, 1, 2].map(|finger| machine.finger(finger).plant.joints().into());
+        let positions = settled(hand, fingers)?;
+        let joints: Vec<_> = (0..fingers).map(|finger| machine.finger(finger).plant.joints().into()).collect();
         let losses = hand.losses(1).map_err(text)?;
-        let (from_simulated, from_truth) = (farthest(positions, expected), farthest(joints, expected));
+        let (from_simulated, from_truth) = (farthest(&positions, &expected), farthest(&joints, &expected));
         let found = format!(
             "{from_simulated:.4} rad from the simulated hand, in truth {from_truth:.4} rad, {} of {} replies \
              lost",
@@ -169,7 +174,8 @@ fn stops(emulated: Emulated) {
         }
         assert_eq!(machine.finger(1).asked.currents, [0; 4]);
         // The fault input belongs to finger 2.
-        [1, 3].into_iter().try_for_each(|finger| hand.position(finger).map(drop).map_err(text))
+        let mut others = (1..).take(emulated.fingers()).filter(|&finger| finger != 2);
+        others.try_for_each(|finger| hand.position(finger).map(drop).map_err(text))
     });
 }
 

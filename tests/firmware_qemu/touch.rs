@@ -13,7 +13,7 @@ fn the_tactile_elements_of_the_stm32f405_reach_the_planner() {
     elements_reach_the_planner(STM32F405);
 }
 
-/// An element of finger 2 is pressed and becomes unreadable. Finger 3 has no configured elements.
+/// An element of finger 2 is pressed and becomes unreadable. Finger 1 has no configured elements.
 fn elements_reach_the_planner(emulated: Emulated) {
     let Some(_alone) = alone() else { return };
     let keys = format!(
@@ -22,7 +22,7 @@ fn elements_reach_the_planner(emulated: Emulated) {
     );
     with_configured_hand(emulated, "touch on the firmware", &keys, |machine, hand| {
         assert!(!hand.touch(2, 1).expect("an element").valid);
-        hand.touch(3, 0).expect_err("no element is configured");
+        hand.touch(1, 0).expect_err("no element is configured");
         machine.finger(1).touch[1] = 600;
         let pressed = wait_until(PATIENCE, || hand.touch(2, 1).expect("an element").pressed);
         let reading = hand.touch(2, 1).map_err(text)?;

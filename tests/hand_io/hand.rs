@@ -47,10 +47,10 @@ fn fault(hand: &Hand, finger: i32) -> FaultKind {
 }
 
 /// Moves every finger to the target and pushes finger 1. Returns where the fingers rest, and then finger 1.
-fn moves(hand: &Hand, push: impl FnOnce()) -> ([[f64; 3]; 3], [f64; 3]) {
+fn moves(hand: &Hand, push: impl FnOnce()) -> (Vec<[f64; 3]>, [f64; 3]) {
     let settling = Settling { tolerance: 0.01, rest: Duration::from_millis(300), patience: PATIENCE };
     (1..=3).for_each(|finger| hand.send_position(finger, TARGET).expect("sent"));
-    let rest = settling.wait(hand, [(1, TARGET), (2, TARGET), (3, TARGET)]).unwrap_or_else(|error| panic!("{error}"));
+    let rest = settling.wait(hand, &[(1, TARGET), (2, TARGET), (3, TARGET)]).unwrap_or_else(|error| panic!("{error}"));
     push();
     let begun = Instant::now();
     let (mut last, mut since) = (rest[0], begun);
@@ -117,7 +117,7 @@ fn lost_exchanges_fault_the_finger_and_it_recovers() {
     assert_eq!(switches.lock().starts, 2);
     hand.send_position(2, TARGET).expect("sent");
     let settling = Settling { tolerance: 0.02, rest: Duration::from_millis(100), patience: PATIENCE };
-    settling.wait(&hand, [(2, TARGET)]).unwrap_or_else(|error| panic!("{error}"));
+    settling.wait(&hand, &[(2, TARGET)]).unwrap_or_else(|error| panic!("{error}"));
     hand.close();
     assert_eq!(switches.lock().stops, 2);
 }

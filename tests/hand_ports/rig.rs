@@ -212,7 +212,7 @@ pub fn goes(hand: &Hand, finger: i32, target: [f64; 3]) {
 /// Waits until a finger has been within 0.02 rad of `target` for 100 ms.
 pub fn settles(hand: &Hand, finger: i32, target: [f64; 3]) {
     let settling = Settling { tolerance: 0.02, rest: Duration::from_millis(100), patience: LIMIT };
-    if let Err(error) = settling.wait(hand, [(finger, target)]) {
+    if let Err(error) = settling.wait(hand, &[(finger, target)]) {
         panic!("finger {finger} does not settle: {error}; {:?}", hand.report(finger));
     }
 }
