@@ -12,6 +12,7 @@
 mod cases;
 mod closed_loop;
 mod contact;
+mod damping_range;
 mod fits;
 mod identification;
 mod motion;
@@ -69,6 +70,10 @@ struct Arguments {
     /// With --truths: number of seeds.
     #[arg(long, default_value_t = 8)]
     seeds: u64,
+    /// With --truths: instead of these trials, whether each finger comes to rest at both ends of the range of damping
+    /// ratios that SendDamping admits.
+    #[arg(long)]
+    damping: bool,
     /// With --truths: no walls and no bumps.
     #[arg(long)]
     short: bool,
@@ -111,6 +116,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let begun = Instant::now();
     if let Some(only) = &arguments.search {
         return search::run(&arguments, only);
+    }
+    if let (Some(only), true) = (&arguments.truths, arguments.damping) {
+        return damping_range::run(&arguments, only);
     }
     if let Some(only) = &arguments.truths {
         return truths_table::run(&arguments, only, begun);

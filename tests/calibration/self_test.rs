@@ -153,3 +153,18 @@ fn a_finger_that_is_wired_correctly_passes() {
     }
     assert!(wrong.is_empty(), "{wrong}");
 }
+
+/// All tendons are tightened to three times their pretension. A gauge with 0.08 of its scale shows 0.08 of the rise.
+#[test]
+fn a_gauge_that_hardly_responds_is_reported_with_its_rise() {
+    let (truth, belief) = fingers(6000);
+    let pretension = belief.tendons().expect("a good finger").pretension(belief.tendon.minimum);
+    for gauge in 0..4 {
+        let mut bench = Bench::new(&truth, &belief, 1000.0);
+        bench.sensors.rescale_gauge(gauge, 0.08);
+        let found = bench.calibrate(Task::SelfTest);
+        let Err(Obstacle::SilentGauge { newton, .. }) = found else { panic!("{found:?}") };
+        let expected = 0.08 * 2.0 * pretension[gauge];
+        assert!((newton - expected).abs() < 0.25 * expected, "gauge {gauge}: {newton} N instead of {expected} N");
+    }
+}

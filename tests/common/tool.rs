@@ -13,8 +13,14 @@ pub fn tool() -> &'static Path {
         // Test programs are in `deps` of the profile's folder.
         let folder = test.parent().and_then(Path::parent).expect("the profile's folder");
         let mut cargo = Command::new(env!("CARGO"));
-        cargo.args(["build", "--quiet", "--locked", "--package", "sun2xp-tool", "--manifest-path"]);
+        cargo.args(["build", "--quiet", "--locked", "--manifest-path"]);
         cargo.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"));
+        match std::env::var_os("CI") {
+            // tests/run has built the whole workspace. With an example, Cargo selects the same features as for
+            // `cargo test --workspace`, so the tool is up to date.
+            Some(_) => cargo.args(["--workspace", "--bin", "sun2xp", "--example", "spring"]),
+            None => cargo.args(["--package", "sun2xp-tool"]),
+        };
         cargo.arg("--target-dir").arg(folder.parent().expect("the target folder"));
         if folder.ends_with("release") {
             cargo.arg("--release");

@@ -117,7 +117,7 @@ impl Holding {
                 let done = (self.seconds / RAISING).min(1.0);
                 let part = (1.0 - (std::f64::consts::PI * done).cos()) / 2.0;
                 let stretch = instruments.compliance.add_scalar(1.0 / HOLD);
-                self.target = self.from + raised(instruments).component_mul(&stretch) * part;
+                self.target = self.from + expected_rise(instruments).component_mul(&stretch) * part;
                 if done == 1.0 {
                     self.enter(Phase::Raised);
                 }
@@ -128,7 +128,7 @@ impl Holding {
                 }
                 if self.seconds > SETTLING + READING {
                     let risen = self.read.mean() - self.base.mean();
-                    let raised = risen.component_div(&raised(instruments));
+                    let raised = risen.component_div(&expected_rise(instruments));
                     return Ok(Break(Responses { raised, ..self.responses }));
                 }
             }
@@ -204,7 +204,7 @@ impl Holding {
 }
 
 /// The rise of the tensions, N: a multiple of the pretension, with the largest tension below half of t_max.
-fn raised(instruments: &Instruments) -> Vector4<f64> {
+pub(super) fn expected_rise(instruments: &Instruments) -> Vector4<f64> {
     let most = 0.5 * instruments.maximum / instruments.pretension.max() - 1.2;
     instruments.pretension * RAISED.min(most.max(0.5))
 }

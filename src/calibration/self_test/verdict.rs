@@ -1,6 +1,6 @@
 //! Determines from the responses of the gauges what is wrong.
 
-use super::holding::{LATE, LENGTH, Responses};
+use super::holding::{LATE, LENGTH, Responses, expected_rise};
 use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;
 use crate::model::LinkDynamics;
@@ -33,7 +33,7 @@ pub(super) fn judge(
     let usual = median(&raised.abs());
     for gauge in 0..4 {
         if raised[gauge].abs() < DEAD * usual {
-            let newton = raised[gauge] * instruments.pretension[gauge];
+            let newton = raised[gauge] * expected_rise(instruments)[gauge];
             return Err(Obstacle::SilentGauge { gauge: number(gauge), newton });
         }
     }

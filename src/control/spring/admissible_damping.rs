@@ -41,11 +41,12 @@ impl AdmissibleDamping {
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Self {
         let scheme = finger.controller.scheme(rate);
         let correspondence = supported(finger).map_or(f64::INFINITY, |supported| DEFAULT_SUPPORTED / supported);
-        let (least, most) = match rate < SLOW {
-            true => ((0.7, 0.07), (2.0, -0.2)),
-            false => ((0.4, 0.09), (2.5, -0.22)),
+        let (least, most) = match (scheme, rate < SLOW) {
+            (Scheme::StateFeedback, true) => ((0.7, 0.07), (1.7, -0.25)),
+            (Scheme::StateFeedback, false) => ((0.4, 0.09), (2.1, -0.3)),
+            (_, true) => ((1.0, 0.0), (2.0, -0.2)),
+            (_, false) => ((1.0, 0.0), (2.5, -0.22)),
         };
-        let least = if scheme == Scheme::StateFeedback { least } else { (1.0, 0.0) };
         Self { least, most, correspondence }
     }
 
