@@ -258,7 +258,7 @@ typedef struct sun2xp_hand sun2xp_hand;
 /*
  A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread.
 
- The member remedy names calls only. It is empty if no call helps. The member text then contains the remedy.
+ The member remedy names calls only, and is empty if no call helps. The member text always contains the whole remedy.
  */
 struct sun2xp_error {
     size_t size;                            /* sizeof (struct sun2xp_error), set before the call. */
@@ -276,9 +276,9 @@ struct sun2xp_error {
    error   result; set error->size before the call
 
  Every thread has its own refusals. A thread remembers the last refusal of each of the four hands that
- have refused its calls most recently. The refusal of a call that gets no handle, such as sun2xp_open, or a
- null handle belongs to no hand, and only hand = null returns it. A call that succeeds does not change the
- refusals.
+ have refused its calls most recently. Calls without a handle, such as sun2xp_open, and calls with a null
+ handle together count as one hand. Only hand = null returns their refusal. A call that succeeds does not
+ change the refusals.
 
  Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
 
@@ -552,10 +552,10 @@ struct sun2xp_io {
 };
 
 /*
- sun2xp_open_io - open a hand with hardware of the program
+ sun2xp_open_io - open a hand with hardware that the program provides
 
    path    as in sun2xp_open
-   count   number of fingers with hardware of the program, 0 to 3
+   count   number of fingers whose hardware the program provides, 0 to 3
    io      io[count]: the hardware of each of these fingers; copied
    hand    result: the handle of the hand
 
@@ -572,8 +572,8 @@ struct sun2xp_io {
 
  Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a servo
  thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery, may overlap
- with the exchange of another finger. These fingers have the same command->deadline in a cycle, and a later
- one in the next cycle. A finger that is faulted or stopped gets no exchange.
+ with the exchange of another finger. In a cycle, these fingers have the same command->deadline. The
+ deadline of the next cycle is later. A finger that is faulted or stopped gets no exchange.
 
  exchange and stop must not allocate memory, wait for locks, write files or call the library. The behaviour
  is undefined if one of the functions does not return: longjmp, pthread_exit, exceptions.
@@ -582,8 +582,9 @@ struct sun2xp_io {
  comes for terms->watchdog, the hardware must enter the end state by itself, even if this process hangs
  or has died.
 
- A tension may be from -8191 to 57342 steps. A tension that is NaN or outside this range faults the
- finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by more than 32767 counts between two exchanges.
+ A tension may be from -8191 to 57342 times io->tension_unit. A tension that is NaN or outside this range
+ faults the finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by more than 32767 counts
+ between two exchanges.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -984,7 +985,7 @@ struct sun2xp_set_point {
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
  "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
- This happens about once each time two of the clocks have drifted apart by one more period.
+ This happens about once for every period by which two of the clocks drift apart.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1172,7 +1173,7 @@ struct sun2xp_palm_pose {
    finger     1 to 3
    position   position[3]: angles of joints 0, 1, 2, rad. Null: the measured angles
    jacobian   result: jacobian[9], row by row: entry [row][column] is the motion of the tip
-              along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8)
+              along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8 of the report)
 
  A force f on the tip exerts a torque on joint k: the sum over the axes of entry [axis][k] times f[axis],
  N cm.
@@ -2103,9 +2104,10 @@ int sun2xp_on_event(sun2xp_hand *hand, void (*callback)(const struct sun2xp_even
 /*
  sun2xp_event_descriptor - a descriptor for poll and select
 
- The descriptor is readable while sun2xp_next_event would return an event, and when the hand is closed.
- sun2xp_next_event makes it unreadable when it returns 0. So after each poll, call sun2xp_next_event until
- it returns 0. Do not read, write or close the descriptor. sun2xp_close closes it.
+ The descriptor is readable while sun2xp_next_event would return an event, and from the beginning of
+ sun2xp_close on. sun2xp_next_event makes it unreadable when it returns 0. So after each poll, call
+ sun2xp_next_event until it returns 0. Do not read, write or close the descriptor. sun2xp_close closes it
+ at its end.
 
  Returns the descriptor, the same one until sun2xp_close, or a negative number with
    EPERM    forked child
@@ -2191,8 +2193,8 @@ struct sun2xp_reflex {
  A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
  later calls that change a part of a set point start from the new one. The next sun2xp_send_position
  moves the finger again. The finger ignores a set point that is sent within the time in the member
- inhibition. This is no error, and the set point counts for the expiry. A rule stays until
- sun2xp_remove_reflex or sun2xp_close.
+ inhibition. This is no error, and the ignored set point still restarts the time after which set points
+ expire. A rule stays until sun2xp_remove_reflex or sun2xp_close.
 
  Returns the number of the rule, above 0, or a negative number with
    EPERM    forked child
