@@ -138,7 +138,8 @@ pub struct Report {
     /// Commanded tensions, N, including the dither of state feedback. They are below t_min only while slack is taken
     /// up, during a release and in the activities for calibration.
     pub desired_tensions: Vector4<f64>,
-    /// Joint torques of the stiffness law, N cm.
+    /// Desired joint torques, N cm. For a finger that follows a set point, they include the damper, the soft joint
+    /// limits, the gravity compensation and the feed-forward.
     pub joint_torques: Vector3<f64>,
     /// The fraction of `joint_torques` that the tension bounds permit, 0 to 1. The direction of the torque is kept.
     pub torque_scale: f64,
