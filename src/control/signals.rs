@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// The measurements of the board at one instant, in counts.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Feedback {
-    /// m_c of eq. 28: motor encoder counts, without wrap-around.
+    /// m_c of eq. 28: motor encoder counts, extended to 32 bits.
     pub motor_counts: [i32; 4],
     /// Strain gauge counts.
     pub gauge_counts: [u16; 4],
@@ -131,7 +131,7 @@ impl MotorCommand {
 pub struct Report {
     /// Measured joint angles, corrected for tendon stretch, rad.
     pub joints: Vector3<f64>,
-    /// Measured joint rates, rad/s.
+    /// Measured joint rates, rad/s. With state feedback, these are the rates predicted for the next sample.
     pub joint_rates: Vector3<f64>,
     /// Measured tensions, N.
     pub tensions: Vector4<f64>,

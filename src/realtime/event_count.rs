@@ -33,8 +33,8 @@ impl EventCount {
         }
     }
 
-    /// Begins to wait. The caller then checks its condition. If the condition does not hold, the caller passes the
-    /// number that this function returned to [`EventCount::wait`].
+    /// Begins to wait. The caller then checks its condition. If the condition does not hold, the caller calls
+    /// [`EventCount::wait`] with the number that this function has returned.
     pub fn prepare(&self) -> u32 {
         let count = self.count.load(Ordering::Acquire);
         self.waiting.store(true, Ordering::Relaxed);

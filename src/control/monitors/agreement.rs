@@ -115,7 +115,7 @@ impl Memory {
 
 impl Agreement {
     pub fn new(finger: &ConfiguredFinger, tendons: &Tendons) -> Self {
-        // The last column of Q, which belongs to the ghost joint (see [`Tendons`]), spans the null space of R.
+        // The last column of Q, which belongs to the ghost joint (see `Tendons`), spans the null space of R.
         let null: Vector4<f64> = tendons.q.column(3).into_owned();
         let compliance = Vector4::from(finger.tendon.stiffness).map(f64::recip);
         let per_stiffness = null.component_mul(&compliance);
