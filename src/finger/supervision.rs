@@ -12,7 +12,7 @@ const WARNING_WINDOW: f64 = 1.0;
 /// A line counts as noisy if the share of lost replies in the window is larger than this.
 const NOISY: f64 = 0.02;
 
-/// A servo counts as overrunning if the share of overruns (skipped periods) in the window is larger than this.
+/// A servo counts as overrunning if the share of cycles that skipped periods in the window is larger than this.
 const OVERRUN: f64 = 0.02;
 
 /// The line counts as unusable if the share of damaged replies in the time-out window is larger than this. With one
