@@ -99,7 +99,7 @@ pub struct FingerServo {
 /// Limits from the configuration, in cycles unless the name has a unit.
 struct Limits {
     period_ms: f64,
-    /// Longest permitted time until the finger becomes a spring, ms.
+    /// Longest permitted time until the finger enters the stage `Running`, ms.
     opening_ms: f64,
     settled: u32,
     ramp: u32,
