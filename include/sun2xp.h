@@ -92,10 +92,10 @@
 
    4. STRUCTS
 
-   The first member of every struct is size. Set it to the sizeof of the struct before the call. A smaller
-   size is refused, and so is one above 4096. Later versions of the library add members at the end. If a
-   program was compiled with a newer header and runs with an older library, the result members that this
-   library does not know are zero. The library never changes size.
+   The first member of every struct is size. Set it to the sizeof of the struct before the call. A size
+   below that of the struct's first version is refused, and so is one above 4096. Later versions of the
+   library add members at the end. If a program was compiled with a newer header and runs with an older
+   library, the result members that this library does not know are zero. The library never changes size.
 
 
    5. THREADS, SIGNALS, FORK, EXIT
@@ -135,16 +135,20 @@
    C++, lets an exception escape.
 
    Memory: opening allocates the memory for the servos, for closing and for all calls that are not slow,
-   except sun2xp_send_path. These calls work even if malloc later returns NULL. Opening (12 MiB),
-   sun2xp_recover, sun2xp_zero, sun2xp_identify, sun2xp_adjust and
-   sun2xp_write_black_box (4 MiB), sun2xp_send_path (1 MiB), sun2xp_wait, sun2xp_on_event,
-   sun2xp_event_descriptor and sun2xp_wait_event (64 KiB) are refused with ENOMEM if that much memory is
-   not free. They test this directly after EPERM. There are two exceptions: sun2xp_send_path tests it after
-   EFAULT, and sun2xp_wait_event after its other reasons, if there is no event. If memory runs out while one
-   of them runs, the process is aborted, and the boards' watchdogs end the motion. If less
-   than 4 MiB are free when a finger faults, no black box is written, and a message says so. If the library
-   was loaded with dlopen, the first call of a thread needs memory for its thread-local data. If there is
-   none, the C library aborts the process.
+   except sun2xp_send_path. These calls work even if malloc later returns NULL. The other calls are refused
+   with ENOMEM if too little memory is free:
+
+       12 MiB   the calls that open a hand
+        4 MiB   sun2xp_recover, sun2xp_zero, sun2xp_identify, sun2xp_adjust, sun2xp_write_black_box
+        1 MiB   sun2xp_send_path
+       64 KiB   sun2xp_wait, sun2xp_on_event, sun2xp_event_descriptor, sun2xp_wait_event
+
+   They test this directly after EPERM, even if their entries do not list ENOMEM there. There are two
+   exceptions: sun2xp_send_path tests it after EFAULT, and sun2xp_wait_event after its other reasons, if
+   there is no event. If memory runs out while one of these calls runs, the process is aborted, and the
+   boards' watchdogs end the motion. If less than 4 MiB are free when a finger faults, no black box is
+   written, and a message says so. If the library was loaded with dlopen, the first call of a thread needs
+   memory for its thread-local data. If there is none, the C library aborts the process.
 
    Cancellation: pthread_cancel does not interrupt a call. It takes effect at the program's next
    cancellation point or, with asynchronous cancellation, when the call returns.
@@ -163,9 +167,9 @@
    until those children have ended too.
 
    Descriptors: a daemon must detach before it opens a hand. The library's descriptors close at exec.
-   Their numbers are 512 or more if the limit (ulimit -n) permits it, so a program may close all
-   descriptors up to 255 and keep its hands. If a program closes all descriptors, the fingers fault with
-   SUN2XP_FAULT_PORT_CLOSED or SUN2XP_FAULT_PORT_VANISHED. The library does not touch files that the
+   Their numbers are 512 or more if the limit (ulimit -n) permits it. A program that closes only lower
+   numbers, as many daemons do up to 255, keeps its hands. If it closes all descriptors, the fingers fault
+   with SUN2XP_FAULT_PORT_CLOSED or SUN2XP_FAULT_PORT_VANISHED. The library does not touch files that the
    program then opens under these numbers. To start a hand again, close and open it.
 
    Exit: when a program exits with hands open, an exit handler of the library brings the fingers to their
@@ -258,7 +262,7 @@ typedef struct sun2xp_hand sun2xp_hand;
 /*
  A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread.
 
- The member remedy names calls only. It is empty if no call helps. The member text then contains the remedy.
+ The member remedy names calls only, and is empty if no call helps. The member text always contains the whole remedy.
  */
 struct sun2xp_error {
     size_t size;                            /* sizeof (struct sun2xp_error), set before the call. */
@@ -276,9 +280,9 @@ struct sun2xp_error {
    error   result; set error->size before the call
 
  Every thread has its own refusals. A thread remembers the last refusal of each of the four hands that
- have refused its calls most recently. The refusal of a call that gets no handle, such as sun2xp_open, or a
- null handle belongs to no hand, and only hand = null returns it. A call that succeeds does not change the
- refusals.
+ have refused its calls most recently. Calls without a handle, such as sun2xp_open, and calls with a null
+ handle together count as one hand. Only hand = null returns their refusal. A call that succeeds does not
+ change the refusals.
 
  Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
 
@@ -552,10 +556,10 @@ struct sun2xp_io {
 };
 
 /*
- sun2xp_open_io - open a hand with hardware of the program
+ sun2xp_open_io - open a hand with hardware that the program provides
 
    path    as in sun2xp_open
-   count   number of fingers with hardware of the program, 0 to 3
+   count   number of fingers whose hardware the program provides, 0 to 3
    io      io[count]: the hardware of each of these fingers; copied
    hand    result: the handle of the hand
 
@@ -572,8 +576,8 @@ struct sun2xp_io {
 
  Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a servo
  thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery, may overlap
- with the exchange of another finger. These fingers have the same command->deadline in a cycle, and a later
- one in the next cycle. A finger that is faulted or stopped gets no exchange.
+ with the exchange of another finger. In a cycle, these fingers have the same command->deadline. The
+ deadline of the next cycle is later. A finger that is faulted or stopped gets no exchange.
 
  exchange and stop must not allocate memory, wait for locks, write files or call the library. The behaviour
  is undefined if one of the functions does not return: longjmp, pthread_exit, exceptions.
@@ -582,8 +586,9 @@ struct sun2xp_io {
  comes for terms->watchdog, the hardware must enter the end state by itself, even if this process hangs
  or has died.
 
- A tension may be from -8191 to 57342 steps. A tension that is NaN or outside this range faults the
- finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by more than 32767 counts between two exchanges.
+ A tension may be from -8191 to 57342 times io->tension_unit. A tension that is NaN or outside this range
+ faults the finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by more than 32767 counts
+ between two exchanges.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -720,11 +725,11 @@ int sun2xp_position(sun2xp_hand *hand, int finger, double *position);
  The member force is computed from the measured tensions, so it includes friction, weight and inertia of
  the finger. It is never NaN. Near singular poses there are directions that the joints cannot measure.
  Along these, the members force and stiffness are zero. The member contact_force does not contain constant
- errors of the gauges. The member stiffness contains the part of Kx that the finger applies at present.
- The joint limits, a tip near the axis of joint 0 and the rotational stiffness of a contact add to it. The
- members contact_force and stiffness are zero while the finger is not running. The member slide_speed is 0
- while the member touching is 0. While touching is 1, the tip slides on the object at this speed, or tip
- and object move together at this speed.
+ errors of the gauges. The member stiffness is the part of Kx that the finger applies at present, plus
+ three other springs: the soft joint limits, the spring of joint 0 while the tip is near its axis, and the
+ rotational stiffness of a contact. The members contact_force and stiffness are zero while the finger is
+ not running. The member slide_speed is 0 while the member touching is 0. While touching is 1, the tip
+ slides on the object at this speed, or tip and object move together at this speed.
  */
 struct sun2xp_tip {
     size_t size;                            /* sizeof (struct sun2xp_tip), set before the call. */
@@ -846,10 +851,10 @@ int sun2xp_send_contact(sun2xp_hand *hand, int finger, int dimensions, const dou
    ratio    damping relative to what the controller chooses from the stiffness; 1 after sun2xp_open
 
  The ratio changes without a jump in torque and stays until another ratio is sent. It becomes 1 again when
- the finger becomes a spring after a fault or a calibration, when a set point expires, and at the reaction
- SUN2XP_THEN_SOFTEN. SUN2XP_THEN_DAMP replaces it. A finger with much
- less or much more damping does not come to rest. The range therefore depends on controller, rate and the
- largest eigenvalue k of the stiffness, N/cm:
+ the finger becomes a spring after a fault or a calibration, when a set point expires, and when a reflex
+ with the reaction SUN2XP_THEN_SOFTEN fires. A reflex with SUN2XP_THEN_DAMP replaces it. A finger with much
+ less or much more damping does not come to rest. The range therefore depends on the controller
+ (finger.controller.scheme), the rate and the largest eigenvalue k of the stiffness, N/cm:
 
                                      1000 Hz and above    below 1000 Hz
    state feedback         smallest   0.40 + 0.09 k        0.70 + 0.07 k
@@ -857,7 +862,8 @@ int sun2xp_send_contact(sun2xp_hand *hand, int finger, int dimensions, const dou
    figures 9, 10, 11      smallest   1                    1
                           largest    2.50 - 0.22 k        2.00 - 0.20 k
 
- By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1. For a
+ By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. If the smallest ratio of the
+ table is above 1, or the largest is below 1, the limit is 1 instead: 1 is always admitted. For a
  finger with other links or tendons, k is first multiplied by 12.3 N/cm divided by S. S is the smallest
  stiffness that the tendons give the tip in any direction, with locked motors and with the joints in the
  middle of their ranges. For the default finger S is 12.3 N/cm. sun2xp_send_stiffness and
@@ -984,7 +990,7 @@ struct sun2xp_set_point {
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
  "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
- This happens about once each time two of the clocks have drifted apart by one more period.
+ This happens about once for every period by which two of the clocks drift apart.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1023,9 +1029,10 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
  Returns at once if the condition holds already. For all fingers it must hold at the same time. A finger
  that an object blocks settles without arriving. If the set point is a position of the tip, the finger
  arrives at the joint angles that were computed for it. If a reflex has replaced the set point that was
- sent last, or the finger ignored it because of an inhibition, the condition must hold for the set point
- of the reflex. The event SUN2XP_EVENT_REFLEX_FIRED says that a rule has reacted. Other calls work
- meanwhile. sun2xp_close works too, and this call is then refused.
+ sent last, the condition must hold for the set point of the reflex. The same applies if the finger
+ ignored the set point because of an inhibition, and the call then returns only after the inhibition has
+ ended. The event SUN2XP_EVENT_REFLEX_FIRED says that a rule has reacted. Other calls work meanwhile.
+ sun2xp_close works too, and this call is then refused.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1172,7 +1179,7 @@ struct sun2xp_palm_pose {
    finger     1 to 3
    position   position[3]: angles of joints 0, 1, 2, rad. Null: the measured angles
    jacobian   result: jacobian[9], row by row: entry [row][column] is the motion of the tip
-              along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8)
+              along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8 of the report)
 
  A force f on the tip exerts a torque on joint k: the sum over the axes of entry [axis][k] times f[axis],
  N cm.
@@ -1863,8 +1870,8 @@ int sun2xp_stop(sun2xp_hand *hand, int finger);
 
    finger   1 to 3, or SUN2XP_ALL_FINGERS: one after the other
 
- Queries the identity of the finger's board and configures the board again. If the port has failed and
- finger.reconnect is true, reopens the port first. Then brings the tendons under tension. The finger
+ Queries the identity of the finger's board, configures the board again, and brings the tendons under
+ tension. If the port has failed and finger.reconnect is true, the call reopens the port first. The finger
  holds its present pose at the configured initial stiffness. If another finger on the same port runs, it
  continues unchanged, and only this finger recovers. Otherwise all fingers on the port recover together. A
  finger that is not faulted continues unchanged. Remove the cause of the fault first: sun2xp_fault and
@@ -1934,11 +1941,11 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
    EBUSY      the finger is being calibrated or recovered already
    ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
               joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
-              gives the remedy. The finger is then limp. Exception: if it moved while it was read, or if
-              its counts were not valid, the calibration had not changed anything yet, and the finger is
-              in its former state: a spring holds its set point, and a path has ended. If another thread
-              has recovered the finger from a fault during the calibration, the finger holds its pose.
-              If its new zeros had been found before the fault, they are in force, otherwise its former ones
+              gives the remedy. The finger is then limp. There are two exceptions. (1) The finger moved
+              while it was read, or its counts were not valid: the finger is then a spring or limp, as
+              before, but a path that it followed has ended. (2) Another thread has recovered the finger
+              from a fault during the calibration: the finger then holds its pose. If its new zeros had been
+              found before the fault, they are in force
    ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
    EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
               sun2xp_close
@@ -2103,9 +2110,10 @@ int sun2xp_on_event(sun2xp_hand *hand, void (*callback)(const struct sun2xp_even
 /*
  sun2xp_event_descriptor - a descriptor for poll and select
 
- The descriptor is readable while sun2xp_next_event would return an event, and when the hand is closed.
- sun2xp_next_event makes it unreadable when it returns 0. So after each poll, call sun2xp_next_event until
- it returns 0. Do not read, write or close the descriptor. sun2xp_close closes it.
+ The descriptor is readable while sun2xp_next_event would return an event, and from the beginning of
+ sun2xp_close on. sun2xp_next_event makes it unreadable when it returns 0. So after each poll, call
+ sun2xp_next_event until it returns 0. Do not read, write or close the descriptor. sun2xp_close closes it
+ at its end.
 
  Returns the descriptor, the same one until sun2xp_close, or a negative number with
    EPERM    forked child
@@ -2191,8 +2199,8 @@ struct sun2xp_reflex {
  A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
  later calls that change a part of a set point start from the new one. The next sun2xp_send_position
  moves the finger again. The finger ignores a set point that is sent within the time in the member
- inhibition. This is no error, and the set point counts for the expiry. A rule stays until
- sun2xp_remove_reflex or sun2xp_close.
+ inhibition. This is no error, and the ignored set point still restarts the time after which set points
+ expire. A rule stays until sun2xp_remove_reflex or sun2xp_close.
 
  Returns the number of the rule, above 0, or a negative number with
    EPERM    forked child
@@ -2246,9 +2254,9 @@ int sun2xp_remove_reflex(sun2xp_hand *hand, int finger, int number);
 /*
  Result of sun2xp_record: one cycle of a finger, from the black box.
 
- The library stores all cycles from the member oldest to the member newest. The controller does not
- run in a cycle in which the finger faults first, or in which a simulated finger does not answer. The
- member computed is then 0, and so are all members after it.
+ The library stores all cycles from the member oldest to the member newest. The controller does not run
+ in a cycle in which the finger faults before the controller's turn, or in which a simulated finger does
+ not answer. The member computed is then 0, and so are all members after it.
  */
 struct sun2xp_record {
     size_t size;                            /* sizeof (struct sun2xp_record), set before the call. */
@@ -2278,8 +2286,8 @@ struct sun2xp_record {
 
  A record is a part of what sun2xp_write_black_box writes into a file. Every cycle adds a record and
  removes the oldest one. A faulted finger adds none, so its records are the last ones before the fault.
- If hand.black_box is set, the cycles of a finger that recovers right after a fault can be read only once
- the library has copied the records of the fault, which takes up to 50 ms.
+ If hand.black_box is set and a finger recovers right after a fault, its new cycles cannot be read until
+ the library has copied the records of the fault. This takes up to 50 ms.
 
  Returns 0, or a negative number with
    EPERM    forked child

@@ -1,8 +1,8 @@
 //! The parallel stiffness controller of the Stanford/JPL hand (COINS TR 90-48, 1990) as a library.
 //!
-//! C planners use `include/Sun2Xp.h`. Rust planners open a [`Hand`], whose fingers are numbered 1 to 3, and send set
-//! points to it. Each fingertip then behaves as a spring of the stiffness that was sent. Lengths are in cm, forces in
-//! N, torques in N cm, angles in rad and stiffnesses in N/cm.
+//! A planner is the program that commands the hand. C planners use `include/Sun2Xp.h`. Rust planners open a [`Hand`],
+//! whose fingers are numbered 1 to 3, and send set points to it. Each fingertip then behaves as a spring of the
+//! stiffness that was sent. Lengths are in cm, forces in N, torques in N cm, angles in rad and stiffnesses in N/cm.
 //!
 //! ```no_run
 #![doc = include_str!("../examples/spring.rs")]
@@ -10,9 +10,9 @@
 //!
 //! # Features
 //!
-//! `internals` exports the modules behind the types of this page: control, board protocol, simulated boards, physics
-//! and the search for the bound of Kx. Benchmarks, tools and simulators outside this project use these modules. They
-//! may change in any version.
+//! `internals` exports the modules behind the types of this page, for example the controller, the board protocol, the
+//! simulated boards and the physics. Benchmarks, tools and simulators outside this project use these modules. They may
+//! change in any version.
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]

@@ -110,7 +110,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = Arguments::parse();
     let (poses, rates) =
         if arguments.quick || !arguments.bench { (4, vec![1000.0]) } else { (24, vec![500.0, 1000.0, 2000.0]) };
-    let (poses, rates) = (arguments.poses.unwrap_or(poses), arguments.rates.take().unwrap_or(rates));
+    let (poses, rates) = (arguments.poses.unwrap_or(poses), arguments.rates.clone().unwrap_or(rates));
     arguments.controllers.retain(|&scheme| scheme != Scheme::Figure10);
     arguments.controllers.insert(0, Scheme::Figure10);
     let begun = Instant::now();

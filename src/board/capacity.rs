@@ -16,7 +16,7 @@ pub const USABLE_SHARE: f64 = 0.8;
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error(
     "{who} at {rate} Hz {verb} not fit on a port at {baud} baud: a command of {command} bytes takes \
-     {command_us:.0} us, the response of the board {turnaround} us, and {replies} of {reply} bytes \
+     {command_us:.0} us, the turnaround of the board {turnaround} us, and {replies} of {reply} bytes \
      {replies_us:.0} us (10 bits a byte), {needed_us:.0} us in all, but only {share:.0} % of a period, {usable_us:.0} \
      us, are usable. {remedy}",
     who = Counted(*.fingers as u64, "finger", "fingers"), verb = if *.fingers == 1 { "does" } else { "do" },
@@ -87,7 +87,7 @@ pub fn tactile_requests(baud: u32, fingers: usize, rate: f64) -> usize {
     ((left / tactile_microseconds(baud)).floor().max(0.0) as usize).min(fingers)
 }
 
-/// Returns the share of a period in which the line is busy, 0 to [`USABLE_SHARE`].
+/// Returns the share of a period that one exchange takes, 0 to [`USABLE_SHARE`].
 pub fn capacity(baud: u32, fingers: usize, rate: f64) -> Result<f64, TooFast> {
     const USUAL_BAUDS: [u32; 9] =
         [115_200, 230_400, 460_800, 500_000, 921_600, 1_000_000, 2_000_000, 3_000_000, 4_000_000];

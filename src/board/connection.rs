@@ -11,7 +11,7 @@ use super::transport::Transport;
 pub enum Connection {
     /// A serial port with its board.
     Serial(Port),
-    /// Hardware of the program, for one finger.
+    /// Hardware that the program provides, for one finger.
     Io(IoBoard),
 }
 

@@ -9,12 +9,12 @@ use std::io;
 use std::os::fd::{AsRawFd, FromRawFd, IntoRawFd, OwnedFd, RawFd};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// The lowest number for our descriptors. It is above the numbers that daemons close, and above those that a program
-/// with a usual number of open files uses.
+/// The lowest number for our descriptors. It is above the numbers that most daemons close, and above those that a
+/// program with a usual number of open files uses.
 const LOWEST: RawFd = 512;
 
 /// If the process may have only few descriptors, our numbers begin at this fraction (numerator, denominator) of the
-/// permitted ones.
+/// permitted number.
 const BELOW: (libc::rlim_t, libc::rlim_t) = (3, 4);
 
 // These numbers are the same on every Linux architecture.
@@ -31,8 +31,8 @@ const MARK: libc::c_int = libc::SIGPWR;
 /// library. If other code closes a descriptor, its number may be given to another file that is opened here.
 static GENERATIONS: [AtomicU32; NUMBERED] = [const { AtomicU32::new(0) }; NUMBERED];
 
-/// Number of the descriptor numbers that are distinguished by their generation. The numbers are the lowest free ones,
-/// so only a process with thousands of open files has higher ones.
+/// Descriptor numbers below this one have a generation count. The system assigns the lowest free number, so only a
+/// process with thousands of open files has higher ones.
 const NUMBERED: usize = 4096;
 
 /// An open descriptor that is checked before each use.

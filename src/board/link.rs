@@ -25,7 +25,7 @@ pub struct LinkCounters {
     pub frames: u64,
     /// Pieces received that were not valid frames.
     pub damaged: u64,
-    /// Undamaged frames that were not expected, or have a type that this library does not know.
+    /// Undamaged frames that were not expected, or that this library cannot read.
     pub foreign: u64,
     /// Writes that the port accepted only in part or not at all. The board received a damaged frame or none.
     pub unsent: u64,
@@ -125,7 +125,7 @@ impl<T: Transport> Link<T> {
     }
 
     /// Sends the Commands of all fingers on the port, at most 15, in one write. Bytes that the port does not accept at
-    /// once are lost and counted. The caller detects the loss, because no Reply arrives.
+    /// once are lost, and the write is counted as unsent. The caller detects the loss, because no Reply arrives.
     pub fn send(&mut self, commands: &[OutgoingCommand]) -> Result<(), LinkError> {
         self.send_with(commands, &[])
     }
@@ -169,8 +169,8 @@ impl<T: Transport> Link<T> {
         self.write(&mut bytes[..length])
     }
 
-    /// Returns the next Reply, or `None` at `deadline` (ns on the transport's clock). If the deadline is in the past,
-    /// returns only a Reply that has already arrived.
+    /// Returns the next Reply, or `None` at `deadline` (ns on the transport's clock) or after 4096 bytes. If the
+    /// deadline is in the past, returns only a Reply that has already arrived.
     ///
     /// A refused Command is an error: the board has lost its configuration, or another board is connected.
     pub fn receive(&mut self, deadline: u64) -> Result<Option<Received>, LinkError> {

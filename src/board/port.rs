@@ -29,7 +29,7 @@ pub struct Port {
     ready_at: u64,
     /// The process that opened the port. A forked child inherits this value and the open file.
     process: u32,
-    /// Whether this value has the lock. Without it, another program uses the port.
+    /// Whether this value has locked the port. If it has not, another program may be using the port.
     locked: bool,
 }
 

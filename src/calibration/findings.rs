@@ -32,7 +32,7 @@ pub struct Signs {
 /// Zeros of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zeros {
-    /// `encoder.zero`, m_0 of eq. 28.
+    /// `encoder.zero`, m_0 of eq. 28 of COINS TR 90-48.
     pub encoder: [i32; 4],
     /// `gauge.zero`.
     pub gauge: [f64; 4],
@@ -119,7 +119,8 @@ impl IdentifiedArms {
 }
 
 impl Findings {
-    /// Writes the results into a finger's configuration.
+    /// Writes the results whose fields name a key into a finger's configuration. The viscous friction of the joints is
+    /// not written.
     pub fn apply(&self, finger: &mut ConfiguredFinger) {
         match self {
             Self::Signs(signs) => {

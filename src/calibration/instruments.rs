@@ -17,7 +17,7 @@ pub(super) struct Instruments {
     pub distribution: TensionDistribution,
     /// Pretension of each tendon, N.
     pub pretension: Vector4<f64>,
-    /// 1/k, cm/N.
+    /// Compliance of each tendon, cm/N: the reciprocal of `tendon.stiffness`.
     pub compliance: Vector4<f64>,
     /// Configured viscous friction of the joints, N cm s/rad.
     pub joint_viscous: Vector3<f64>,
@@ -35,9 +35,9 @@ pub(super) struct Instruments {
     pub offset: Vector4<f64>,
     /// Factors for the tensions, found so far. They are 1 until the gauges have been compared.
     pub gain: Vector4<f64>,
-    /// t_min, N.
+    /// t_min (`tendon.minimum`), N.
     pub minimum: f64,
-    /// t_max, N.
+    /// t_max (`tendon.maximum`), N.
     pub maximum: f64,
     /// The controller that moves the joints.
     pub hold: JointHold,
@@ -89,7 +89,8 @@ impl Instruments {
         (self.sensors.tensions(feedback) - self.offset).component_mul(&self.gain)
     }
 
-    /// Returns theta, rad, by eq. 27 with the stretch of the tendons subtracted.
+    /// Returns the joint angles, rad, by eq. 27 of COINS TR 90-48, with the stretch of the tendons subtracted from the
+    /// travel.
     pub fn joints(&self, travel: &Vector4<f64>, tensions: &Vector4<f64>) -> Vector3<f64> {
         let stretch = (tensions - self.pretension).component_mul(&self.compliance);
         self.tendons.joints_from_travel() * (travel - stretch)

@@ -20,7 +20,7 @@ pub enum Obstacle {
     },
     /// A motor does not follow its command.
     #[error(
-        "motor {motor} does not unwind its tendon: it is blocked or has no power, or its encoder is dead. Check the \
+        "motor {motor} does not follow its command: it is blocked or has no power, or its encoder is dead. Check the \
          motor, its supply and its encoder"
     )]
     MotorStuck {

@@ -13,8 +13,8 @@ use crate::model::configuration::{ConfiguredController, ConfiguredFinger, Scheme
 use nalgebra::Vector4;
 use std::ops::ControlFlow::{Break, Continue};
 
-/// Gains of Figure 10 while a routine runs at [`GENTLE_RATE`], Hz, or more: `controller.tension_gain`, and
-/// `controller.tension_integral`, 1/s.
+/// Gains of the controller of Figure 10 of COINS TR 90-48 while a routine runs at [`GENTLE_RATE`], Hz, or more:
+/// `controller.tension_gain`, and `controller.tension_integral`, 1/s.
 const GENTLE: (f64, f64) = (0.5, 100.0);
 const GENTLE_RATE: f64 = 750.0;
 
@@ -90,11 +90,12 @@ impl Calibration {
         })
     }
 
-    /// Returns the configuration of the finger's controller while a routine runs at `rate`, Hz. The scheme is Figure
-    /// 10, and configured gains of Figure 10 stay in force. From 750 Hz up, the gains on the tension error are lower
-    /// than without a routine. Routines move slowly, and the lower gains are stable with gauges and amplifiers that lag
-    /// by 1 ms. State feedback is not used, because it relies on the stiffness, friction and zeros that a routine has
-    /// yet to find. Figure 11 is not used, because it would adapt to uncalibrated gauges.
+    /// Returns the configuration of the finger's controller while a routine runs at `rate`, Hz. The scheme is Figure 10
+    /// of COINS TR 90-48, and configured gains of this scheme stay in force. If the gains on the tension error are not
+    /// configured, they are lower from 750 Hz up than without a routine. Routines move slowly, and the lower gains are
+    /// stable with gauges and amplifiers that lag by 1 ms. State feedback is not used, because it relies on the
+    /// stiffness, friction and zeros that a routine has yet to find. Figure 11 is not used, because it would adapt to
+    /// uncalibrated gauges.
     pub fn controlled(finger: &ConfiguredFinger, rate: f64) -> ConfiguredFinger {
         let configured = &finger.controller;
         let controller = match configured.scheme(rate) {

@@ -26,7 +26,8 @@ impl TakeUp {
         Self { seconds: 0.0, settled: 0.0, stillness: Stillness::new(Vector4::zeros()) }
     }
 
-    /// Returns the activity, or `None` when all tendons have been tight and all motors at rest for [`SETTLED`].
+    /// Returns the activity, or `None` when all tendons have been tight and all motors at rest for [`SETTLED`]. After
+    /// [`LIMIT`], returns `None` if the tendons are tight, and otherwise an error.
     pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> Result<Option<Activity>, Obstacle> {
         self.seconds += instruments.period;
         let tensions = instruments.tensions(sample.feedback);
@@ -41,7 +42,8 @@ impl TakeUp {
             return Ok(None);
         }
         if self.seconds > LIMIT {
-            // Motors with much static friction may never come to rest. Their tendons are tight nevertheless.
+            // Motors with much static friction may stick and slip without end, so they never count as at rest. Their
+            // tendons are tight nevertheless.
             if tensions.min() >= TIGHT * instruments.minimum {
                 return Ok(None);
             }

@@ -19,9 +19,9 @@ use std::path::PathBuf;
 
 /// Result of sun2xp_record: one cycle of a finger, from the black box.
 ///
-/// The library stores all cycles from the member oldest to the member newest. The controller does not
-/// run in a cycle in which the finger faults first, or in which a simulated finger does not answer. The
-/// member computed is then 0, and so are all members after it.
+/// The library stores all cycles from the member oldest to the member newest. The controller does not run
+/// in a cycle in which the finger faults before the controller's turn, or in which a simulated finger does
+/// not answer. The member computed is then 0, and so are all members after it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_record {
@@ -65,8 +65,8 @@ pub struct sun2xp_record {
 ///
 /// A record is a part of what sun2xp_write_black_box writes into a file. Every cycle adds a record and
 /// removes the oldest one. A faulted finger adds none, so its records are the last ones before the fault.
-/// If hand.black_box is set, the cycles of a finger that recovers right after a fault can be read only once
-/// the library has copied the records of the fault, which takes up to 50 ms.
+/// If hand.black_box is set and a finger recovers right after a fault, its new cycles cannot be read until
+/// the library has copied the records of the fault. This takes up to 50 ms.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

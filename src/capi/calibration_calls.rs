@@ -44,11 +44,11 @@ use std::ffi::c_int;
 ///   EBUSY      the finger is being calibrated or recovered already
 ///   ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
 ///              joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
-///              gives the remedy. The finger is then limp. Exception: if it moved while it was read, or if
-///              its counts were not valid, the calibration had not changed anything yet, and the finger is
-///              in its former state: a spring holds its set point, and a path has ended. If another thread
-///              has recovered the finger from a fault during the calibration, the finger holds its pose.
-///              If its new zeros had been found before the fault, they are in force, otherwise its former ones
+///              gives the remedy. The finger is then limp. There are two exceptions. (1) The finger moved
+///              while it was read, or its counts were not valid: the finger is then a spring or limp, as
+///              before, but a path that it followed has ended. (2) Another thread has recovered the finger
+///              from a fault during the calibration: the finger then holds its pose. If its new zeros had been
+///              found before the fault, they are in force
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
 ///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
 ///              sun2xp_close

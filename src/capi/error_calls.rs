@@ -12,7 +12,7 @@ use std::ffi::{c_char, c_int};
 
 /// A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread.
 ///
-/// The member remedy names calls only. It is empty if no call helps. The member text then contains the remedy.
+/// The member remedy names calls only, and is empty if no call helps. The member text always contains the whole remedy.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_error {
@@ -36,9 +36,9 @@ pub struct sun2xp_error {
 ///   error   result; set error->size before the call
 ///
 /// Every thread has its own refusals. A thread remembers the last refusal of each of the four hands that
-/// have refused its calls most recently. The refusal of a call that gets no handle, such as sun2xp_open, or a
-/// null handle belongs to no hand, and only hand = null returns it. A call that succeeds does not change the
-/// refusals.
+/// have refused its calls most recently. Calls without a handle, such as sun2xp_open, and calls with a null
+/// handle together count as one hand. Only hand = null returns their refusal. A call that succeeds does not
+/// change the refusals.
 ///
 /// Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
 ///

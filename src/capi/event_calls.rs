@@ -167,9 +167,10 @@ pub extern "C" fn sun2xp_on_event(
 
 /// sun2xp_event_descriptor - a descriptor for poll and select
 ///
-/// The descriptor is readable while sun2xp_next_event would return an event, and when the hand is closed.
-/// sun2xp_next_event makes it unreadable when it returns 0. So after each poll, call sun2xp_next_event until
-/// it returns 0. Do not read, write or close the descriptor. sun2xp_close closes it.
+/// The descriptor is readable while sun2xp_next_event would return an event, and from the beginning of
+/// sun2xp_close on. sun2xp_next_event makes it unreadable when it returns 0. So after each poll, call
+/// sun2xp_next_event until it returns 0. Do not read, write or close the descriptor. sun2xp_close closes it
+/// at its end.
 ///
 /// Returns the descriptor, the same one until sun2xp_close, or a negative number with
 ///   EPERM    forked child
@@ -228,7 +229,7 @@ impl Taken {
     fn from(hand: Handle) -> Result<Self, Refusal> {
         match hand_table::remote(hand) {
             Ok(Some(remote)) => Ok(Self::Remote(remote)),
-            // A queue outlives the lock of its hand, so a hand that is being closed still has its queue.
+            // The queue has a lock of its own, and refuses a hand that is not open or is being closed.
             _ => hand_table::events(hand)?.queue(hand).map(Self::Local),
         }
     }

@@ -171,10 +171,10 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 ///   ratio    damping relative to what the controller chooses from the stiffness; 1 after sun2xp_open
 ///
 /// The ratio changes without a jump in torque and stays until another ratio is sent. It becomes 1 again when
-/// the finger becomes a spring after a fault or a calibration, when a set point expires, and at the reaction
-/// SUN2XP_THEN_SOFTEN. SUN2XP_THEN_DAMP replaces it. A finger with much
-/// less or much more damping does not come to rest. The range therefore depends on controller, rate and the
-/// largest eigenvalue k of the stiffness, N/cm:
+/// the finger becomes a spring after a fault or a calibration, when a set point expires, and when a reflex
+/// with the reaction SUN2XP_THEN_SOFTEN fires. A reflex with SUN2XP_THEN_DAMP replaces it. A finger with much
+/// less or much more damping does not come to rest. The range therefore depends on the controller
+/// (finger.controller.scheme), the rate and the largest eigenvalue k of the stiffness, N/cm:
 ///
 ///                                     1000 Hz and above    below 1000 Hz
 ///   state feedback         smallest   0.40 + 0.09 k        0.70 + 0.07 k
@@ -182,7 +182,8 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 ///   figures 9, 10, 11      smallest   1                    1
 ///                          largest    2.50 - 0.22 k        2.00 - 0.20 k
 ///
-/// By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1. For a
+/// By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. If the smallest ratio of the
+/// table is above 1, or the largest is below 1, the limit is 1 instead: 1 is always admitted. For a
 /// finger with other links or tendons, k is first multiplied by 12.3 N/cm divided by S. S is the smallest
 /// stiffness that the tendons give the tip in any direction, with locked motors and with the joints in the
 /// middle of their ranges. For the default finger S is 12.3 N/cm. sun2xp_send_stiffness and

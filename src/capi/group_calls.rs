@@ -55,7 +55,7 @@ pub struct sun2xp_set_point {
 ///
 /// If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
 /// "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
-/// This happens about once each time two of the clocks have drifted apart by one more period.
+/// This happens about once for every period by which two of the clocks drift apart.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -116,9 +116,10 @@ pub unsafe extern "C" fn sun2xp_send_group(
 /// Returns at once if the condition holds already. For all fingers it must hold at the same time. A finger
 /// that an object blocks settles without arriving. If the set point is a position of the tip, the finger
 /// arrives at the joint angles that were computed for it. If a reflex has replaced the set point that was
-/// sent last, or the finger ignored it because of an inhibition, the condition must hold for the set point
-/// of the reflex. The event SUN2XP_EVENT_REFLEX_FIRED says that a rule has reacted. Other calls work
-/// meanwhile. sun2xp_close works too, and this call is then refused.
+/// sent last, the condition must hold for the set point of the reflex. The same applies if the finger
+/// ignored the set point because of an inhibition, and the call then returns only after the inhibition has
+/// ended. The event SUN2XP_EVENT_REFLEX_FIRED says that a rule has reacted. Other calls work meanwhile.
+/// sun2xp_close works too, and this call is then refused.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -72,7 +72,7 @@ impl HandEvents {
         queue.map(|(_, queue)| queue.clone()).ok_or(Refusal::NoHand)
     }
 
-    /// Waits until there is an event. Returns false after the limit.
+    /// Waits until there is an event. Returns false after the limit, and an error if the hand is closed meanwhile.
     pub fn wait(&self, handle: Handle, limit: Option<Duration>) -> Result<bool, Refusal> {
         let queue = self.queue(handle)?;
         let ready = queue.wait_until_ready(limit);
@@ -120,7 +120,7 @@ impl HandEvents {
             let _calling = self.calling.lock();
             // This comes before the check of `removed`, so that `end_previous` waits for each callback that passes it.
             *self.running.lock() = Some(removed.clone());
-            // Both can have changed while this thread waited for the lock.
+            // ENDED and `removed` can have changed while this thread waited for the lock.
             if !ENDED.load(Ordering::Acquire) && !removed.load(Ordering::Acquire) {
                 IN_CALLBACK.set(true);
                 callback(event, lost);

@@ -1,7 +1,8 @@
 //! Handles: how C programs name an open hand.
 //!
-//! A handle is a pointer by its type only. Its value contains a tag, a number that no earlier hand of the process had,
-//! and the place of the hand in the table. Nothing dereferences it, so a null, foreign or closed handle is refused.
+//! A handle is a pointer by its type only. Its value contains a tag, the number of the hand among those that the
+//! process has opened, and the place of the hand in the table. The number has 40 bits (16 on 32-bit machines), and
+//! repeats after that many hands. Nothing dereferences a handle, so a null, foreign or closed handle is refused.
 
 use std::ptr::without_provenance_mut;
 

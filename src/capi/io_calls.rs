@@ -13,10 +13,10 @@ use std::ffi::{CStr, OsStr, c_char, c_int};
 use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
 
-/// sun2xp_open_io - open a hand with hardware of the program
+/// sun2xp_open_io - open a hand with hardware that the program provides
 ///
 ///   path    as in sun2xp_open
-///   count   number of fingers with hardware of the program, 0 to 3
+///   count   number of fingers whose hardware the program provides, 0 to 3
 ///   io      io[count]: the hardware of each of these fingers; copied
 ///   hand    result: the handle of the hand
 ///
@@ -33,8 +33,8 @@ use std::path::PathBuf;
 ///
 /// Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a servo
 /// thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery, may overlap
-/// with the exchange of another finger. These fingers have the same command->deadline in a cycle, and a later
-/// one in the next cycle. A finger that is faulted or stopped gets no exchange.
+/// with the exchange of another finger. In a cycle, these fingers have the same command->deadline. The
+/// deadline of the next cycle is later. A finger that is faulted or stopped gets no exchange.
 ///
 /// exchange and stop must not allocate memory, wait for locks, write files or call the library. The behaviour
 /// is undefined if one of the functions does not return: longjmp, pthread_exit, exceptions.
@@ -43,8 +43,9 @@ use std::path::PathBuf;
 /// comes for terms->watchdog, the hardware must enter the end state by itself, even if this process hangs
 /// or has died.
 ///
-/// A tension may be from -8191 to 57342 steps. A tension that is NaN or outside this range faults the
-/// finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by more than 32767 counts between two exchanges.
+/// A tension may be from -8191 to 57342 times io->tension_unit. A tension that is NaN or outside this range
+/// faults the finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by more than 32767 counts
+/// between two exchanges.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

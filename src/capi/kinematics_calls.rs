@@ -46,7 +46,7 @@ pub struct sun2xp_palm_pose {
 ///   finger     1 to 3
 ///   position   position[3]: angles of joints 0, 1, 2, rad. Null: the measured angles
 ///   jacobian   result: jacobian[9], row by row: entry [row][column] is the motion of the tip
-///              along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8)
+///              along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8 of the report)
 ///
 /// A force f on the tip exerts a torque on joint k: the sum over the axes of entry [axis][k] times f[axis],
 /// N cm.

@@ -30,7 +30,7 @@ struct LoadedHand {
     library: &'static RemoteLibrary,
     /// The other library's handle; null when the hand is closed. It is never dereferenced.
     handle: AtomicPtr<sun2xp_hand>,
-    /// Events that waits have taken from the other library, and that no call has taken from this one yet.
+    /// Events that `wait_for_event` has taken from the other library, and that `next_event` has not returned yet.
     waiting: Mutex<VecDeque<sun2xp_event>>,
 }
 

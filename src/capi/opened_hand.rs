@@ -60,7 +60,7 @@ impl Source {
 }
 
 /// Opens the hand that a configuration describes. With a table `[remote]` it is a hand on another machine, and
-/// otherwise a hand of this machine. In a library without a network, `open_remote` opens hands on other machines.
+/// otherwise a hand of this machine. In a library without network code, `open_remote` opens hands on other machines.
 pub(super) fn open(from: SourceWithIo, open_remote: RemoteOpener) -> Result<OpenedHand, Refusal> {
     let SourceWithIo { source, io } = from;
     let configured = source.read(io.as_ref().map(FingersWithIo::of).unwrap_or_default())?;

@@ -6,7 +6,7 @@ use std::ffi::c_int;
 use std::panic::catch_unwind;
 use std::sync::OnceLock;
 
-/// Function that the exit handler calls. The first OpenHand sets it.
+/// Function that the exit handler calls. The first call that opens a hand sets it.
 static CLOSE: OnceLock<fn()> = OnceLock::new();
 
 /// Registers the handlers of fork and exit, and replaces closed standard descriptors. It must be called at every

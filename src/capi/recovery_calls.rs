@@ -77,8 +77,8 @@ pub extern "C" fn sun2xp_stop(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
 ///
 ///   finger   1 to 3, or SUN2XP_ALL_FINGERS: one after the other
 ///
-/// Queries the identity of the finger's board and configures the board again. If the port has failed and
-/// finger.reconnect is true, reopens the port first. Then brings the tendons under tension. The finger
+/// Queries the identity of the finger's board, configures the board again, and brings the tendons under
+/// tension. If the port has failed and finger.reconnect is true, the call reopens the port first. The finger
 /// holds its present pose at the configured initial stiffness. If another finger on the same port runs, it
 /// continues unchanged, and only this finger recovers. Otherwise all fingers on the port recover together. A
 /// finger that is not faulted continues unchanged. Remove the cause of the fault first: sun2xp_fault and

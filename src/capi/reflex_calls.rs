@@ -114,8 +114,8 @@ pub struct sun2xp_reflex {
 /// A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
 /// later calls that change a part of a set point start from the new one. The next sun2xp_send_position
 /// moves the finger again. The finger ignores a set point that is sent within the time in the member
-/// inhibition. This is no error, and the set point counts for the expiry. A rule stays until
-/// sun2xp_remove_reflex or sun2xp_close.
+/// inhibition. This is no error, and the ignored set point still restarts the time after which set points
+/// expire. A rule stays until sun2xp_remove_reflex or sun2xp_close.
 ///
 /// Returns the number of the rule, above 0, or a negative number with
 ///   EPERM    forked child

@@ -1,4 +1,5 @@
-//! One servo cycle. It connects the boxes of Figure 9, or it uses state feedback, which replaces most of these boxes.
+//! One servo cycle. It connects the blocks of Figure 9 of the report, or it uses state feedback, which replaces most of
+//! these blocks.
 
 mod construction;
 mod continuation;
@@ -155,8 +156,8 @@ impl Controller {
     }
 
     /// Runs one cycle. Without feedback (the reply was lost), the last command is repeated and all integrators keep
-    /// their values. Three activities continue without feedback: a release, [`Activity::Turn`], and state feedback,
-    /// which uses its predictions for some cycles.
+    /// their values. A release and [`Activity::Turn`] continue without feedback. State feedback continues for some
+    /// cycles with its predictions.
     pub fn cycle(&self, state: &mut State, feedback: Option<&Feedback>, activity: &Activity) -> (MotorCommand, Report) {
         let measured = feedback.map(|feedback| self.sensors.measured(feedback));
         self.cycle_measured(state, measured.as_ref(), activity)
@@ -230,7 +231,7 @@ impl Controller {
     }
 
     /// Returns the joint angles, rad, that the controller follows, and their motion. `set_point` is the set point of
-    /// the last cycle. For a finger that is not a spring, this is the measured pose.
+    /// the last cycle. While the finger does not follow a set point, this is the measured pose.
     pub fn reference(&self, state: &State, set_point: &SetPoint) -> (Vector3<f64>, Motion) {
         match (&self.state_feedback, &state.state_feedback, &state.doing) {
             (Some(law), Some(elastic), Doing::Following(_)) => law.reference(elastic),

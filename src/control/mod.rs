@@ -1,8 +1,9 @@
 //! The pure core: one servo cycle is a function of feedback, set point and controller state. The core has no access to
-//! threads, ports or clocks, and allocates nothing.
+//! threads, ports or clocks, and a cycle allocates nothing.
 //!
-//! Each file is one box of Figure 9, 10 or 11, or one part of the state feedback that can replace those boxes.
-//! [`Controller::cycle`] connects the boxes.
+//! Figures 9, 10 and 11 of the report (COINS TR 90-48, 1990) are block diagrams of the controller. `spring`, `tendons`,
+//! `motors` and `sensing` contain their blocks, and `state_feedback` can replace most of them. [`Controller::cycle`]
+//! connects the blocks. Equation numbers are those of the report.
 
 mod contact;
 mod cycle;

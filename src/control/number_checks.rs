@@ -1,4 +1,4 @@
-//! Checks of single numbers that several boxes need.
+//! Checks of single numbers that several parts of the controller need.
 
 use crate::model::configuration::Unusable;
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// The measurements of the board at one instant, in counts.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Feedback {
-    /// m_c of eq. 28: motor encoder counts, without wrap-around.
+    /// m_c of eq. 28: motor encoder counts, extended to 32 bits.
     pub motor_counts: [i32; 4],
     /// Strain gauge counts.
     pub gauge_counts: [u16; 4],
@@ -131,14 +131,15 @@ impl MotorCommand {
 pub struct Report {
     /// Measured joint angles, corrected for tendon stretch, rad.
     pub joints: Vector3<f64>,
-    /// Measured joint rates, rad/s.
+    /// Measured joint rates, rad/s. With state feedback, these are the rates predicted for the next sample.
     pub joint_rates: Vector3<f64>,
     /// Measured tensions, N.
     pub tensions: Vector4<f64>,
     /// Commanded tensions, N, including the dither of state feedback. They are below t_min only while slack is taken
     /// up, during a release and in the activities for calibration.
     pub desired_tensions: Vector4<f64>,
-    /// Joint torques of the stiffness law, N cm.
+    /// Desired joint torques, N cm. For a finger that follows a set point, they include the damper, the soft joint
+    /// limits, the gravity compensation and the feed-forward.
     pub joint_torques: Vector3<f64>,
     /// The fraction of `joint_torques` that the tension bounds permit, 0 to 1. The direction of the torque is kept.
     pub torque_scale: f64,

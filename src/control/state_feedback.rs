@@ -108,9 +108,9 @@ pub(super) struct StateFeedbackState {
     jerk: Vector3<f64>,
     lost: u32,
     anchor: Vector3<f64>,
-    /// Difference between the estimated and the desired tensions at the start of the spring, N. It decays to zero. It
-    /// is a difference of tensions and not of pulls, because pulls are noisy and the noise of one cycle must not
-    /// persist.
+    /// Difference between the estimated and the desired tensions when the finger began to follow set points, N. It
+    /// decays to zero. It is a difference of tensions and not of pulls, because pulls are noisy and the noise of one
+    /// cycle must not persist.
     transition: BumplessTransfer,
     reference: ReferenceState,
     /// The stages of the reference that belong to the set point of the last cycle, if that set point had a motion.

@@ -40,7 +40,8 @@ pub fn replace_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Resul
 }
 
 /// Writes a file under the first of `names` that is free in `folder`, and returns its path. The file appears complete,
-/// and no file is overwritten.
+/// and no file is overwritten. Exception: on a file system without hard links, a file that another process creates
+/// under this name at the same time can be overwritten.
 ///
 /// # Errors
 /// Returns the error that the system reports. Returns [`io::ErrorKind::AlreadyExists`] if no name is free.

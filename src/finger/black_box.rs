@@ -73,7 +73,8 @@ impl BlackBox {
         let black_box = Self {
             arriving,
             keyframes_arriving,
-            // These capacities are never exceeded, so the collector does not allocate.
+            // These capacities are not exceeded if records are collected at least every half second. The collector then
+            // does not allocate.
             records: VecDeque::with_capacity(cycles(KEPT + UNCOLLECTED + 2.0 / KEYFRAMES)),
             keyframes: VecDeque::with_capacity(cycles(KEPT + UNCOLLECTED).div_ceil(apart) + 4),
             length: cycles(KEPT) as u64,

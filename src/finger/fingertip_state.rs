@@ -6,7 +6,8 @@ use nalgebra::{Matrix3, Matrix3x4, Vector3};
 
 /// Limit of observability, cm per rad. If a joint motion of 1 rad moves the fingertip in a direction by less than this,
 /// the force in that direction cannot be found from the joint torques: a torque error of 0.1 N cm would cause a force
-/// error of a third of a newton. The default finger has such a direction within 9 degrees of the straight pose.
+/// error of a third of a newton. The joints do not feel a force in such a direction. The default finger has such a
+/// direction within 9 degrees of the straight pose.
 const FELT: f64 = 0.3;
 
 /// The state of a fingertip, in the finger's frame.
@@ -14,9 +15,10 @@ const FELT: f64 = 0.3;
 pub struct FingertipState {
     /// Position, cm, from the measured joint angles.
     pub tip: Vector3<f64>,
-    /// Force on the touched object, N: J^-T R t (eqs. 1 and 13) with the measured tensions t.
+    /// Force on the touched object, N: J^-T R t (eqs. 1 and 13 of COINS TR 90-48) with the Jacobian J, the moment arms
+    /// R and the measured tensions t.
     pub force: Vector3<f64>,
-    /// Number of directions that the joints feel.
+    /// Number of directions in which the joint torques determine the force.
     pub felt: usize,
     /// Joint torques R t with the measured tensions, N cm.
     pub torques: Vector3<f64>,
@@ -25,8 +27,8 @@ pub struct FingertipState {
 }
 
 impl FingertipState {
-    /// Returns the state of the tip of a finger with these links and this R. `spring` is none for a finger that is not
-    /// a spring. The stiffness is then zero.
+    /// Returns the state of the tip of a finger with these links and these moment arms `r`. `spring` is none for a
+    /// finger that does not follow set points. The stiffness is then zero.
     pub fn new(links: Links, r: &Matrix3x4<f64>, report: &Report, spring: Option<(&JointSprings, &SetPoint)>) -> Self {
         let joints = &report.joints;
         let torques = r * report.tensions; // eq. 13

@@ -51,9 +51,9 @@ impl GroupGate {
         self.state(group).store(tag(group) | POSTED, Ordering::Release);
     }
 
-    /// Returns the number of the first period in which a group is in effect; none if it is not posted yet. If no servo
-    /// has decided this number, it is the period after the present one. `now` returns the number of the present
-    /// period.
+    /// Returns the number of the first period in which a group is in effect; none if it is not posted yet; 0 if the
+    /// gate no longer remembers the group. If no servo has decided this number, it is the period after the present one.
+    /// `now` returns the number of the present period.
     ///
     /// The result is the same for every servo, and no servo has begun that period before the group was posted:
     /// - A servo reads the time after it has seen the posted group. If another servo begins a cycle without seeing it,

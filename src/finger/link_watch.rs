@@ -19,12 +19,12 @@ const LEAST_BLIND: u32 = 3;
 /// Minimum number of lost replies in a row before the finger faults. At low rates too, one lost reply is not a fault.
 const LEAST_LOST: u32 = 2;
 
-/// Time-out of a built-in simulated board, ms. Such a board is silent when the machine is too busy to run it or to
-/// transfer its bytes. This is not a reason to stop the hand.
+/// Time-out of a simulation that runs in step, for example of a built-in simulated board, ms. Such a board is silent
+/// when the machine is too busy to run it or to transfer its bytes. This is not a reason to stop the hand.
 const SIMULATION_PATIENCE_MS: f64 = 5000.0;
 
-/// Time after which an unanswered command to a built-in simulated board is sent again, ms. The command or the reply may
-/// have been discarded.
+/// Time after which an unanswered command to a simulation that runs in step is sent again, ms. The command or the reply
+/// may have been discarded.
 const REPEAT_MS: f64 = 100.0;
 
 /// Motor torques that fade from the last command to their rest values.
@@ -114,7 +114,7 @@ impl LinkWatch {
         (self.in_a_row >= self.lost).then_some(self.in_a_row)
     }
 
-    /// Returns the fade of the next command; none while the command is held.
+    /// Returns the fade of the next command; none while the command is held, and for a simulation that runs in step.
     pub fn fading(&self) -> Option<Fading> {
         if self.in_a_row <= self.held || self.in_step() {
             return None;

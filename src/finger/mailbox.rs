@@ -164,9 +164,9 @@ impl Mailbox {
     }
 
     /// Changes the last set point and sends it as a whole, unless the finger is faulted. A path in progress ends. If no
-    /// set point was sent since the finger became a spring, the change starts from the set point that the servo holds.
-    /// The new set point is valid for this spring phase only: if the finger faults meanwhile, the set point is
-    /// discarded.
+    /// set point was sent in the present spring phase ([`FingerReport::springs`]), the change starts from the set point
+    /// that the servo holds. The new set point is valid for this phase only: if the finger faults before the servo
+    /// takes the set point, it is discarded.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. Nothing is sent in that case.
@@ -204,8 +204,8 @@ impl Mailbox {
         Ok(Ok(()))
     }
 
-    /// Returns the last set point that was sent. If none was sent since the finger became a spring, returns the set
-    /// point that the servo holds.
+    /// Returns the last set point that was sent. If none was sent in the present spring phase, returns the set point
+    /// that the servo holds.
     pub fn sent(&self) -> SetPoint {
         let planners = &mut *self.planners.lock();
         planners.sent.begin_with(planners.reports.read());
@@ -213,7 +213,7 @@ impl Mailbox {
     }
 
     /// Returns the newest report, and whether the set point that was sent last is in force in it. A set point that was
-    /// sent before the finger became a spring is discarded and does not count.
+    /// discarded because it was sent in an earlier spring phase does not count.
     pub fn newest_in_force(&self) -> (bool, FingerReport) {
         let planners = &mut *self.planners.lock();
         let report = *planners.reports.read();
@@ -223,7 +223,7 @@ impl Mailbox {
 
     /// Gives an order to the servo, and returns the number of the order. [`FingerReport::orders`] reaches this number
     /// when the servo takes the order. Returns none, and gives no order, if the servo has not yet taken the previous
-    /// order, or if the finger is neither a spring nor limp.
+    /// order, or if the finger is neither in the stage `Running` nor `Limp`.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. No order is given in that case.

@@ -18,8 +18,8 @@ pub enum Order {
     },
 }
 
-/// A calibration, and the data that the servo computes with until the calibration has its verdict. Newer data from
-/// planners takes effect after the verdict.
+/// A calibration, and the data that the servo computes with from the first activity of the calibration until its
+/// verdict. Newer data from planners takes effect after the verdict.
 #[derive(Clone, Debug)]
 pub struct CalibrationRun {
     /// The routine.

@@ -3,7 +3,8 @@
 use crate::control::Motion;
 use nalgebra::Vector3;
 
-/// The reference that the controller follows. The reference of a finger that is not a spring is the measured pose.
+/// The reference that the controller follows. If the finger does not follow set points, the reference is the measured
+/// pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reference {
     /// Number of the period: the cycles since open in which the controller ran, plus the periods that it skipped.

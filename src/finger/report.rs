@@ -19,7 +19,8 @@ pub struct FingerReport {
     pub set_point_period: u64,
     /// Number of the period of the last cycle.
     pub period: u64,
-    /// Number of the spring phase. A new phase begins when the finger becomes a spring: at open, and after a fault or a
+    /// Number of the spring phase: a time in which the fingertip behaves as a spring and follows set points without an
+    /// interruption. A new phase begins when the finger enters the stage `Running`: at open, and after a fault or a
     /// calibration. It also begins when a set point expires, when a reflex reacts and when its inhibition ends. Changes
     /// that planners send in the new phase start from the set point that the servo holds then. Set points that were
     /// sent in an earlier phase are discarded, except those of a phase that ended because its set point expired.

@@ -14,10 +14,10 @@ pub enum Replaced {
     Other,
 }
 
-/// A set point. It is valid for one spring phase of a finger. A spring phase begins when the finger becomes a spring,
-/// and ends at a fault or a calibration. Planners change parts of a set point, so they must start from the set point
-/// that the servo holds. The servo replaces that set point at the beginning of a spring phase. Both sides identify the
-/// phases by number.
+/// A set point. It is valid for one spring phase of a finger. A spring phase is a time in which the finger follows set
+/// points without an interruption ([`FingerReport::springs`] lists what begins a new phase). Planners change parts of a
+/// set point, so they must start from the set point that the servo holds. The servo may replace that set point at the
+/// beginning of a spring phase. Both sides identify the phases by number.
 #[derive(Clone, Copy)]
 pub(super) struct SentSetPoint {
     /// Number of the spring phase, [`FingerReport::springs`].
@@ -72,9 +72,9 @@ impl SentSetPoint {
         }
     }
 
-    /// Prepares the next change. If the finger has become a spring since the last change, the next change starts from
-    /// the set point that the servo holds. If the last change was sent while an earlier set point expired, the servo
-    /// will follow it, so the next change starts from it.
+    /// Prepares the next change. If a new spring phase has begun since the last change, the next change starts from the
+    /// set point that the servo holds. If the last change was sent while an earlier set point expired, the servo will
+    /// still follow the last change, so the next change starts from there.
     pub fn begin_with(&mut self, report: &FingerReport) {
         if report.springs == self.spring {
             return;

@@ -88,8 +88,8 @@ pub struct FingerServo {
     /// Time at which the finger began to take up slack, ns; none until the first cycle of the opening stage.
     opening_since: Option<u64>,
     stops_left: u8,
-    /// The set point at the time when the finger becomes a spring. The finger then holds its present pose, so the joint
-    /// angles of this set point are not used.
+    /// The set point with which the finger enters the stage `Running`. The finger then holds its present pose, so the
+    /// joint angles of this set point are not used.
     initial: SetPoint,
     end_state: EndState,
     /// The memory that the finger uses outside this value.
@@ -99,7 +99,7 @@ pub struct FingerServo {
 /// Limits from the configuration, in cycles unless the name has a unit.
 struct Limits {
     period_ms: f64,
-    /// Longest permitted time until the finger becomes a spring, ms.
+    /// Longest permitted time until the finger enters the stage `Running`, ms.
     opening_ms: f64,
     settled: u32,
     ramp: u32,
@@ -252,7 +252,7 @@ impl FingerServo {
         !matches!(self.report.stage, Stage::Closed | Stage::Faulted(_))
     }
 
-    /// Runs the monitors of a finger that is a spring.
+    /// Runs the monitors of a finger that follows set points, and notes the warning of this cycle.
     fn watch(&mut self, adjusted: bool) {
         if adjusted {
             self.supervision.adjusted();

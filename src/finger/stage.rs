@@ -11,11 +11,11 @@ pub enum Stage {
     /// The finger takes up the slack of its tendons.
     #[default]
     Opening,
-    /// The motors are off: the finger was opened that way, or a calibration has ended.
+    /// The motors are off: the finger was opened or restarted that way, or a calibration has ended.
     Limp,
     /// A calibration is in control of the finger.
     Calibrating,
-    /// The fingertip is a spring.
+    /// The finger follows set points: its fingertip behaves as a spring.
     Running,
     /// The finger is being brought to the configured end state.
     Closing,

@@ -86,7 +86,7 @@ impl StopSignal {
     }
 
     /// Clears the signals when the finger recovers: the calls and faults up to these counts do not stop it again. A
-    /// finger that has faulted since the recovery began stops it.
+    /// fault of another finger after the recovery began still stops this finger.
     pub(super) fn forget(&mut self, stops: &StopCounts) {
         (self.calls_seen, self.faults_seen) = (stops.calls, stops.faults);
     }

@@ -12,7 +12,7 @@ const WARNING_WINDOW: f64 = 1.0;
 /// A line counts as noisy if the share of lost replies in the window is larger than this.
 const NOISY: f64 = 0.02;
 
-/// A servo counts as overrunning if the share of overruns (skipped periods) in the window is larger than this.
+/// A servo counts as overrunning if the share of cycles that skipped periods in the window is larger than this.
 const OVERRUN: f64 = 0.02;
 
 /// The line counts as unusable if the share of damaged replies in the time-out window is larger than this. With one
@@ -94,7 +94,7 @@ impl Supervision {
         }
     }
 
-    /// Runs the monitors for one cycle of a finger that is a spring, after `controller` has computed the cycle.
+    /// Runs the monitors for one cycle of a finger that follows set points, after `controller` has computed the cycle.
     /// `feedback` is `None` if the reply was lost.
     pub fn spring(&mut self, controller: &Controller, state: &State, feedback: Option<&Feedback>) -> Option<Fault> {
         let alarms = controller.watch(&mut self.watch, state, feedback?, self.age, self.full_scale);
@@ -109,7 +109,7 @@ impl Supervision {
         self.watch.adjusted();
     }
 
-    /// Resets the monitors when the finger becomes a spring or replies return.
+    /// Resets the monitors when the finger enters the stage `Running` or replies return.
     pub fn begin(&mut self) {
         self.watch = Watch::default();
     }

@@ -15,7 +15,8 @@ use nalgebra::Matrix6;
 use toml_edit::{Document, Item, Table};
 
 /// Dotted keys, and tables of keys, that take effect only at open. They concern the port, the thread, the board, the
-/// tactile elements and the simulated finger, or they define the units of the servo's state.
+/// place in the palm, the initial stiffness, the tactile elements and the simulated finger, or they define the units of
+/// the servo's state.
 const PERMANENT: &[&str] = &[
     "port",
     "board",

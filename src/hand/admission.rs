@@ -21,10 +21,10 @@ pub(super) struct Admission {
     pub joint_limits: (Vector3<f64>, Vector3<f64>),
     /// Bound on the largest eigenvalue of Kx, N/cm.
     pub stiffness_bound: f64,
-    /// A^-1 within the joint limits.
+    /// The inverse kinematics (the block A^-1 of the report) within the joint limits.
     pub inverse_kinematics: InverseKinematics,
     pub links: Links,
-    /// R of eq. 14, cm.
+    /// Moment arms of the tendons (R of eq. 14 of the report), cm.
     pub r: Matrix3x4<f64>,
     /// The springs of the finger. There are none if the rank of R is below 3, and no hand opens with such an R.
     pub springs: Option<JointSprings>,

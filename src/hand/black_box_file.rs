@@ -21,7 +21,7 @@ pub fn save_recording(recording: &Recording, path: &Path) -> Result<(), HandErro
     recording.save(path).map_err(|source| HandError::BlackBox { path: path.to_path_buf(), source })
 }
 
-/// Writes the recording of a fault into a new file in `folder`, and reports the file or the failure on standard error.
+/// Writes the recording of a fault into a new file in `folder`, and reports the file or the failure as a warning.
 pub(super) fn save_at_fault(recording: &Recording, folder: &Path) {
     let finger = recording.origin.finger;
     print_notice(&match write_new(recording, folder) {

@@ -40,9 +40,9 @@ pub struct SearchedPort {
     pub answer: Result<Vec<FoundFinger>, LinkError>,
 }
 
-/// Asks for the identity of every finger at every port that the patterns name. Only a Hello is sent, which changes
-/// nothing on a board. Ports that another program has open are not touched. Takes at most 160 ms for a port and a rate,
-/// and 100 ms more for each finger of the board that does not answer.
+/// Queries the identity of every finger at every port that the patterns name. Only a Hello is sent, which changes
+/// nothing on a board. Serial devices that another program has open are not touched, as far as this user can see them.
+/// Takes at most 160 ms for a port and a rate, and 100 ms more for each finger of the board that does not answer.
 ///
 /// `baud` are the bit rates to try at each port, bit/s. A * in the last part of a pattern stands for any text.
 pub fn search_boards(patterns: &[String], baud: &[u32]) -> Vec<SearchedPort> {
@@ -86,7 +86,7 @@ pub fn find_boards(configuration: &mut Configuration, fingers: Fingers) -> Resul
     }
 }
 
-/// The port at which a finger with this number answers.
+/// Returns the only port at which a finger answers whose board has this unique number.
 fn port_of(
     finger: FingerNumber,
     number: BoardNumber,

@@ -110,14 +110,16 @@ impl Calibrating {
         given.map_err(|fault| HandError::Faulted { finger, fault })?.ok_or(HandError::Busy(finger))
     }
 
-    /// Returns the state of the calibration. When the routine is done, its results are put in force before this
+    /// Returns the state of the calibration. When the routine is done, its results are put in force before `poll`
     /// returns `Done`: tendons are brought under tension, and the finger becomes a spring that holds its pose at its
-    /// initial stiffness. After [`Task::Signs`] and [`Task::SelfTest`] the finger stays limp. Must not be
-    /// called again after `Done`.
+    /// initial stiffness. After [`Task::Signs`], and after [`Task::SelfTest`] except at open, the finger stays limp.
+    /// `poll` must not be called again after `Done`.
     ///
     /// # Errors
-    /// Returns an error if the routine fails and leaves the finger limp, or if the finger faults. If it faults while it
-    /// restarts with the results, the results are in force, and [`Hand::store_calibration`] stores them.
+    /// Returns an error if the routine fails, if the configuration cannot be used with its results, if the finger
+    /// faults, if it has faulted and recovered since the calibration began, if the hand is being closed, or if the
+    /// servo does not take the order within 5 s. If the finger faults while it restarts with the results, the results
+    /// are in force, and [`Hand::store_calibration`] stores them.
     pub fn poll(&mut self, hand: &Hand) -> Result<CalibrationState, HandError> {
         let finger = self.finger;
         let report = hand.dispatcher.report(finger)?;

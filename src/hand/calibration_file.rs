@@ -18,7 +18,8 @@ use toml_edit::{DocumentMut, Item, Value};
 ///
 /// # Errors
 /// Returns an error if the file cannot be read, used or written. Returns [`ConfigurationError::Mismatch`] if the file
-/// has changed so that the results do not apply to it. After an error the file is unchanged.
+/// has changed so that the results do not apply to it. After an error the file is unchanged. Exception: if only the
+/// flush of its folder fails, the new file is in place.
 pub fn store_findings(path: &Path, found: &[Found]) -> Result<(), ConfigurationError> {
     update_file(path, LARGEST, |text| change(path, text, found)).map_err(|error| match error {
         UpdateError::File(source) => ConfigurationError::Unwritable { path: path.to_path_buf(), source },
@@ -73,7 +74,7 @@ fn write_finger(document: &mut DocumentMut, found: &Found, before: &Configuratio
     Ok(changed)
 }
 
-/// The numbers at a key, including default values. It is empty if the key is not set.
+/// The numbers at a key, including default values. There are none if the key is not set and has no default.
 fn numbers_at(finger: &ConfiguredFinger, section: &str, key: &str) -> Vec<f64> {
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     let document = to_document(finger).unwrap_or_default();

@@ -29,9 +29,9 @@ pub(super) const LARGEST: u64 = 1 << 20;
 pub struct Configured {
     /// The hand.
     pub configuration: Configuration,
-    /// The file; `None` if no file was found.
+    /// The file; `None` if no file was found, or if the configuration does not come from a file.
     pub file: Option<PathBuf>,
-    /// Which keys and tables the file contains.
+    /// Which fingers' ports the configuration names, and whether it has the table `[remote]`.
     said: Said,
 }
 
@@ -152,8 +152,8 @@ impl Configured {
         self.said.ports[finger.index()] = true;
     }
 
-    /// Prints one line on standard error if some of these fingers are simulated although the configuration does not
-    /// request it. The line names them.
+    /// Reports a message of one line if some of these fingers are simulated although the configuration does not request
+    /// it. The line names them.
     pub fn announce(&self, fingers: Fingers) {
         if let Some(line) = self.announcement(fingers) {
             print_notice(&line);

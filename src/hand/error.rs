@@ -151,7 +151,8 @@ pub enum HandError {
     /// The system cannot start the thread or open the pseudo-terminal of a simulated board.
     #[error("cannot start the simulated board on a pseudo-terminal: {}", with_terminal_remedy(.0))]
     SimulatedPort(std::io::Error),
-    /// The system refuses to start a thread or to suspend the calling thread.
+    /// The system refuses an operation, such as starting a thread or creating a descriptor, or the program ended while
+    /// the hand was being opened.
     #[error("cannot {doing}: {}", with_remedy(source))]
     System {
         /// The refused operation.

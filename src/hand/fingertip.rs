@@ -11,9 +11,10 @@ use crate::model::FingerNumber;
 pub struct FingerTip {
     /// Position in the finger's frame, cm, from the measured joint angles.
     pub tip: [f64; 3],
-    /// Force on the touched object in the finger's frame, N: J^-T R t (eqs. 1 and 13) with the measured tensions t. The
-    /// force includes the effects of the finger's friction, weight and acceleration. It is never NaN: near the
-    /// straight pose, the component in a direction that the joints do not feel is zero.
+    /// Force on the touched object in the finger's frame, N: J^-T R t (eqs. 1 and 13 of the report) with the Jacobian
+    /// J, the moment arms R and the measured tensions t. The force includes the effects of the finger's friction,
+    /// weight and acceleration. It is never NaN: near the straight pose, the component in a direction that the joints
+    /// do not feel is zero.
     pub force: [f64; 3],
     /// Number of directions that the joints feel: 3, or fewer near a singular pose.
     pub felt: usize,

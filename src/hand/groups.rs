@@ -30,7 +30,7 @@ pub struct FingerCommand {
     pub stiffness: Option<[[f64; 3]; 3]>,
     /// Relative damping, as in [`Hand::send_damping`].
     pub damping: Option<f64>,
-    /// How long the set point that results is valid.
+    /// How long the resulting set point is valid.
     pub validity: Validity,
 }
 
@@ -65,7 +65,7 @@ impl FingerCommand {
         Self { damping: Some(ratio), ..self }
     }
 
-    /// Sets how long the set point that results is valid.
+    /// Sets how long the resulting set point is valid.
     #[must_use]
     pub fn validity(self, validity: Validity) -> Self {
         Self { validity, ..self }
@@ -124,7 +124,7 @@ impl Hand {
     ///
     /// If a servo is so late that it skips this period, its fingers follow in their next cycle. With
     /// `hand.clock = "board"` the periods of the threads follow different clocks. A finger may then follow one period
-    /// later. This happens about once whenever two clocks have drifted apart by another period.
+    /// later. This happens about once for every period by which two of the clocks drift apart.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if a finger has two commands, if a finger refuses its command, if a

@@ -11,7 +11,7 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JointTorques {
-    /// R t of eq. 13 with the measured tensions t.
+    /// R t (eq. 13 of the report) with the moment arms R and the measured tensions t.
     pub measured: [f64; 3],
     /// What the controller commands: the torques of spring, damper, limits and gravity compensation, scaled to the part
     /// that the tension bounds permit.
@@ -34,8 +34,8 @@ pub struct PalmPose {
 }
 
 impl Hand {
-    /// Returns the Jacobian of the tip of finger 1, 2 or 3 (eq. 8), cm/rad, at these joint angles, rad, or at the
-    /// measured ones: `jacobian[row][column]`, with x, y, z as rows and joints as columns.
+    /// Returns the Jacobian of the tip of finger 1, 2 or 3 (eq. 8 of the report), cm/rad, at these joint angles, rad,
+    /// or at the measured ones: `jacobian[row][column]`, with x, y, z as rows and joints as columns.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if an angle is NaN or infinite. Returns an error if the measured

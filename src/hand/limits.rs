@@ -3,7 +3,7 @@
 use crate::hand::{Hand, HandError};
 use crate::model::FingerNumber;
 
-/// The limits that are in force for a finger. [`Hand::adjust`] can change them.
+/// The limits that are in force for a finger. [`Hand::adjust`] can change all of them except `motor_torque`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FingerLimits {

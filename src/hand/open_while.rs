@@ -6,7 +6,8 @@ use crate::model::Fingers;
 
 impl Hand {
     /// Does the same as [`Hand::open_as`], but gives up if `goes_on` returns false. Calls `goes_on` before the motors
-    /// can pull, and then every millisecond until the tendons are taut. Before the first call every motor is off.
+    /// can pull, and then every millisecond until the tendons are taut. Before the first call every motor is off. With
+    /// `hand.self_test`, the self-test tightens the tendons, and `goes_on` is not called during the self-test.
     ///
     /// # Errors
     /// Returns the errors of [`Hand::open_as`], and [`HandError::System`] with `ECANCELED` if `goes_on` returns false.

@@ -35,7 +35,7 @@ impl Hand {
     /// later path, or a later desired pose, replaces the path without a jump. A later Kx takes effect at once,
     /// and the path no longer changes Kx.
     ///
-    /// `valid` is how long the end of the path is valid after the finger has arrived; none for the configured time.
+    /// `valid` is how long the path stays valid after its end; none for the configured time.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if the finger is faulted or is not a spring, or if the path is

@@ -27,7 +27,7 @@ pub(super) struct PortRepair {
     link: Option<Link<Connection>>,
     /// Whether the link has not failed, or its boards have answered since and are the same as at open.
     pub checked: bool,
-    /// Place of the finger that was given to the servo last, beside others.
+    /// Place of the finger that was last given to the servo while other fingers of the port ran.
     given: Option<usize>,
 }
 

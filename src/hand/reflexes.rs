@@ -23,10 +23,11 @@ impl Hand {
     /// is removed or the hand is closed. A finger has at most 16 reflexes.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger, if the finger has 16 reflexes, or if a value of the rule is outside
-    /// its range: times of 0 to 3600 s, forces and tensions of 0 to 1000 N, angles of -pi to pi. Returns the errors of
-    /// [`Hand::send_position`] for the pose of [`Reaction::Retract`], and those of [`Hand::send_stiffness`] for the Kx
-    /// of [`Reaction::Soften`].
+    /// Returns an error if there is no such finger, if the finger has 16 reflexes, if the rule names a joint that does
+    /// not exist, or another finger that is not opened or is the finger itself, or if a value of the rule is outside
+    /// its range: times of 0 to 3600 s, forces and tensions of 0 to 1000 N, angles of -pi to pi, damping ratios of 0 to
+    /// 10. A direction must be finite. Returns the errors of [`Hand::send_position`] for the pose of
+    /// [`Reaction::Retract`], and those of [`Hand::send_stiffness`] for the Kx of [`Reaction::Soften`].
     pub fn install_reflex(&self, finger: i32, reflex: Reflex) -> Result<u32, HandError> {
         self.install_reflex_with(finger, reflex, reflex.priority.into())
     }

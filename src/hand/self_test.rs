@@ -10,8 +10,8 @@ const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
 impl Hand {
     /// Checks the wiring of finger 1, 2 or 3, and the scales of its gauges relative to each other, within two seconds.
-    /// Every motor pulls its tendon with a few times t_min. The finger must be calibrated and free, and no object may
-    /// be in its way. The finger is limp afterwards.
+    /// Every motor pulls its tendon with a few times `tendon.minimum`. The finger must be calibrated and free, and no
+    /// object may be in its way. The finger is limp afterwards.
     ///
     /// `progress` is called 200 times per second.
     ///

@@ -9,7 +9,8 @@ use crate::model::FingerNumber;
 use std::time::Duration;
 
 impl Hand {
-    /// Sends theta_d of finger 1, 2 or 3: joints 0, 1 and 2, rad. The angles take effect within a cycle.
+    /// Sends theta_d, the desired angles of joints 0, 1 and 2 of finger 1, 2 or 3, rad. They take effect within a
+    /// cycle.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if an angle is NaN, infinite or beyond a joint limit, or if the
@@ -23,8 +24,8 @@ impl Hand {
         sent.map_err(|fault| HandError::Faulted { finger, fault })
     }
 
-    /// Sends theta_d as [`Hand::send_position`] does, with the time for which it is valid; none for the configured
-    /// time. If nothing else is sent within this time, the finger reacts as `[finger.motion]` says.
+    /// Sends desired joint angles as [`Hand::send_position`] does. They are valid for the time `valid`; none for the
+    /// configured time. If nothing else is sent within this time, the finger reacts as `[finger.motion]` says.
     ///
     /// # Errors
     /// Returns the errors of [`Hand::send_position`].
@@ -70,9 +71,10 @@ impl Hand {
     }
 
     /// Sends the desired position of the tip of finger 1, 2 or 3 in the finger's frame, cm. The fingertip becomes the
-    /// exact spring tau = J^T Kx (x_d - x), with the stiffness that was sent last. Of several joint solutions within
-    /// the limits, the one nearest to the present pose is used. The position takes effect within a cycle. The motion is
-    /// straight in joint space, at the bounded joint speed.
+    /// exact spring tau = J^T Kx (x_d - x), with the stiffness Kx that was sent last. Here tau are the joint torques, J
+    /// is the Jacobian, x_d is the desired position of the tip, and x is its measured position. Of several joint
+    /// solutions within the limits, the one nearest to the present pose is used. The position takes effect within a
+    /// cycle. The motion is straight in joint space, at the bounded joint speed.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a number is NaN or
@@ -98,7 +100,7 @@ impl Hand {
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if the stiffness is
     /// above the bound, or is too high for the damping that was sent last. A rotational stiffness k, N cm/rad, counts
-    /// as k / l2^2 N/cm, because the last joint moves the tip by l2 per rad.
+    /// as k / l2^2 N/cm, because the last joint moves the tip by l2, the length of the last link, per rad.
     pub fn send_contact(&self, finger: i32, contact: Contact) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, (Replaced::Stiffness, Validity::default()), |admission| {
@@ -111,9 +113,9 @@ impl Hand {
     }
 
     /// Sends the joint stiffness K_theta of finger 1, 2 or 3, N cm/rad: `rows[row][column]`. The joints become springs
-    /// between their angles and theta_d, without a jump in torque. K_theta replaces the last Kx or contact, and a later
-    /// Kx or contact replaces K_theta. No eigenvalue may be above the bound of Kx times the square of the last link's
-    /// length.
+    /// between their angles and the desired angles, without a jump in torque. K_theta replaces the last Kx or contact,
+    /// and a later Kx or contact replaces K_theta. No eigenvalue may be above the bound of Kx times the square of the
+    /// last link's length.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if the stiffness has

@@ -16,8 +16,8 @@ const POLL_INTERVAL: Duration = Duration::from_millis(1);
 pub enum Until {
     /// Every joint has been within `finger.events.arrived_degrees` of the set point that was sent last.
     Arrived,
-    /// Since the set point that was sent last took effect, no joint has moved by more than
-    /// `finger.events.settled_degrees` for `finger.events.settled_ms`. A finger that an object blocks settles without
+    /// Since the set point that was sent last took effect, there was a time of `finger.events.settled_ms` in which no
+    /// joint moved by more than `finger.events.settled_degrees`. A finger that an object blocks settles without
     /// arriving.
     Settled,
 }

@@ -1,4 +1,4 @@
-//! The contact between a fingertip and an object, section 4.2, as one spatial stiffness, 6 x 6.
+//! The contact between a fingertip and an object (section 4.2 of the report) as one spatial stiffness, 6 x 6.
 
 use crate::model::direction;
 use nalgebra::allocator::Allocator;
@@ -22,11 +22,12 @@ const NEGLIGIBLE: f64 = 64.0 * f64::EPSILON;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact(Matrix6<f64>);
 
-/// The reason why a stiffness is not a spring, or why a contact has no direction.
+/// The reason why a stiffness is not that of a spring (finite, symmetric, without a negative eigenvalue), or why a
+/// contact has no direction.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ContactError {
-    /// K or Normal contains NaN or infinity.
+    /// K, Normal, the selection S or the product S^T K S contains NaN or infinity.
     #[error("an entry of K or Normal is {0}: every entry must be a finite number")]
     NotFinite(f64),
     /// `K[row][column]` and `K[column][row]` differ.

@@ -9,8 +9,8 @@ pub struct Links(pub [f64; 3]);
 impl Links {
     /// Returns the tip position in the finger's frame (Figure 8), cm, at joint angles `theta`, rad.
     ///
-    /// x = (l0 + l1 C1 + l2 C12) S0, y = -l1 S1 - l2 S12, z = (l0 + l1 C1 + l2 C12) C0. Eq. 8 is the derivative of
-    /// these.
+    /// x = (l0 + l1 C1 + l2 C12) S0, y = -l1 S1 - l2 S12, z = (l0 + l1 C1 + l2 C12) C0. Here S1 = sin(theta_1), C12 =
+    /// cos(theta_1 + theta_2), and so on. Eq. 8 is the derivative of these equations.
     pub fn tip(&self, theta: &Vector3<f64>) -> Vector3<f64> {
         let [_, l1, l2] = self.0;
         let (s0, c0) = theta[0].sin_cos();

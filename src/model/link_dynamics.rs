@@ -51,12 +51,12 @@ impl LinkDynamics {
         self.gravity = gravity;
     }
 
-    /// Returns H(theta), kg m^2.
+    /// Returns the inertia matrix H(theta), kg m^2.
     pub fn inertia(&self, theta: &Vector3<f64>) -> Matrix3<f64> {
         self.inertia_at(&Pose::new(self, theta), self.coupling() * theta[2].cos())
     }
 
-    /// Returns H(theta), kg m^2. `coupled` is [`Self::coupling`] times cos(theta_2).
+    /// Returns the inertia matrix H(theta), kg m^2. `coupled` is [`Self::coupling`] times cos(theta_2).
     fn inertia_at(&self, pose: &Pose, coupled: f64) -> Matrix3<f64> {
         let [_, l1, l2] = self.length;
         let [_, link1, link2] = self.link;

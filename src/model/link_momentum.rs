@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// H(theta) and its derivatives, kg m^2.
+/// The inertia matrix H(theta) and its derivatives, kg m^2.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct LinkMomentum {
     /// H(theta). Joint 0 is decoupled from the other joints.

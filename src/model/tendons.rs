@@ -22,7 +22,8 @@ pub enum TendonsError {
     GhostColumn([f64; 4]),
 }
 
-/// The constant properties of the four tendons: R, its inverse with the ghost row, and the motor radii.
+/// The constant properties of the four tendons: R, its inverse with the ghost row, and the motor radii. The ghost row
+/// is a fourth row for a joint that does not exist (the ghost joint). It makes R square and invertible (eq. 15).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tendons {
     /// R of eq. 14, cm: tau = R t. Rows are joints, and columns are tendons.

@@ -22,7 +22,8 @@ pub const PLANT_STEP_SECONDS: f64 = 1e-4;
 /// Joint rate at which the excess of the static friction has fallen to 1/e, rad/s.
 const STRIBECK_RATE: f64 = 0.05;
 
-/// One finger. Its state is theta, theta_dot, m and m_dot. The state is integrated by the semi-implicit Euler method.
+/// One finger. The joint angles theta, the motor angles and their rates are integrated by the semi-implicit Euler
+/// method.
 ///
 /// The rotors are locked until [`Plant::release_brake`]: a hand is braked at its homing pretension until its board
 /// receives commands.

@@ -67,7 +67,7 @@ impl Sensors {
         self.dead[gauge] = Some(count.unwrap_or(self.shown[gauge]));
     }
 
-    /// Multiplies the gain of a gauge by `ratio`.
+    /// Sets the gain of a gauge to `ratio` times its original value.
     pub fn rescale_gauge(&mut self, gauge: usize, ratio: f64) {
         self.rescaled[gauge] = ratio;
     }

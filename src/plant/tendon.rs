@@ -7,7 +7,8 @@ use crate::model::TendonsError;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 
-/// Springs with the stretch r m - R^T theta + home stretch. The motor angles are zero at theta = 0 with the homing
+/// Springs with the stretch r m - R^T theta + home stretch, less the lengths that slipping and creep have added. r are
+/// the radii of the motor pulleys, and m the motor angles. The motor angles are zero at theta = 0 with the homing
 /// pretension.
 #[derive(Clone, Debug)]
 pub(super) struct ElasticTendons {

@@ -14,7 +14,7 @@ const LONGEST_SLEEP: u64 = 100_000_000;
 /// [`EventCount::wait`]. It misses no notification between these steps.
 #[derive(Debug, Default)]
 pub struct EventCount {
-    /// Number of notifications, modulo 2^32.
+    /// Number of notifications that found a waiting thread, modulo 2^32.
     count: AtomicU32,
     /// Whether a thread has called [`EventCount::prepare`] since the last notification.
     waiting: AtomicBool,
@@ -33,8 +33,8 @@ impl EventCount {
         }
     }
 
-    /// Begins to wait. The caller then checks its condition, and passes the result to [`EventCount::wait`] if the
-    /// condition does not hold.
+    /// Begins to wait. The caller then checks its condition. If the condition does not hold, the caller calls
+    /// [`EventCount::wait`] with the number that this function has returned.
     pub fn prepare(&self) -> u32 {
         let count = self.count.load(Ordering::Acquire);
         self.waiting.store(true, Ordering::Relaxed);

@@ -1,7 +1,7 @@
 //! Off-line response time analysis of periodic threads, which section 6.2 of the report asks for.
 
-/// A servo thread as the analysis models it. In every period it computes, waits for the line without using the core,
-/// and computes again. All times are worst cases in ns.
+/// A servo thread as the analysis models it. In every period it computes, waits for the serial line without using the
+/// core, and computes again. All times are worst cases in ns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeriodicThread {
     /// The core that the thread is bound to. Without one, the thread may compete with every other thread.
@@ -54,8 +54,9 @@ impl PeriodicThread {
 /// still be busy when its next period begins, or if it waits for a thread without a bound.
 ///
 /// Within any window of length w, thread j computes for at most ceil((w + R_j - C_j) / T_j) C_j, wherever its wait
-/// lies: a cycle that reaches into the window began at most R_j before the window. So the smallest solution of R_i =
-/// wake-up + computing + waiting + sum over j of ceil((R_i + R_j - C_j) / T_j) C_j, for all i at once, is a bound.
+/// lies: a cycle that reaches into the window began at most R_j before the window. R_j is the bound of thread j, C_j
+/// its computing time, and T_j its period. So the smallest solution of R_i = wake-up + computing + waiting + sum over j
+/// of ceil((R_i + R_j - C_j) / T_j) C_j, for all i at once, is a bound.
 pub fn response_times(threads: &[PeriodicThread]) -> Vec<Option<Response>> {
     let mut done: Vec<Option<u64>> = threads.iter().map(|thread| within(thread, thread.alone())).collect();
     loop {

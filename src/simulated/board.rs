@@ -108,7 +108,7 @@ impl SimulatedBoard {
         }
     }
 
-    /// Returns the object of this board and its surroundings, if one is configured.
+    /// Returns the object of this board and the places of the fingers around it, or `None` if the board has no object.
     pub fn scene(&mut self) -> Option<&mut Scene> {
         self.scene.as_mut()
     }

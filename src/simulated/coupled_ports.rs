@@ -1,7 +1,7 @@
 //! Simulated boards, each at a serial port of its own. The fingers of all boards touch the same object.
 //!
-//! One thread runs all of these boards and the object in steps of the same time, so no thread waits for another. To its
-//! host, each port looks like the port of a [`SimulatedPort`](crate::simulated::SimulatedPort).
+//! One thread advances all of these boards and the object together, step by step, so no thread waits for another. To
+//! its host, each port looks like the port of a [`SimulatedPort`](crate::simulated::SimulatedPort).
 
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, FINGERS};
@@ -112,7 +112,7 @@ impl CoupledPorts {
         self.shared.lock().terminals[finger.index()].as_ref().map(|terminal| terminal.path().to_owned())
     }
 
-    /// Calls `look` with one finger. Returns `None` if it is not among these fingers. The boards' thread waits
+    /// Calls `look` with one finger. Returns `None` if this finger has no board here. The boards' thread waits
     /// meanwhile, so `look` must be short.
     pub fn with_finger<R>(&self, finger: FingerNumber, look: impl FnOnce(&mut SimulatedFinger) -> R) -> Option<R> {
         self.shared.lock().boards[finger.index()].as_mut()?.fingers().first_mut().map(look)

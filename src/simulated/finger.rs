@@ -49,7 +49,7 @@ pub struct SimulatedFinger {
     state: State,
     /// Time up to which the physics has been computed, ns.
     clock: u64,
-    /// When the last obeyed Command arrived, ns. `None`: not since the last Configure.
+    /// When the last Command that the motors followed arrived, ns. `None`: not since the last Configure.
     commanded_at: Option<u64>,
     /// When silence or a Stop led to the end state, ns. `None`: not since the last Configure.
     ended_at: Option<u64>,
@@ -130,7 +130,8 @@ impl SimulatedFinger {
         self.clock
     }
 
-    /// Returns when the last obeyed Command arrived, board time in ns. `None`: not since the last Configure.
+    /// Returns when the last Command that the motors followed arrived, board time in ns. `None`: not since the last
+    /// Configure.
     pub fn commanded_at(&self) -> Option<u64> {
         self.commanded_at
     }
@@ -232,7 +233,7 @@ impl SimulatedFinger {
         }
     }
 
-    /// Returns the refusal if this state refuses every Configure, even one whose terms cannot be decoded.
+    /// Returns the refusal if the finger now refuses every Configure, even one whose terms cannot be decoded.
     pub(super) fn refuses_any_terms(&self) -> Option<Frame> {
         let refuse = |reason, detail| Some(Frame::Refused(Refused { request: 0x2, reason, detail }));
         if self.enabled() {

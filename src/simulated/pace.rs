@@ -1,4 +1,5 @@
-//! Relates the time of a simulated board to real time. It has no clock and no thread; the caller passes both times.
+//! Relates the time of a simulated board to real time. This module has no clock and no thread; the caller passes the
+//! real time.
 
 /// The longest time by which one wake-up of the board's thread advances the board's time, ns.
 pub(super) const LONGEST_STEP: u64 = 2_000_000;

@@ -80,7 +80,7 @@ impl SimulatedPort {
         shared.line_to_board.cut();
     }
 
-    /// Plugs the cable in again, at a new port, see [`SimulatedPort::path`].
+    /// Plugs the cable in again, at a new port, see [`SimulatedPort::path`]. Does nothing if it is plugged in.
     pub fn plug_in(&self) -> io::Result<()> {
         let terminal = PseudoTerminal::open()?;
         self.shared.lock().terminal.get_or_insert(Arc::new(terminal));

@@ -1,5 +1,5 @@
-//! Relates the time of several simulated boards to real time, if they share an object. It has no clock and no thread;
-//! the caller passes both times.
+//! Relates the time of several simulated boards to real time, if they share an object. This module has no clock and no
+//! thread; the caller passes the real time.
 
 use crate::model::configuration::FINGERS;
 use crate::simulated::pace::{LONGEST_STEP, PATIENCE};
@@ -9,8 +9,9 @@ use crate::simulated::pace::{LONGEST_STEP, PATIENCE};
 /// All boards have the same time, because an object that they share cannot be at two times. The time advances at the
 /// rate of real time, but waits for late hosts, as with [`Pace::Patient`](crate::simulated::Pace). If the motors of a
 /// finger follow commands, and no bytes arrive for this finger within the grace, the time stops until they arrive. It
-/// does not stop for a finger that is stopped, faulted or not opened, because the motors of such a finger are off. It
-/// does not stop for a host that has been silent for two seconds.
+/// does not stop for a finger that is stopped, faulted or not opened, because the motors of such a finger are off.
+/// While no finger follows commands, the time stops when no bytes have arrived for any finger within the grace. The
+/// time does not stop for a host that has been silent for two seconds.
 #[derive(Clone, Debug)]
 pub struct SharedTime {
     /// How far the time continues after the last bytes for a finger, ns.

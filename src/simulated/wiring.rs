@@ -3,7 +3,8 @@
 /// Largest count of the converter behind each gauge.
 const GAUGE_FULL_SCALE: u16 = 4095;
 
-/// Which motor, encoder and gauge of the finger each connector of the board leads to. Indices run from 0 to 3.
+/// For each connector of the board, the motor, encoder or gauge of the finger to which it leads. Indices run from 0 to
+/// 3.
 #[derive(Clone, Debug)]
 pub struct Wiring {
     motor_at: [usize; 4],

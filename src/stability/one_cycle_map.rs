@@ -132,7 +132,7 @@ impl OneCycleMap {
         let mut finger = self.settled(rest);
         let limp = rest.dimensions() < 3;
         let modulus = self.watch(&mut finger, OBSERVED, limp)?;
-        // Only a longer observation distinguishes such a slow mode from one that grows.
+        // If the modulus is near 1, only a longer observation distinguishes a slow mode from one that grows.
         if modulus < 1.0 - SLOW { Some(modulus) } else { self.watch(&mut finger, OBSERVED_LONG, limp) }
     }
 
@@ -262,7 +262,7 @@ pub(super) struct Moving {
 }
 
 /// Returns a configuration whose simulated finger equals the controller's model, without Coulomb friction and noise.
-/// The controller's friction is zero too. The speed of set points is practically unlimited.
+/// The controller's Coulomb, conduit and pulley friction is zero too. The speed of set points is practically unlimited.
 fn matching_simulation(finger: &ConfiguredFinger) -> ConfiguredFinger {
     let mut finger = finger.clone();
     finger.motor.sign = [1; 4];

@@ -14,7 +14,8 @@ use std::f64::consts::PI;
 /// whatever the bound is.
 pub(super) const SOFTEST: f64 = 1.0;
 
-/// Smallest and largest deflection of the tip by its load, cm. It is not zero, because eq. 20 has a kink at zero load.
+/// Smallest and largest deflection of the tip by its load, cm. The smallest deflection is not zero, because eq. 20 has
+/// a kink at zero load.
 const DEFLECTIONS: [f64; 2] = [0.01, 0.2];
 
 /// Smallest deflection of the tip by a wall, cm. It keeps the tip in contact while the motion is observed.

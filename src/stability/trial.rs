@@ -21,7 +21,7 @@ pub(super) struct Trial {
     map: OneCycleMap,
     links: Links,
     admissible: AdmissibleDamping,
-    /// Largest modulus of an eigenvalue with which a motion decays in time.
+    /// Largest modulus of an eigenvalue with which a motion decays to 1/e within [`DECAY_TIME`].
     largest: f64,
 }
 

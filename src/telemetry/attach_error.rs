@@ -45,7 +45,7 @@ pub enum AttachError {
         /// The reason.
         reason: String,
     },
-    /// The hand was closed meanwhile.
+    /// The hand was closed meanwhile, or already has the largest number of readers.
     #[error("the hand \"{0}\" was closed, or already has {MOST_READERS} readers: open it again, or end a reader")]
     Closed(String),
     /// The hand's answer cannot be understood.
@@ -56,7 +56,7 @@ pub enum AttachError {
     Incomprehensible {
         /// The name.
         name: String,
-        /// What is wrong with it.
+        /// What is wrong with the answer.
         reason: String,
     },
     /// The system refuses a call.

@@ -97,8 +97,8 @@ pub struct Status {
     pub last: Option<CycleRecord>,
 }
 
-/// The same messages with borrowed contents. The variants have the order of [`Message`], because postcard writes their
-/// indices.
+/// The messages of [`Message`] with borrowed contents. The variants have the order of [`Message`], because postcard
+/// writes their indices.
 #[derive(Clone, Copy, Serialize)]
 pub enum Outgoing<'a> {
     /// See [`Message::Controller`].

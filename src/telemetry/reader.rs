@@ -103,7 +103,8 @@ impl Reader {
     /// passed.
     ///
     /// # Errors
-    /// Returns [`Ended::Closed`] after the last message of a hand that was closed.
+    /// Returns [`Ended::Closed`] after the last message of a hand that was closed or whose process has ended, and
+    /// [`Ended::Damaged`] if the memory contains something that no hand writes.
     pub fn read(&mut self, timeout: Duration, messages: &mut Vec<Message>) -> Result<Received, Ended> {
         let before = self.lost;
         if !self.take_blocks(messages)? {

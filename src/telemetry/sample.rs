@@ -24,7 +24,7 @@ pub struct Sample {
     /// Measured joint rates, rad/s.
     pub joint_rates: [f64; 3],
     /// Joint angles of the set point in this cycle. If the set point moves, these are the angles that it has reached in
-    /// this cycle. None for a finger that is not a spring.
+    /// this cycle. None if the finger does not follow a set point.
     pub joint_set_point: Option<[f64; 3]>,
     /// Measured position of the tip in the palm's frame.
     pub tip: [f64; 3],
@@ -36,12 +36,13 @@ pub struct Sample {
     pub tip_force_in_palm: [f64; 3],
     /// Kx of the set point in the finger's frame, as it was sent: rows.
     pub kx: Option<[[f64; 3]; 3]>,
-    /// Stiffness of the tip in the present pose, in the finger's frame, as planners get it. It is zero for a finger
-    /// that is not a spring.
+    /// Stiffness of the tip in the present pose, in the finger's frame, as planners get it. It is zero if the finger
+    /// does not follow a set point.
     pub stiffness: [[f64; 3]; 3],
     /// The same stiffness in the palm's frame.
     pub stiffness_in_palm: [[f64; 3]; 3],
-    /// Joint torques of the stiffness law.
+    /// Desired joint torques. For a finger that follows a set point, they include the damper, the soft joint limits,
+    /// the gravity compensation and the feed-forward.
     pub joint_torques: [f64; 3],
     /// Joint torques R t (eq. 13) with the measured tensions t.
     pub measured_joint_torques: [f64; 3],

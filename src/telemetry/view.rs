@@ -20,7 +20,7 @@ struct FingerView {
     to_palm: Isometry3<f64>,
     /// The finger as it was configured at open, for cycles whose controller has not been announced.
     configured: Mechanics,
-    /// For the number of each controller, the finger for which the controller is made.
+    /// The mechanics for which each controller is made, by the number of the controller.
     adjusted: BTreeMap<u32, Mechanics>,
     /// The last cycle in which the controller ran.
     last: Option<ControlRecord>,
@@ -64,7 +64,7 @@ impl View {
         self.fingers[finger.index()].adjusted.insert(source.number, mechanics);
     }
 
-    /// Takes note of a controller, and converts a cycle. Returns none for every other message.
+    /// Takes note of a controller, or converts a cycle to its sample. Returns None for every message except a cycle.
     pub fn take(&mut self, message: &Message) -> Option<Sample> {
         match message {
             Message::Controller { finger, source, .. } => {

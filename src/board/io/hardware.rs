@@ -43,7 +43,7 @@ pub(super) struct Hardware {
     encoders: [i32; 4],
     gauges: [u16; 4],
     sampled_at: u16,
-    /// When the last successful exchange began, ns.
+    /// When the hardware was started or the last successful exchange began, ns.
     exchanged_at: u64,
     last_sequence: Option<u8>,
     /// Number of the last Command since the start.
@@ -103,7 +103,8 @@ impl Hardware {
         state | zero | self.latched
     }
 
-    /// Starts the hardware. The motors stay off until the first enabling Command.
+    /// Stops the hardware if it was started, and starts it with `terms`. The motors stay off until the first enabling
+    /// Command. Refuses the terms while the motors follow Commands, or if the first sample reports a fault.
     pub fn configure(&mut self, terms: &Configure) -> Result<Frame, PortError> {
         if self.state == State::Enabled {
             return Ok(Frame::Refused(Refused { request: 0x2, reason: Reason::Running, detail: 0 }));
@@ -150,7 +151,8 @@ impl Hardware {
         Ok(())
     }
 
-    /// Carries out a Command. Returns the Reply, or `None` if the exchange failed.
+    /// Carries out a Command. Returns the Reply, or `None` if the exchange failed. After the end state was entered, the
+    /// Reply repeats the last sample. Before the first Configure, returns a refusal.
     pub fn exchange(&mut self, sequence: u8, command: &Command, deadline: u64) -> Option<Frame> {
         let now = realtime::now();
         let watchdog = u64::from(self.terms.watchdog_ms) * 1_000_000;

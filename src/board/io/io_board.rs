@@ -1,8 +1,9 @@
-//! A transport without a line: it plays the part of the board in memory, with the hardware of the program behind it.
+//! A transport without a line: it plays the part of the board in memory, and drives the hardware that the program
+//! provides.
 //!
 //! The link, its counters, the faults, the recovery and the timing figures are therefore the same as with a serial
-//! board. A Command is kept until the servo awaits its Reply. The exchange happens then, so its time is the stage
-//! *wire* of the cycle. An exchange that fails has no Reply.
+//! board. A Command is kept until the servo awaits its Reply. The exchange happens then, so its duration counts as the
+//! stage *wire* of the cycle. An exchange that fails has no Reply.
 
 use super::finger_io::{FingerIo, IoProperties};
 use super::hardware::Hardware;

@@ -1,7 +1,7 @@
 //! Limits how long and how much one receive reads, so that a board that sends without end cannot block its reader.
 
-/// The largest number of bytes that one receive reads. It is ten times the number of bytes that 15 fingers send in a
-/// period, and more than a line at 12 Mbaud carries in the longest period.
+/// The largest number of bytes that one receive reads. It is about ten times the number of bytes of the Replies of 15
+/// fingers, and more than a line at 12 Mbaud carries in the longest period.
 const MOST_BYTES: usize = 4096;
 
 /// The time and the number of bytes that remain for a receive.

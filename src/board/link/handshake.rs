@@ -61,7 +61,8 @@ impl<T: Transport> Link<T> {
     /// answer, and then 100 ms for each other finger of the board.
     ///
     /// # Errors
-    /// Returns an error if the port fails, or if no finger answers.
+    /// Returns an error if the port fails, if no finger answers, or if the first finger refuses or has another protocol
+    /// version.
     pub fn identities(&mut self, deadline: u64) -> Result<Vec<(u8, Identity)>, LinkError> {
         let (first, identity) = self.first_identity(deadline)?;
         let mut found = vec![(first, identity)];

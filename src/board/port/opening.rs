@@ -31,8 +31,8 @@ impl Port {
     }
 
     /// Keeps other programs out with TIOCEXCL and flock. TIOCEXCL does not stop a program that runs as root. flock also
-    /// stops such a program, if that program locks the port itself. flock comes first, because TIOCEXCL also succeeds
-    /// at a port that another program has, and the mark is that of the port.
+    /// stops such a program, if that program locks the port itself. TIOCEXCL marks the port and not the descriptor, and
+    /// also succeeds at a port that another program has locked. flock therefore comes first.
     fn lock(&mut self) -> Result<(), PortError> {
         let failed = |source| PortError::at_opening(&self.path, source);
         // SAFETY: the descriptor is open; neither call takes a pointer.

@@ -44,7 +44,7 @@ impl Decoder {
         frame_length.and_then(|length| Packet::unchecked(&self.frame[..length]))
     }
 
-    /// Discards an incomplete frame. The next byte begins a new one.
+    /// Discards an incomplete frame and counts it as damaged. The next byte begins a new one.
     pub fn abandon(&mut self) {
         let begun = std::mem::take(&mut self.stuffed_length) > 0;
         self.counters.damaged += u64::from(begun);

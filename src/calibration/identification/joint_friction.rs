@@ -1,16 +1,17 @@
 //! Determines the gains of the gauges relative to each other, the friction of the joints and the friction of the
 //! pulleys, from the tensions of a free finger whose joints move back and forth.
 //!
-//! Let t be the tensions at the gauges, and f_i = (1 + mu_i)^-s_i the factor by which the friction of the pulleys
-//! reduces tension i at the joint; s_i is +1 while the tendon moves toward its motor and -1 otherwise. Then
+//! Let t be the tensions at the gauges, and f_i = (1 + mu_i)^-s_i the factor by which the friction mu_i of the pulleys
+//! reduces tension i at the joint; s_i is +1 while the tendon moves toward its motor and -1 otherwise. With the moment
+//! arms R, the joint rates v and their signs s,
 //!
 //! R f t = g + s (C + b |v|)
 //!
-//! with the gravity g, and the Coulomb friction C and the viscous friction b of the joints. The half difference of the
-//! two directions of a motion eliminates g. C is the same at both levels of tension and both speeds, so that C, b and
-//! the four mu can be separated. The mean of both directions eliminates the friction, and g is the same at both levels.
-//! So the rise of the mean of f t between the levels is along the null vector of R. This gives the gains of the gauges
-//! up to a common factor. The tensions of a free finger do not show this factor.
+//! with the joint torques g of gravity, and the Coulomb friction C and the viscous friction b of the joints. The half
+//! difference of the two directions of a motion eliminates g. C is the same at both levels of tension and both speeds,
+//! so that C, b and the four mu can be separated. The mean of both directions eliminates the friction, and g is the
+//! same at both levels. So the rise of the mean of f t between the levels is along the null vector of R. This gives the
+//! gains of the gauges up to a common factor. The tensions of a free finger do not show this factor.
 
 use super::least_squares::LeastSquares;
 use crate::calibration::average::Average;
@@ -141,7 +142,7 @@ impl JointFriction {
             let [back, forth] =
                 at_joint(instruments, stroke, averages, &found.pulley).map(|t| t.component_mul(&found.gains));
             let signs = directions(instruments, stroke);
-            // The derivative of (1 + mu)^-s t with respect to mu.
+            // The derivative of `back - forth` with respect to mu.
             let slope = (forth + back).component_mul(&signs).zip_map(&found.pulley, |t, mu| t / (1.0 + mu));
             for joint in 0..3 {
                 let row = r.row(joint).transpose();

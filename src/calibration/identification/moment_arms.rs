@@ -11,8 +11,8 @@ use crate::calibration::obstacle::Obstacle;
 use crate::model::Part;
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 
-/// Moment arms that differ from the configured ones by less than this part of the largest moment arm of their joint are
-/// not changed. On the simulated finger the measurement is accurate to 0.3 %.
+/// The configured moment arms stay if each differs from the measured one by at most this part of the largest moment arm
+/// of its joint. On the simulated finger the measurement is accurate to 0.3 %.
 pub(super) const SIGNIFICANT: f64 = 0.01;
 /// Largest plausible difference, as a part of the largest moment arm of the joint.
 const LARGEST: f64 = 0.2;
@@ -67,8 +67,8 @@ impl MomentArms {
         (0..3).map(of_joint).fold(0.0, f64::max)
     }
 
-    /// Returns R if it differs from the configured one. `stops` are the angles of the lower and upper stops, rad.
-    /// `known` says whether they are known exactly.
+    /// Returns R if it differs from the configured one by more than [`SIGNIFICANT`]. `stops` are the angles of the
+    /// lower and upper stops, rad. `known` says whether they are known exactly.
     pub fn solve(
         &self,
         instruments: &Instruments,

@@ -71,7 +71,7 @@ impl Ranges {
     }
 
     /// Runs one cycle of the motion. `conduit` is the friction of the conduits. When the motion is complete, returns
-    /// the readings.
+    /// the readings, or `Some(None)` if a joint has no upper stop.
     pub fn step(
         &mut self,
         instruments: &Instruments,

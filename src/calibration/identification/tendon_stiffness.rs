@@ -1,12 +1,12 @@
 //! Determines the stiffness of every tendon from motor travel against tension.
 //!
-//! The motor travel of every tendon is x_i = R_i^T theta + c_i t_i + d_i t_i^2 + h_i s_i t_i + const. c_i is the
-//! compliance, d_i its change with the tension, and h_i the additional stretch on the motor's side of the conduit,
-//! whose friction makes the tension there larger or smaller than at the gauge. s_i is the direction in which the tendon
-//! slid, -1 to 1. Multiplication by the null vector n of R eliminates any motion of the joints. This is one equation
-//! per sample. The coefficients can be separated if the four tensions vary independently. The tensions vary
-//! independently only with joint torques, so something must hold the finger. A term in proportion to the time absorbs
-//! creep.
+//! The motor travel of every tendon is x_i = R_i^T theta + c_i t_i + d_i t_i^2 + h_i s_i t_i + const. R_i has the
+//! moment arms of tendon i, theta the joint angles, and t_i is the tension. c_i is the compliance, d_i its change with
+//! the tension, and h_i the additional stretch on the motor's side of the conduit, whose friction makes the tension
+//! there larger or smaller than at the gauge. s_i is the direction in which the tendon slid, -1 to 1. Multiplication by
+//! the null vector n of R eliminates any motion of the joints. This is one equation per sample. The coefficients can be
+//! separated if the four tensions vary independently. The tensions vary independently only with joint torques, so
+//! something must hold the finger. A term in proportion to the time absorbs creep.
 
 use super::least_squares::LeastSquares;
 use super::winding::Winding;
@@ -23,8 +23,8 @@ const STIFFEST: f64 = 1e5;
 const WORKING: f64 = 0.42;
 /// Largest tension at which the stiffness is measured, as a fraction of t_max.
 const MEASURED: f64 = 0.6;
-/// Uncertainty of every stiffness. On the simulated finger the identified stiffness is accurate to 0.2 %, but no real
-/// tendon stretches exactly as this model predicts.
+/// Relative uncertainty of every stiffness. On the simulated finger the identified stiffness is accurate to 0.2 %, but
+/// no real tendon stretches exactly as this model predicts.
 pub(super) const UNCERTAIN: f64 = 0.02;
 /// Tensions are divided by this value, N, so that all coefficients have similar sizes.
 const SCALE: f64 = 10.0;
@@ -70,7 +70,7 @@ impl StiffnessFound {
 
 impl TendonStiffness {
     pub fn new(instruments: &Instruments) -> Self {
-        // The ghost column of Q spans the null space of R.
+        // The last column of Q (that of the ghost joint, see `Tendons`) spans the null space of R.
         let null = instruments.tendons.q.column(3).into_owned().normalize();
         Self { fit: LeastSquares::new(), null, winding: Winding::default(), first: None, seconds: 0.0 }
     }

@@ -203,7 +203,8 @@ impl Holding {
     }
 }
 
-/// The rise of the tensions, N: a multiple of the pretension, with the largest tension below half of t_max.
+/// The rise of the tensions, N: a multiple of the pretension. It keeps the largest tension below half of t_max, but is
+/// at least half of the pretension.
 pub(super) fn expected_rise(instruments: &Instruments) -> Vector4<f64> {
     let most = 0.5 * instruments.maximum / instruments.pretension.max() - 1.2;
     instruments.pretension * RAISED.min(most.max(0.5))

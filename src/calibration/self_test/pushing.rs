@@ -1,5 +1,5 @@
-//! One motor pulls alone, with a torque that rises until an encoder moves. If another encoder moves first, or if its
-//! own encoder moves backward, the motor pulls until a gauge shows what is wrong.
+//! One motor pulls alone, with a torque that rises until an encoder moves. If the encoder of another motor moves first,
+//! or if the motor's own encoder moves backward, the motor pulls until a gauge shows what is wrong.
 
 use super::readings::Readings;
 use crate::calibration::average::Average;

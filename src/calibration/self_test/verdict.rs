@@ -8,9 +8,9 @@ use nalgebra::{Vector3, Vector4};
 
 /// A gauge is dead if it rises by less than this part of the usual rise.
 const DEAD: f64 = 0.12;
-/// Two gauges count as swapped if the gauge of the other motor responds more strongly to a motor than the motor's own
-/// gauge, in the sum over both motors. Each response is divided by the largest response to the same motor. The sum of
-/// the two differences must exceed this value. The sum is at most 2.
+/// For each of two motors, take the response of the other motor's gauge minus the response of its own gauge, both
+/// divided by the largest response to this motor. The two gauges count as swapped if the sum of both differences
+/// exceeds this value. The sum is at most 2.
 const LEADING: f64 = 0.15;
 /// A gauge is reported if its scale differs from the usual scale by more than this fraction.
 const SCALE: f64 = 0.13;
@@ -21,7 +21,8 @@ const CENTIMETRES: f64 = 100.0;
 /// Two tendons differ at rest if the logarithm of the ratio of their pretensions exceeds this value.
 const DIFFERENT: f64 = 0.2;
 
-/// Names the part that is wired wrongly. `travel` is the travel of the motors from their zeros, cm.
+/// Returns the first thing that is wrong as an error: a dead gauge, swapped gauges or tendons, a reversed gauge, or a
+/// gauge with a wrong scale. `travel` is the travel of the motors from their zeros, cm.
 pub(super) fn judge(
     responses: &Responses,
     instruments: &Instruments,

@@ -15,9 +15,11 @@ const SETTLING: f64 = 0.15;
 const READING: f64 = 0.1;
 /// A motor has stalled if it lags by more than the first value, cm, plus the second value times the amplitude.
 const STALLED: (f64, f64) = (0.03, 0.25);
-/// A side is tight if a tension changes by more than this over the outer half of the side, N.
+/// A side is tight if a tension changes by more than this over the outer half of the side, N, or if the motor stalls at
+/// its end.
 pub(super) const TIGHT: f64 = 0.5;
-/// A side is slack if every tension changes by less than this over the outer half of the side, N.
+/// A side is slack if every tension changes by less than this over the outer half of the side, N, and the motor does
+/// not stall at its end.
 const SLACK: f64 = 0.25;
 
 /// A sweep: one motor turns back and forth.

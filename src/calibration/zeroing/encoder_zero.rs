@@ -1,4 +1,4 @@
-//! Computes m_0 of eq. 28 from one known pose.
+//! Computes the encoder zeros (m_0 of eq. 28 of COINS TR 90-48) from one known pose.
 
 use super::standstill::Standstill;
 use crate::calibration::average::Average;
@@ -53,8 +53,8 @@ impl Reading {
         self.tensions.mean()
     }
 
-    /// Returns theta with the configured zero, rad. `offset` is the error of the measured tensions, N, which was
-    /// determined after the reading.
+    /// Returns the joint angles with the configured zero, rad. `offset` is the error of the measured tensions, N, which
+    /// was determined after the reading.
     pub fn joints(&self, instruments: &Instruments, offset: &Vector4<f64>) -> Vector3<f64> {
         instruments.joints(&self.travel.mean(), &(self.tensions() - offset))
     }

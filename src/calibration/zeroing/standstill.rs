@@ -49,7 +49,7 @@ impl Standstill {
     }
 
     /// Returns the joint with the largest deviation from its mean, 0 to 2, and the deviation, rad. Returns `None` if no
-    /// joint moved.
+    /// joint deviates by more than [`TOLERANCE`].
     pub fn moved(&self) -> Option<(usize, f64)> {
         let (lowest, highest) = self.extremes?;
         let mean = self.sum / self.samples;

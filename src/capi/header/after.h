@@ -83,11 +83,12 @@ typedef volatile double Sun2XpDoubleV;
 typedef const volatile double Sun2XpDoubleCV;
 
 #ifdef SUN2XP_GENERIC
-/* SUN2XP_TYPED converts NULL and 0 to this type. They compile, and are refused at run time. The type is incomplete, so
-   no variable of a planner can have it. */
+/* SUN2XP_TYPED converts NULL and 0 to a pointer to this type. They compile, and are refused at run time. The type is
+   incomplete, so no variable of a planner can have it. */
 typedef struct Sun2XpNull Sun2XpNull;
-/* A conditional expression has this type only if its other branch is a null pointer constant. So void * pointers and
-   integers other than 0 become void *, which matches no association of SUN2XP_SEND and SUN2XP_GET. */
+/* A conditional expression with the branch (Sun2XpNull *)0 has the type Sun2XpNull * only if its other branch is a null
+   pointer constant. So void * pointers and integers other than 0 become void *, which matches no association of
+   SUN2XP_SEND and SUN2XP_GET. */
 #define SUN2XP_NULL_POINTER(Array) \
     (1 ? _Generic(Array, Sun2XpVoid *: Array, default: (Sun2XpVoid *)0) : (Sun2XpNull *)0)
 #define SUN2XP_NULL_NUMBER(Array) \

@@ -14,7 +14,7 @@ const FIRST: f64 = 0.2;
 /// Joint rate at which the error of the torques is learned half as fast as at rest, rad/s. A motion adds errors of its
 /// own: the friction of its direction, and the inertia of links with wrong masses. If these errors were learned, a
 /// contact right after the motion would preserve them, because nothing is learned during a contact. So a finger learns
-/// fully at rest. In motion it learns only slow drifts.
+/// fully at rest and during the first average. Afterwards, it learns only slow drifts in motion.
 const SLOW: f64 = 0.1;
 
 /// The constant part of the detection.

@@ -1,11 +1,12 @@
 //! The torques of the surroundings on the joints, from a momentum observer.
 //!
 //! De Luca and Mattone, Sensorless robot collision detection and hybrid force/motion control, ICRA 2005. The momentum
-//! of the links is p = H(theta) theta_dot. Its derivative is
+//! of the links is p = H(theta) theta_dot, with the inertia matrix H and the joint angles theta. Its derivative is
 //!
 //! p_dot = R t + C^T theta_dot + g - friction + external torques.
 //!
-//! The residual r follows r_dot = K (external torques - r). It is computed without the acceleration of the joints and
+//! R has the moment arms of the tendons, t the tensions, C the Coriolis terms, and g is the torque of gravity. The
+//! residual r follows r_dot = K (external torques - r). It is computed without the acceleration of the joints and
 //! without an inversion of H:
 //!
 //! r = K (p - integral of (R t + C^T theta_dot + g - friction + r)).

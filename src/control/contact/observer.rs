@@ -10,8 +10,8 @@ use crate::model::{LinkDynamics, LinkMomentum, Links, Tendons};
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
-/// Time between two samples of the estimate, s. It is short compared with the delay of the residual. With every sample
-/// of the servo, the estimate would need four times the computing time at 1000 Hz and detect the same forces.
+/// Time between two samples of the estimate, s. It is short compared with the delay of the residual. An estimate at
+/// every sample of the servo would need four times the computing time at 1000 Hz, and would detect the same forces.
 const INTERVAL: f64 = 0.005;
 
 /// Each slowly varying quantity is computed again once in this number of samples. At each sample, at most one of these
@@ -69,7 +69,8 @@ impl ContactObserver {
             dynamics: LinkDynamics::new(finger.links(), links.masses, links.radii, Vector3::zeros()),
             observer: MomentumObserver::new(finger, tendons),
             detection: Detection::new(finger),
-            // The learned error contains the friction of one direction of motion, and the other direction reverses it.
+            // The factor is 2, because the learned error contains the friction of one direction of motion, and the
+            // friction changes its sign in the other direction.
             rubbing: Matrix3x4::from_fn(|joint, tendon| 2.0 * tendons.r[(joint, tendon)].abs() * pulley[tendon]),
             mass_tolerance: finger.contact.mass_tolerance,
             // Rounding errors of the time must not delay a sample by a period.

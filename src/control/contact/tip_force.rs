@@ -36,7 +36,8 @@ impl TipForce {
         let reach = l0 + l1 * c1 + l2 * c12;
         let plane = Matrix2::new(-l1 * s1 - l2 * s12, -l2 * s12, -l1 * c1 - l2 * c12, -l2 * c12);
         let determinant = plane.m11 * plane.m22 - plane.m12 * plane.m21;
-        // The determinant is the product of the larger and the smaller arm, and the norm is about the larger arm.
+        // The singular values of `plane` are the largest and the smallest moment arm of a force in the plane. The
+        // determinant is their product, and the norm is about the larger one.
         let unfelt = FELT * FELT * plane.norm_squared();
         let scale = determinant / (determinant * determinant + 0.25 * unfelt);
         Self {

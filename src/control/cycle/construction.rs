@@ -30,7 +30,7 @@ const TIGHT: f64 = 0.8;
 
 impl Controller {
     /// Constructs the controller of `finger` at `rate`, Hz, without gravity. Gains that are not configured follow from
-    /// the rate. Returns an error that names the key if no controller can use the value of this key.
+    /// the rate. Returns an error that names the key if the controller cannot use the value of this key.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         Self::in_gravity(finger, &Vector3::zeros(), rate)
     }
@@ -42,8 +42,8 @@ impl Controller {
         Self::construct(finger, gravity, rate, None)
     }
 
-    /// Constructs a controller whose state feedback has these numbers, without gravity. The search for the numbers uses
-    /// it.
+    /// Constructs a controller without gravity whose state feedback has these numbers. `cargo bench --bench stiffness`
+    /// uses this function to search for the numbers.
     pub fn with_numbers(finger: &ConfiguredFinger, rate: f64, numbers: &Numbers) -> Result<Self, Unusable> {
         Self::construct(finger, &Vector3::zeros(), rate, Some(*numbers))
     }
@@ -110,8 +110,8 @@ impl Controller {
     }
 }
 
-/// Checks that warm motors can hold the tensions of a finger at rest against friction. State feedback holds higher
-/// tensions than the pretension. Otherwise a finger that does nothing would overheat.
+/// Checks that warm motors can hold the tensions of a finger at rest against friction. Otherwise a finger that does
+/// nothing would overheat. Only state feedback is checked here, because it holds higher tensions than the pretension.
 fn check_continuous_torque(
     finger: &ConfiguredFinger,
     motor_torque: &MotorTorque,

@@ -1,4 +1,5 @@
-//! Continues from an earlier state: with another controller, or anew after the motors were off or replies were lost.
+//! Starts from an earlier state: continues it with another controller, or starts anew after the motors were off or
+//! replies were lost.
 
 use super::{Controller, Doing, State};
 use crate::control::signals::{Activity, Feedback, MotorCommand, Report, SetPoint};
@@ -19,7 +20,8 @@ impl Controller {
     ) -> (MotorCommand, Report) {
         let mut before = *state;
         previous.cycle(&mut before, feedback, activity);
-        // The state has pulls at the tendons. With another motor radius, another pull has the same motor torque.
+        // The state stores pulls at the tendons. If the motor radius differs, the pulls are scaled so that the motor
+        // torques stay the same.
         let ratio = previous.radius.component_div(&self.radius);
         state.goes_on_from = Some(before.pulls.component_mul(&ratio));
         for pulls in [&mut state.pulls, &mut state.acting, &mut state.against_friction] {

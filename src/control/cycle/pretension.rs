@@ -23,7 +23,7 @@ impl Controller {
         let DistributedTensions { tensions, scale } = self.reachable(&limit).distribute(&gravity);
         open_loop(state, pulls);
         if self.slack.tightens(&slack) {
-            // The tendon controller continues from these pulls when the finger becomes a spring.
+            // The tendon controller continues from these pulls when the finger begins to follow a set point.
             state.tendons.integral = pulls - tensions;
             state.report.desired_tensions = tensions;
         }
@@ -39,8 +39,8 @@ impl Controller {
     pub(super) fn tighten(&self, state: &mut State, offset: &Vector4<f64>) {
         let now = self.slackness(state, offset);
         let joints = Joints {
-            // The joint angles that state feedback estimates are not used: Figures 9 and 10 control the tensions here,
-            // and they need the low-pass filtered stretch.
+            // The joint angles that state feedback estimates are not used: Figure 9, 10 or 11 controls the tensions
+            // here, and needs the low-pass filtered stretch.
             angles: self.joint_positions.joints(&state.motor_angles, &state.tensions),
             rates: self.joint_positions.joint_rates(&state.motor_speeds),
         };

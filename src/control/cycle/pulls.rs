@@ -6,9 +6,9 @@ use crate::control::tendons::tension_distribution::BoundedDistribution;
 use crate::control::tendons::tension_integral::{TendonInput, TendonState};
 use nalgebra::{Vector3, Vector4};
 
-/// Fraction of its desired tension below which a tendon counts as slack while slack is taken up. A motor brings a tight
-/// tendon to a much larger fraction even without the integral, and despite its friction and the error of its torque
-/// constant.
+/// Fraction of its desired tension below which a tendon counts as slack while the finger does not follow a set point. A
+/// motor brings a tight tendon to a much larger fraction even without the integral, and despite its friction and the
+/// error of its torque constant.
 const SLACK: f64 = 0.2;
 
 impl Controller {
@@ -39,8 +39,9 @@ impl Controller {
         open_loop(state, state.pulls);
     }
 
-    /// Returns the box R^-1, limited to tensions that the motors reach with pulls of at most `limit`, N. Clamping the
-    /// pulls instead would change the direction of the joint torque.
+    /// Returns the distribution of joint torques to tensions (the block R^-1 of Figure 9), limited to tensions that the
+    /// motors reach with pulls of at most `limit`, N. Clamping the pulls instead would change the direction of the
+    /// joint torque.
     pub(super) fn reachable(&self, limit: &Vector4<f64>) -> BoundedDistribution<'_> {
         self.distribution.below(&self.motor_torque.tensions(limit))
     }

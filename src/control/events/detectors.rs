@@ -57,8 +57,8 @@ impl Detectors {
 }
 
 impl DetectorState {
-    /// Returns the state of a finger that has become a spring and holds this set point. Becoming a spring does not
-    /// count as an arrival.
+    /// Returns the state of a finger that begins to follow set points and holds this one. This beginning does not count
+    /// as an arrival.
     pub fn holding(set_point: SetPoint) -> Self {
         Self {
             contact: ContactBefore::default(),

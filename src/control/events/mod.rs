@@ -1,6 +1,6 @@
 //! Detectors derive observations from the measurements, the report and the set point of a cycle. An observation is a
-//! fact that a planner or a reflex may wait for. It is not a fault. Each detector has one file, which defines its
-//! observations.
+//! fact that a planner or a reflex may wait for. It is not a fault. Each detector has one file, which defines when it
+//! makes its observations.
 //!
 //! The detectors run while a finger follows a set point, in the cycles with a reply.
 

@@ -1,5 +1,7 @@
 //! Compares gauges with encoders. Three joint angles determine the travel of four tendons, so four motor angles and
-//! four tensions are redundant by one. For n with R n = 0,
+//! four tensions are redundant by one. R has the moment arms of the tendons, r the motor radii, m the motor angles, t
+//! the tensions, t_home the tensions at which the encoders are zeroed, and k the stiffnesses of the tendons. For n with
+//! R n = 0,
 //!
 //! n^T (r m - (t - t_home) / k) = 0
 //!
@@ -29,8 +31,9 @@ use nalgebra::{Matrix3x4, Vector3, Vector4};
 /// and the gauge is beyond this point. It is a half if the friction is distributed evenly and the gauge is at one end.
 pub(crate) const SHARE_OF_FRICTION: f64 = 0.4;
 
-/// Expected factor of a joint's term, as a part of the largest possible factor. The largest factor occurs only if the
-/// signs of the errors equal the signs of the moment arms.
+/// Errors of the moment arms cause a difference in proportion to the motion of a joint. This is the expected size of
+/// that difference, as a fraction of the largest possible size. The largest size occurs only if the errors of all
+/// moment arms have the signs of these moment arms.
 const TYPICAL: f64 = 0.75;
 
 /// Fraction of t_min below which a tendon may hang slack. The encoders then show a negative stretch, so the difference
@@ -112,7 +115,7 @@ impl Memory {
 
 impl Agreement {
     pub fn new(finger: &ConfiguredFinger, tendons: &Tendons) -> Self {
-        // R times the ghost column of Q is zero.
+        // The last column of Q, which belongs to the ghost joint (see `Tendons`), spans the null space of R.
         let null: Vector4<f64> = tendons.q.column(3).into_owned();
         let compliance = Vector4::from(finger.tendon.stiffness).map(f64::recip);
         let per_stiffness = null.component_mul(&compliance);

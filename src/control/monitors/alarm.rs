@@ -21,7 +21,7 @@ pub enum Symptom {
     EncoderJump,
     /// A motor does not turn although pull and tension are not balanced (pull minus tension, N).
     StalledMotor,
-    /// A motor has been at its continuous heat for too long (heat, per cent of the continuous heat).
+    /// A motor has been near its continuous heat for too long (heat, per cent of the continuous heat).
     OverheatedMotor,
     /// A joint is at its mechanical stop (angle, degrees).
     JointAtStop,

@@ -53,7 +53,8 @@ const LEAST_BENDS: f64 = 0.05;
 /// smaller, or keeps its sign.
 const BEND: i32 = 2;
 
-/// Gain per sample of the mean of the reversals. It is small, because noise is not visible during fast motion.
+/// Gain per sample of the means of the reversals and of the bends. It is small, because noise is not visible during
+/// fast motion.
 const LEARNING_REVERSALS: f64 = 1.0 / 512.0;
 
 /// Fraction of t_min below which a tendon may hang slack.
@@ -132,7 +133,8 @@ pub(super) struct Flicker {
 }
 
 impl Flicker {
-    /// Returns whether a gauge that flickered has repeated the same count for at least [`SILENT`] samples.
+    /// Returns whether a gauge that flickered has repeated the same count for at least [`SILENT`] samples within its
+    /// range.
     pub fn silent(&self, gauge: usize) -> bool {
         self.known[gauge] && self.same[gauge] >= SILENT && !self.saturated[gauge]
     }
@@ -140,7 +142,7 @@ impl Flicker {
 
 impl Memory {
     /// Notes the change of a gauge since the last sample, counts. Returns whether the second difference has changed its
-    /// sign.
+    /// sign, with at least [`BEND`] before and after the change.
     fn bends_to_the_other_side(&mut self, gauge: usize, change: i32) -> bool {
         let [first, second] = self.differences[gauge];
         self.differences[gauge] = [change, change - first];

@@ -9,7 +9,7 @@ pub(super) struct Sample<'a> {
     pub report: &'a Report,
     /// Tensions, N.
     pub tensions: Vector4<f64>,
-    /// Motor travel r m, cm.
+    /// Travel of the tendons at the motors, which is motor radius times motor angle, cm.
     pub travel: Vector4<f64>,
     /// Angle that the motors have turned since the last sample, rad.
     pub turned: Vector4<f64>,

@@ -130,8 +130,9 @@ impl InterpolationState {
     }
 
     /// Returns the state of a set point that stops at `joints`, rad, because its path is replaced. The first step
-    /// begins a cycle later, so that the set point rests for one cycle. The controller then treats the way back to the
-    /// steps as a deviation. Otherwise it would take the difference of the rates for motion of the set point.
+    /// begins a cycle later, so that the set point rests for one cycle. State feedback then treats the difference
+    /// between its reference and the new motion as a deviation, which its filter reduces to zero. Without this cycle,
+    /// the reference would follow the jump of the rates.
     pub fn stopped(joints: Vector3<f64>) -> Self {
         Self { wait: 2, ..Self::at_rest(joints) }
     }

@@ -64,13 +64,13 @@ impl MotorHeating {
 }
 
 impl Heat {
-    /// Converts the heat to another unit of the pulls, by which the pulls are multiplied by `ratio`.
+    /// Converts the heat for other motor radii, with which the pulls are multiplied by `ratio`.
     pub fn scale(&mut self, ratio: &Vector4<f64>) {
         self.0.component_mul_assign(&ratio.component_mul(ratio));
     }
 
-    /// Returns the heat. A heat that is not finite follows a defect of the controller, and becomes zero, because the
-    /// finger could never recover from it.
+    /// Returns the heat, with zero for a heat that is not finite. Only a defect of the controller causes such a heat,
+    /// and the finger could never recover from it.
     pub fn if_finite(self) -> Self {
         Self(self.0.map(|heat| if heat.is_finite() { heat } else { 0.0 }))
     }

@@ -1,4 +1,5 @@
-//! The box M^-1: motor torques from pulls at the tendons, eq. 22, with the sign of each motor.
+//! The block M^-1 of Figure 9 of the report: motor torques from the pulls at the tendons (eq. 22), with the sign of
+//! each motor.
 
 use crate::control::motors::motor_friction::MotorFriction;
 use crate::control::number_checks::{positive, signs};

@@ -1,11 +1,14 @@
-//! The box (RM)^-T: joint angles from motor angles, eqs. 26-29, corrected for the stretch of the tendons.
+//! The block (RM)^-T of Figure 9 of the report: joint angles from motor angles (eqs. 26-29), corrected for the stretch
+//! of the tendons.
 
 use crate::control::number_checks::positive;
 use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 
-/// theta = R^-T (r m - (t - t_home) / k), upper three rows.
+/// theta is the upper three rows of R^-T (r m - (t - t_home) / k). R is the 4 x 4 matrix of the moment arms with the
+/// ghost row, r are the motor radii, m the motor angles, t the tensions, t_home the tensions at homing, and k the
+/// stiffnesses of the tendons.
 ///
 /// Without the second term this is eq. 27. The encoders are on the motors and do not measure the stretch of the
 /// tendons. Without the correction the fingertip would be 28 % too soft at 3 N/cm.

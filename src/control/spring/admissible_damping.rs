@@ -42,8 +42,8 @@ impl AdmissibleDamping {
         let scheme = finger.controller.scheme(rate);
         let correspondence = supported(finger).map_or(f64::INFINITY, |supported| DEFAULT_SUPPORTED / supported);
         let (least, most) = match (scheme, rate < SLOW) {
-            (Scheme::StateFeedback, true) => ((0.7, 0.07), (1.7, -0.25)),
-            (Scheme::StateFeedback, false) => ((0.4, 0.09), (2.1, -0.3)),
+            (Scheme::StateFeedback, true) => ((0.7, 0.07), (2.0, -0.2)),
+            (Scheme::StateFeedback, false) => ((0.4, 0.09), (2.1, -0.19)),
             (_, true) => ((1.0, 0.0), (2.0, -0.2)),
             (_, false) => ((1.0, 0.0), (2.5, -0.22)),
         };

@@ -1,4 +1,5 @@
-//! The box K_theta: joint torques of the virtual spring, eqs. 1 to 6, and of a damper in parallel.
+//! The block K_theta of Figure 9 of the report: joint torques of the virtual spring (eqs. 1 to 6), and of a damper in
+//! parallel.
 
 use crate::control::spring::spring_transition::Spring;
 use crate::model::Links;
@@ -68,12 +69,12 @@ pub(crate) struct PosedSpring<'a> {
     scale: f64,
     /// Additional stiffness of joint 0 with the tip near its axis, before any scaling, N cm/rad.
     hold: f64,
-    /// K_theta of eq. 6, N cm/rad.
+    /// K_theta of eq. 6 plus `hold` for joint 0, N cm/rad.
     pub k_theta: Matrix3<f64>,
 }
 
 impl JointStiffness {
-    /// Constructs the box. `rate_time` is beta at 3 N/cm, s.
+    /// Constructs the spring law of a finger. `rate_time` is beta at 3 N/cm, s.
     pub fn new(links: Links, rate_time: f64) -> Self {
         let [l0, l1, l2] = links.0;
         let levers = Vector3::new((l0 + l1).powi(2), l1 * l1 + l2 * l2, l2 * l2);
@@ -86,7 +87,7 @@ impl JointStiffness {
         posed.torques(&spring.joints) - posed.damper(rates)
     }
 
-    /// Returns K_theta of eq. 6, N cm/rad.
+    /// Returns K_theta of eq. 6 plus the additional stiffness of joint 0 with the tip near its axis, N cm/rad.
     pub fn joint_stiffness(&self, spring: &Spring, joints: &Vector3<f64>) -> Matrix3<f64> {
         self.posed(spring, joints).k_theta
     }

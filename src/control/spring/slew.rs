@@ -1,8 +1,8 @@
 //! Slew limit of the set point: a step becomes a straight line in joint space at a limited speed.
 //!
-//! A fingertip that is released far from the anchor of its spring does not move straight to the anchor. Joint 2 may
-//! straighten on the way. J is singular while joint 2 is straight, and the spring has no torque to bend the joint
-//! again.
+//! Without this limit, a fingertip would be far from the anchor of its spring after a large step, and would not move
+//! straight to the anchor. Joint 2 might straighten on the way. J is singular while joint 2 is straight, and the spring
+//! has no torque to bend the joint again.
 
 use nalgebra::Vector3;
 

@@ -5,10 +5,11 @@ use nalgebra::Matrix3;
 
 /// D = 2 zeta (W # (K + f^2 W)) + lag sym(H W^-1 K).
 ///
-/// W # K = W (W^-1 K)^(1/2) is the geometric mean. In one dimension it gives 2 zeta sqrt(W K). In general it gives
-/// every mode of the pair (W, K) the same damping ratio zeta. Because of the lowest frequency f, a finger is also
-/// damped if it has no stiffness, or if K does not have full rank. The tensions lag behind the desired ones by `lag`.
-/// The share H W^-1 of the spring's torque acts on the links. The second term compensates the lag of that share.
+/// W # K = W (W^-1 K)^(1/2) is the geometric mean. In one dimension, without f and lag, D is 2 zeta sqrt(W K). In
+/// general, D gives every mode of the pair (W, K) the same damping ratio zeta. Because of the lowest frequency f, a
+/// finger is also damped if it has no stiffness, or if K does not have full rank. The tensions lag behind the desired
+/// ones by `lag`. The share H W^-1 of the spring's torque acts on the links. The second term compensates the lag of
+/// that share.
 #[derive(Clone, Debug)]
 pub(crate) struct DampingDesign {
     /// zeta: damping ratio.
@@ -75,7 +76,7 @@ mod tests {
             prop_assert!((root * root - matrix).amax() < 1e-6 * matrix.amax(), "{root}{matrix}");
         }
 
-        /// With H = 0 and f = 0, D is the geometric mean: D W^-1 D = 4 zeta^2 K.
+        /// With H = 0 and f = 0, D is 2 zeta times the geometric mean of W and K: D W^-1 D = 4 zeta^2 K.
         #[test]
         fn every_mode_has_the_same_ratio(w in definite(), k in definite(), zeta in 0.1..1.0f64) {
             let design = DampingDesign { ratio: zeta, least_frequency: 0.0, lag: 1.0 };

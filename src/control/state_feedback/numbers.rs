@@ -19,10 +19,10 @@ pub struct Numbers {
     /// alpha: the gain from the tension error to the pull of a motor. The motors appear to have 1/alpha of their
     /// inertia.
     pub inertia_gain: f64,
-    /// zeta of the spring. It applies to the inertia of the links plus the inertia of the motors for which the damping
-    /// is designed ([`Numbers::damped_inertia`]).
+    /// Damping ratio of the spring. It applies to the inertia of the links plus the inertia of the motors for which the
+    /// damping is designed ([`Numbers::damped_inertia`]).
     pub damping_ratio: f64,
-    /// zeta of the motion of the motors relative to the links.
+    /// Damping ratio of the motion of the motors relative to the links.
     pub relative_damping: f64,
     /// Bandwidth with which the observers follow the disturbance of the motors, rad/s.
     pub disturbance_bandwidth: f64,
@@ -33,11 +33,11 @@ pub struct Numbers {
     pub sample_offset: f64,
     /// Lowest frequency for which the damping is designed, rad/s.
     pub least_frequency: f64,
-    /// Lag of the tensions for which the spring's damping is designed, relative to the lag c / (alpha k) that follows
-    /// from alpha.
+    /// Lag of the tensions for which the spring's damping is designed, relative to c / (alpha k). c is the damping that
+    /// follows from [`Numbers::relative_damping`], and k the stiffness of a tendon.
     pub lag: f64,
-    /// Inertia of the motors for which the spring's damping is designed, relative to the inertia R m R^T / alpha that
-    /// follows from alpha.
+    /// Inertia of the motors for which the spring's damping is designed, relative to R m R^T / alpha, with the moment
+    /// arms R and the masses m of the motors at the tendons.
     pub damped_inertia: f64,
     /// alpha for the common component of the tendons, divided by alpha for the components that turn the joints.
     /// Differences between motors convert the common component to joint torque.
@@ -59,7 +59,8 @@ pub struct Numbers {
     /// Frequency of the dither, Hz. With a lower frequency the motors need less torque for the dither, and the tip
     /// moves more.
     pub dither_frequency: f64,
-    /// Amplitude of the dither of the tensions, divided by the configured pulley friction p t.
+    /// Amplitude of the dither of the tensions, divided by the configured pulley friction, which is the fraction p of
+    /// the tension t.
     pub pulley_excess: f64,
     /// Distance of the tensions from t_min, as a fraction of t_min, divided by the relative amplitude of the dither of
     /// the tensions. This distance makes room for the dither.
@@ -102,7 +103,7 @@ const TENSION_DITHER: f64 = 0.06;
 const PULLEY_EXCESS: f64 = 5.0;
 
 /// See [`Numbers::dither_reserve`]. More pretension has a second effect: the ratios of each tendon's tension to its
-/// entry of the null vector then differ less from each other.
+/// entry of the null vector of R then differ less from each other.
 const DITHER_RESERVE: f64 = 16.0 / 3.0;
 
 /// See [`Numbers::dither_rise`].

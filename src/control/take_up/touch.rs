@@ -50,7 +50,7 @@ pub(super) struct Gauge {
 }
 
 impl Gauge {
-    /// Converts the travel to another motor radius, by which it is multiplied by `longer`.
+    /// Converts the stored travel for another motor radius, with which every travel is multiplied by `longer`.
     pub fn scale_travel(&mut self, longer: f64) {
         self.onset *= longer;
     }

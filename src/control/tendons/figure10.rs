@@ -4,6 +4,7 @@ use crate::control::tendons::tension_integral::{TendonInput, TendonState, Tensio
 use nalgebra::Vector4;
 
 /// t_d + (K_T + K_TI/s) (t_d - t) - K_delta v, which is the law of the figure with an additional feed-forward of t_d.
+/// t_d is the desired tension, t the measured tension, and v the speed of the motor side.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure10 {
     pub integral: TensionIntegral,

@@ -3,7 +3,8 @@
 use crate::control::tendons::tension_integral::{TendonInput, TendonState, TensionIntegral};
 use nalgebra::Vector4;
 
-/// t_d + K_TI/s (t_d - t) - K_delta v.
+/// t_d + K_TI/s (t_d - t) - K_delta v, with the desired tension t_d, the measured tension t and the speed v of the
+/// motor side.
 ///
 /// The figure has neither the feed-forward of t_d nor the damper. With the integral alone the loop is unstable at every
 /// rate.

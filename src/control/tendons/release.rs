@@ -17,7 +17,7 @@ impl Release {
         Self { from, elapsed: 0.0 }
     }
 
-    /// Converts the ramp to another unit of the pulls, by which the pulls are multiplied by `ratio`.
+    /// Converts the ramp for other motor radii, with which the pulls are multiplied by `ratio`.
     pub fn scale(&mut self, ratio: &Vector4<f64>) {
         self.from.component_mul_assign(ratio);
     }

@@ -1,4 +1,5 @@
-//! The box R^-1: tensions that produce the joint torque, eqs. 18-20, within a lower and an upper bound.
+//! The block R^-1 of Figure 9 of the report: tensions that produce the joint torque (eqs. 18-20), within a lower and an
+//! upper bound.
 
 use crate::model::Tendons;
 use crate::model::configuration::Unusable;
@@ -13,7 +14,8 @@ pub struct DistributedTensions {
     pub scale: f64,
 }
 
-/// t = Q (tau, tau_g) with the smallest tau_g that keeps t >= t_min. If t would exceed t_max, tau is scaled down.
+/// t = Q (tau, tau_g) with the joint torques tau and the smallest torque tau_g of the ghost joint that keeps t >=
+/// t_min. If t would exceed t_max, tau is scaled down.
 #[derive(Clone, Debug)]
 pub struct TensionDistribution {
     /// Q_i of eq. 17: joint torque, N cm, to tension, N.

@@ -25,7 +25,7 @@ pub struct Event {
     pub values: [f64; 4],
 }
 
-/// An event without its stamp.
+/// An event without its finger, cycle and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Occurrence {
     /// Kind of the event.

@@ -41,7 +41,7 @@ pub enum ValueKind {
     Pressure,
     /// The number of the rule.
     Rule,
-    /// The time since the set point was sent, ms.
+    /// The time since the last command of the planner, ms.
     Age,
 }
 
@@ -61,7 +61,7 @@ impl ValueKind {
             ValueKind::Element => "number of the element",
             ValueKind::Pressure => "force on the element, N",
             ValueKind::Rule => "number of the rule",
-            ValueKind::Age => "time since the set point was sent, ms",
+            ValueKind::Age => "time since the last command of the planner, ms",
         }
     }
 

@@ -11,7 +11,7 @@ pub enum Severity {
     Warning,
     /// The motors go to the configured end state, and calls for the finger are refused.
     Fault,
-    /// The hand does not open, or a call is refused. No finger is running that could stop.
+    /// The hand does not open, or a call is refused. No running finger stops.
     Refusal,
 }
 

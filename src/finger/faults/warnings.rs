@@ -16,7 +16,8 @@ pub(in crate::finger) struct RecentWarnings {
 }
 
 impl RecentWarnings {
-    /// Notes the warning of the next cycle, if there is one. Returns whether it has been absent for `cycles` cycles.
+    /// Notes the warning of the next cycle, if there is one. Returns whether the warning is new: it was absent for more
+    /// than `cycles` cycles.
     fn note(&mut self, warning: Option<&Fault>, cycles: u32) -> bool {
         self.cycle += 1;
         let Some(&Fault { kind, part, .. }) = warning else { return false };
@@ -34,7 +35,7 @@ impl RecentWarnings {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Warnings {
     newest: Option<Fault>,
-    /// Number of cycles until the newest warning is cleared.
+    /// Number of further cycles for which the newest warning is kept.
     left: u32,
     given: u64,
 }
@@ -52,8 +53,8 @@ impl Warnings {
         new
     }
 
-    /// Returns the newest warning. Returns `None` after the warning has been absent for the number of cycles that
-    /// [`Warnings::note`] was given.
+    /// Returns the newest warning. Returns `None` after the warning has been absent for more than the number of cycles
+    /// that [`Warnings::note`] was given.
     pub fn newest(&self) -> Option<Fault> {
         self.newest
     }

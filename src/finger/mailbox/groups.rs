@@ -68,9 +68,10 @@ impl ServoEnd {
         self.gate = gate;
     }
 
-    /// Discards all groups that wait. The servo does this when the finger recovers, because the groups are of an
-    /// earlier spring phase. The gate does not remember a group for hours, so an old group would never take effect, and
-    /// the later ones would wait for it.
+    /// Discards all groups that wait. The servo does this when the finger recovers, because the groups were sent in an
+    /// earlier spring phase ([`FingerReport::springs`](crate::finger::FingerReport::springs)). The gate compares group
+    /// numbers modulo 2^24. After some hours with many groups, an old group would seem not to be posted yet. It would
+    /// then never take effect, and the later groups would wait for it.
     pub fn discard_groups(&mut self) {
         while let Some(discarded) = self.next_group.take().or_else(|| self.grouped.pop()) {
             self.in_effect = discarded.group;

@@ -8,9 +8,10 @@ use crate::finger::sent::SentPath;
 use crate::finger::{Fault, Validity};
 
 impl Mailbox {
-    /// Sends a path that begins in period `origin`. `change` gets a copy of the set point that was sent last, and
-    /// moves it to the end of the path. The path was computed for the spring phase `spring`. Returns the number of the
-    /// path, or none if another spring phase has begun.
+    /// Sends a path that begins in period `origin`. `change` gets a copy of the set point that was sent last, and moves
+    /// it to the end of the path. `spring` is the number of the spring phase
+    /// ([`FingerReport::springs`](crate::finger::FingerReport::springs)) for which the path was computed. Returns the
+    /// number of the path, or none if another spring phase has begun.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. If `change` refuses the set point, the inner result is its error.

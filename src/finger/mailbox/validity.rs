@@ -18,8 +18,8 @@ impl Mailbox {
 }
 
 impl ServoEnd {
-    /// Returns the newest renewal, if there is one since the last call. The servo may receive a
-    /// renewal before the set point that it renews.
+    /// Returns the newest renewal, if there is one since the last call. The servo may receive a renewal before the set
+    /// point whose validity it renews.
     pub fn new_renewal(&mut self) -> Option<Renewal> {
         self.renewals.update().then(|| *self.renewals.output_buffer())
     }

@@ -4,7 +4,7 @@ use crate::finger::events::EventKind;
 use crate::model::FingerNumber;
 use nalgebra::{Matrix3, Vector3};
 
-/// A rule of a finger. It acts while the finger is a spring.
+/// A rule of a finger. It acts while the finger follows set points ([`Stage::Running`](crate::Stage::Running)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflex {
     /// What the rule reacts to.
@@ -56,7 +56,8 @@ pub enum Condition {
     /// The board has not replied for this time, s.
     LinkLost(f64),
     /// The planner has sent no set point for this time, s. A set point counts even if the finger does not follow it
-    /// because of an inhibition. A set point that is discarded because it is of an earlier spring phase does not count.
+    /// because of an inhibition. A set point that is discarded because it was sent before a recovery, a calibration or
+    /// a reaction does not count.
     PlannerSilent(f64),
 }
 
@@ -67,11 +68,11 @@ pub enum Condition {
 pub enum Reaction {
     /// The finger stops with a fault: its board goes to its end state.
     Stop,
-    /// The anchor of the spring goes where the joints are.
+    /// The anchor of the spring (the joint angles of the set point) moves to the present joint angles.
     Hold,
     /// The spring gets this Kx, N/cm, and the damping ratio 1.
     Soften(Matrix3<f64>),
-    /// The anchor of the spring goes to these joint angles, rad.
+    /// The anchor of the spring moves to these joint angles, rad.
     Retract(Vector3<f64>),
     /// The tip presses harder. Nothing happens while its spring presses with less than 0.05 N in the direction.
     Grip {

@@ -10,7 +10,7 @@ use crate::realtime::{LockedMemory, Output};
 
 /// What the conditions are evaluated with.
 pub(in crate::finger) struct Facts<'a> {
-    /// Number of this cycle.
+    /// Number of this period. Skipped periods count too.
     pub cycle: u64,
     /// Length of a period, s.
     pub period: f64,
@@ -27,7 +27,7 @@ pub(in crate::finger) struct Fired {
     /// Number of the rule.
     pub rule: u32,
     pub reaction: Reaction,
-    /// Number of the first cycle in which the finger follows its planner again.
+    /// Number of the first period in which the finger follows its planner again.
     pub inhibited_until: u64,
 }
 
@@ -51,7 +51,7 @@ struct RuleState {
     was_true: bool,
     /// Whether the rule has fired and waits for its reaction.
     waiting: bool,
-    /// The first cycle in which the rule may fire again.
+    /// The first period in which the rule may fire again.
     ready: u64,
     /// The count of another finger's events that the rule has read last.
     seen: u32,
@@ -74,7 +74,7 @@ impl ReflexServer {
         self.bulletin.count(self.finger, kinds);
     }
 
-    /// Forgets what has fired, because the finger is not a spring.
+    /// Forgets what has fired, because the finger does not follow set points.
     pub(in crate::finger) fn idle(&mut self) {
         self.occurred = 0;
         self.states = [RuleState::default(); MOST_RULES];

@@ -17,8 +17,8 @@ impl FingerServo {
         self.enter(Stage::Calibrating);
     }
 
-    /// Ends a path or an interpolation of a finger that is a spring. A calibration does not continue the motion, so
-    /// neither its commands nor the set point afterwards may contain a part of it.
+    /// Ends the path or the interpolation of a finger that follows set points. A calibration does not continue this
+    /// motion, so no part of the motion may remain in the commands of the calibration or in the set point afterwards.
     fn end_motion(&mut self) {
         if self.report.stage == Stage::Running {
             self.report.set_point.motion = None;
@@ -27,8 +27,10 @@ impl FingerServo {
         }
     }
 
-    /// Runs one step of the calibration, if there is one, and sets the finger's activity. If the servo begins to
-    /// compute with other data in this cycle, returns the previous data.
+    /// Runs one step of the calibration, if there is one and a reply has arrived, and sets the finger's activity.
+    /// Returns the data that the servo used before, if this cycle is computed with other data. This is so at the first
+    /// activity of the calibration. It is also so if the calibration ends without an activity, and planners have
+    /// replaced the data meanwhile.
     pub(super) fn calibrate(&mut self) -> Option<Adjustable> {
         let Calibrating { run, before } = self.calibration.as_mut()?;
         if !self.answered {
@@ -57,8 +59,8 @@ impl FingerServo {
     /// Returns to the stage before a calibration that has not moved the finger. If planners have replaced the data with
     /// which the servo computes, returns the previous data.
     fn go_on_from(&mut self, before: Before) -> Option<Adjustable> {
-        // Set points that planners sent meanwhile had no effect. The next change of a set point must not start from one
-        // of them. A new spring phase makes it start from the set point that the servo holds.
+        // Set points that planners sent meanwhile had no effect, so the next change of a set point must not start from
+        // one of them. In a new spring phase, the next change starts from the set point that the servo holds.
         self.report.springs += u32::from(before.stage == Stage::Running);
         self.report.expired_phase = None;
         self.motion.renewal = None;

@@ -19,7 +19,8 @@ use crate::model::configuration::{Configuration, ConfiguredHand, EndState, Unusa
 use crate::realtime::{CycleTiming, Producer};
 use nalgebra::{Matrix3, Vector3};
 
-/// Time for which every tendon must be under tension, with the motors still, before the finger becomes a spring, s.
+/// Time for which every tendon must be under tension, with the motors still, before the finger enters the stage
+/// `Running`, s.
 const TENSION_SETTLED: f64 = 0.02;
 
 /// No joint can be this far beyond its soft limits, rad. Its mechanical stops are closer, and the errors of measured

@@ -126,7 +126,7 @@ impl FingerServo {
         self.follow(set_point, sent.number);
         if moves {
             // The motion has not begun. Without a reply the detectors do not run, and a planner that waits for the
-            // arrival would see that of the set point before.
+            // arrival would see the arrival at the previous set point.
             self.report.arrival = Arrival::default();
         }
         if planned {

@@ -50,7 +50,7 @@ impl EventOutput {
         self.published = self.writer.publish(next);
     }
 
-    /// Starts the detectors anew, when the finger becomes a spring and holds this set point.
+    /// Restarts the detectors when the finger enters the stage `Running` and holds this set point.
     pub fn restart_detectors(&mut self, set_point: SetPoint) {
         self.detectors = DetectorState::holding(set_point);
     }

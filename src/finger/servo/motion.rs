@@ -36,8 +36,8 @@ impl FingerServo {
         }
     }
 
-    /// Sets the validity. It begins in the period `begin`, unless `validity.since` gives another beginning. A finger
-    /// that holds its pose after its set point has expired continues to hold this pose.
+    /// Sets the validity, which begins in the period `begin`. The time that has already passed since `validity.since`
+    /// is deducted from it. A finger that holds its pose after its set point has expired continues to hold this pose.
     fn set_validity(&mut self, begin: u64, validity: &Validity) {
         let (hold, end) = self.adjustable.motion.times(validity);
         let past = validity.since.map_or(0.0, |since| self.report.last.saturating_sub(since) as f64 * 1e-9);
@@ -49,7 +49,7 @@ impl FingerServo {
         self.motion.expiry = (expiry.expires.min(expiry.ends) != NEVER).then_some(expiry);
     }
 
-    /// Moves the set point of a finger that is a spring to its place in this period.
+    /// Moves the set point of a finger in the stage `Running` to its place in this period.
     pub(super) fn move_set_point(&mut self) {
         self.report.reference.period = self.motion.next_period;
         if self.report.stage != Stage::Running {

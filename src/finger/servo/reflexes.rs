@@ -24,8 +24,8 @@ impl FingerServo {
         self.reflexes.server.iter_mut().for_each(|server| server.note(kinds));
     }
 
-    /// Evaluates the rules of a finger that is a spring, and carries out the reaction of one that has fired. `skipped`
-    /// is the number of periods that will be skipped after this cycle.
+    /// Evaluates the rules of a finger in the stage `Running`, and carries out the reaction of one that has fired.
+    /// `skipped` is the number of periods that will be skipped after this cycle.
     pub(super) fn react(&mut self, skipped: u64) {
         let period = self.motion.next_period;
         // Tactile events of this cycle have arrived before this point.

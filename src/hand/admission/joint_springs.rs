@@ -12,9 +12,10 @@ use nalgebra::{Matrix3, Vector3};
 const UNREACHABLE: f64 = 1e9;
 
 impl Admission {
-    /// Checks that K_theta, N cm/rad, is symmetric, positive semi-definite and within the bound, and returns it. The
-    /// argument is `rows[row][column]`. The bound of an eigenvalue is the bound of Kx times the square of the last
-    /// link's length; [`JointSpring::equivalent`](crate::control::JointSpring::equivalent) gives the reason.
+    /// Checks that the joint stiffness K_theta, N cm/rad, is symmetric, positive semi-definite and within the bound,
+    /// and returns it. The argument is `rows[row][column]`. The bound of an eigenvalue is the bound of Kx times the
+    /// square of the last link's length; [`JointSpring::equivalent`](crate::control::JointSpring::equivalent) gives the
+    /// reason.
     pub fn k_theta(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
         let finger = self.finger;
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);

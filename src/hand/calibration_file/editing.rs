@@ -3,7 +3,8 @@
 use crate::hand::found::{Numbers, rounded, with_signs};
 use toml_edit::{Array, Item, Table, TableLike, Value};
 
-/// The values to write, and whether they form an array. `present` contains the numbers that the key has in the file.
+/// The values to write, and whether they form an array. `present` contains the numbers that the key has in the file, or
+/// its default values.
 pub(super) fn written(numbers: &Numbers, present: &[f64]) -> (Vec<Value>, bool) {
     match numbers {
         Numbers::Whole(values) => (values.iter().map(|&value| value.into()).collect(), true),
@@ -17,8 +18,8 @@ pub(super) fn written(numbers: &Numbers, present: &[f64]) -> (Vec<Value>, bool) 
     }
 }
 
-/// Writes values to a key in the table `section`. `present` contains the numbers that the key has now, in this table or
-/// in the table for all fingers. If the key is in this table, its comments and layout are kept.
+/// Writes values to a key in the table `section`. `present` contains the numbers that the key has now, in this table,
+/// in the table for all fingers or by default. If the key is in this table, its comments and layout are kept.
 pub(super) fn set(section: &mut dyn TableLike, key: &str, values: Vec<Value>, array: bool, present: &[f64]) {
     if array {
         match section.get_mut(key).and_then(Item::as_array_mut) {

@@ -15,13 +15,13 @@ use toml_edit::{Document, Item, Table, Value};
 /// The tables that a configuration file may have. Other programs read the tables `serve` and `remote`.
 const TABLES: [&str; 5] = ["hand", "telemetry", "finger", "serve", "remote"];
 
-/// The keys of a finger whose tables have one key, which is a choice.
+/// The keys of a finger whose value is a table with a single key, which selects a variant.
 const CHOICES: [&str; 1] = ["surface"];
 
 /// What the text says, apart from the values.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Said {
-    /// For each finger, whether the text names its port.
+    /// For each finger, whether the text names its port or board, or `parse_with` has replaced its port.
     pub ports: [bool; FINGERS],
     /// Whether the text has the table `remote`.
     pub remote: bool,

@@ -42,8 +42,8 @@ pub struct Publishing {
 }
 
 impl Publishing {
-    /// Makes the hand known to readers. Returns none if this is not configured. If the system refuses it, prints a
-    /// notice and returns none, because a hand works without readers.
+    /// Makes the hand known to readers. Returns none if telemetry is not enabled. If the system refuses the socket,
+    /// prints a notice and returns none, because a hand works without readers.
     pub(super) fn start(
         configuration: &Configuration,
         members: Arc<Vec<Member>>,

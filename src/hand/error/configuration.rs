@@ -36,10 +36,10 @@ pub enum ConfigurationError {
         /// The file that such a program reads.
         system: &'static str,
     },
-    /// The configuration file has an error.
+    /// The configuration file or text has an error.
     #[error("{}{}: {reason}", ShownPath(file), line.map(|line| format!(":{line}")).unwrap_or_default())]
     Invalid {
-        /// The file.
+        /// The file, or `configuration text`.
         file: PathBuf,
         /// The line of the key, from 1; none if the key is not in the file.
         line: Option<usize>,
@@ -56,10 +56,11 @@ pub enum ConfigurationError {
         /// The configuration file.
         file: PathBuf,
     },
-    /// A configuration that was made by a program, and not read from a file, has an error.
+    /// A configuration cannot be used: a program has made or changed it with an error, or it does not fit the hardware
+    /// or the folders of this machine.
     #[error("{section}.{}: {}", unusable.key, unusable.reason)]
     Unusable {
-        /// `hand`, or `finger.1` to `finger.3`.
+        /// `hand`, `telemetry`, or `finger.1` to `finger.3`.
         section: String,
         /// The key and the reason.
         unusable: Unusable,

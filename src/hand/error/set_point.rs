@@ -175,7 +175,8 @@ pub enum SetPointError {
         finger: FingerNumber,
         /// The requested ratio to the damping that the controller chooses.
         ratio: f64,
-        /// Largest eigenvalue of the stiffness in force, N/cm.
+        /// Largest eigenvalue of the stiffness of the refused set point, N/cm. Rotational and joint stiffnesses are
+        /// converted to N/cm.
         stiffness: f64,
         /// The smallest permitted ratio.
         least: f64,

@@ -71,7 +71,7 @@ impl EventQueue {
         self.shared.wait_until(deadline(limit), || false)
     }
 
-    /// Returns whether the hand is closed. Then there are no later events.
+    /// Returns whether the hand is closed or being closed. While it is being closed, events may still come.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.shared.source.is_closed()

@@ -21,7 +21,7 @@ impl EventSource {
         Self { logs, readers, closed: AtomicBool::new(false), period }
     }
 
-    /// Ends all waits, because there are no more events.
+    /// Ends each wait as soon as no event is left for it, because the hand is being closed.
     pub fn close(&self) {
         self.closed.store(true, Ordering::Release);
         self.readers.notify();

@@ -78,21 +78,24 @@ impl Plan {
 impl Admission {
     /// Computes the path from `reference` through `poses`, and checks it.
     ///
-    /// A slow path that begins in motion would leave the joint limits: an acceleration of 0.1 rad/s^2 that a path
-    /// changes over 30 s moves a joint by several rad. If a path is refused, the motion therefore ends first.
+    /// A slow path that begins in motion may leave the joint limits: an acceleration of 0.1 rad/s^2 that a path changes
+    /// over 30 s moves a joint by several rad. If the path that continues the motion is refused, a path that first
+    /// brakes to rest is tried instead. If it is refused too, the first refusal is returned.
     pub fn path(&self, reference: &Reference, poses: &[PathPose]) -> Result<Plan, PathError> {
         self.direct_path(reference, poses).or_else(|refusal| self.path_after_braking(reference, poses).ok_or(refusal))
     }
 
-    /// Computes a path that begins with [`BRAKING`]. Returns none if the finger rests, or would refuse this path, too.
+    /// Computes a path that first brakes to rest for [`BRAKING`]. Returns none if `reference` is at rest, or if this
+    /// path must be refused too.
     fn path_after_braking(&self, reference: &Reference, poses: &[PathPose]) -> Option<Plan> {
         let start = start_of(reference);
         if [start.rates, start.accelerations, start.jerk].iter().all(|derivative| derivative.amax() == 0.0) {
             return None;
         }
-        // Large accelerations and jerks of a filtered step end by themselves. The servo filters the difference.
+        // The path begins with zero acceleration and jerk. After a step of the set point, the set point filter can give
+        // large ones, but they end by themselves. The servo filters the difference.
         let start = Start { accelerations: Vector3::zeros(), jerk: Vector3::zeros(), ..start };
-        // A constant deceleration ends here.
+        // A constant deceleration to rest within BRAKING ends at this place.
         let place = start.place + start.rates * (BRAKING / 2.0);
         let mut pieces = spline(&start, &[Knot { time: BRAKING, place }]);
         self.check_joint_limits(&pieces, 1, &start.place).ok()?;

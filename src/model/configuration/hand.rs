@@ -101,7 +101,7 @@ pub struct ConfiguredHand {
     pub release_ramp_ms: u16,
     /// Time without a command after which the board goes to its end state, ms: 2 to 1000.
     pub watchdog_ms: u16,
-    /// Whether opening the hand checks the wiring of every finger before the finger becomes a spring.
+    /// Whether opening the hand checks the wiring of every finger before the finger follows set points.
     pub self_test: bool,
     /// Time-out for the board's reply and for the tensioning of a finger during open, ms. It is a time and not a number
     /// of cycles.

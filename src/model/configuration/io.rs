@@ -1,4 +1,4 @@
-//! Fingers whose hardware the program provides. The configuration file has no key for such fingers.
+//! Fingers whose hardware the calling program drives (`FingerIo`). The configuration file has no key for such fingers.
 
 use super::ConfiguredFinger;
 use crate::model::finger_number::FingerNumber;
@@ -13,7 +13,7 @@ impl ConfiguredFinger {
         self.port.starts_with(IO_PORT)
     }
 
-    /// Gives the finger with this number hardware of the program instead of its port.
+    /// Replaces the port of the finger with this number by hardware that the program provides.
     pub fn provide(&mut self, number: FingerNumber) {
         (self.port, self.board) = (format!("{IO_PORT}{number}"), None);
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// The parameters of a simulated finger: `[finger.simulation]`. The defaults are plausible for a finger of this size
 /// with small geared motors. No value was compared with the real hand. Units are SI, except that stiffnesses are in
-/// N/cm, the lengths of a surface in cm, and angles in degrees.
+/// N/cm, the lengths of a surface in cm, angles in degrees, and the delay and lag of the amplifiers in ms.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredSimulation {

@@ -34,7 +34,7 @@ const ONLY: EndFactors = &[
 ];
 
 /// Returns the coefficients of a piece with these places and motions at its beginning and its end. `jerk` is the jerk
-/// at the beginning if the piece is the first one. The last piece ends without jerk.
+/// at the beginning if the piece is the first one. The last piece ends without jerk. `h` is the length of the piece, s.
 pub(super) fn coefficients(
     (begin, end): (Vector3<f64>, Vector3<f64>),
     (from, to): (AtKnot, AtKnot),

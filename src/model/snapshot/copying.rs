@@ -9,8 +9,8 @@ use serde::{Serialize, Serializer};
 /// Copies a value.
 ///
 /// # Errors
-/// Returns an error if the value contains a map, bytes, a character, a floating-point number of 32 bits, or an integer
-/// of 128 bits.
+/// Returns an error if the value contains a map, bytes, a character, a unit, a variant with several unnamed fields, a
+/// floating-point number of 32 bits, or an integer of 128 bits.
 pub fn snapshot<T: Serialize + ?Sized>(value: &T) -> Result<Snapshot, Unsupported> {
     value.serialize(Copying)
 }

@@ -6,7 +6,7 @@ use nalgebra::Vector4;
 
 impl ConfiguredFinger {
     /// Checks that every motor can pull its tendon to the pretension against friction, also when it is warm. Otherwise
-    /// a finger that does nothing could follow no torque, or would overheat.
+    /// the finger could give no joint torque, or would overheat at rest.
     pub(super) fn check_pretension(&self) -> Result<(), Unusable> {
         let Ok(tendons) = self.tendons() else { return Ok(()) };
         let past_conduit = Vector4::from(self.friction.conduit).add_scalar(1.0);

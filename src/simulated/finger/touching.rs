@@ -6,12 +6,12 @@ use crate::simulated::pads::TipContact;
 use nalgebra::Vector3;
 
 impl SimulatedFinger {
-    /// Returns the answer to a request, or none if the finger has no tactile elements.
+    /// Returns the answer to a request, or `None` if the finger has no tactile elements.
     pub(in crate::simulated) fn touched(&mut self, request: &TactileRequest) -> Option<TactileEvent> {
         self.pads.exist().then(|| self.pads.fetch(request.received))
     }
 
-    /// Passes the force on the tip to the tactile elements.
+    /// Passes the force on the tip and its sliding velocity to the tactile elements.
     pub(super) fn feel(&mut self) {
         if self.pads.exist() {
             let turn = self.plant.links().tip_rotation(&self.plant.joints()).inverse();

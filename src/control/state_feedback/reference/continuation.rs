@@ -50,7 +50,7 @@ impl Reference {
     }
 }
 
-/// Returns where a set point was a period, s, ago. Its snap is considered constant.
+/// Returns the joint angles and the motion that a set point had one period, s, ago. Its snap is considered constant.
 fn before(joints: &Vector3<f64>, motion: &Motion, period: f64) -> (Vector3<f64>, Motion) {
     let Motion { rates, accelerations, jerk, snap } = *motion;
     let [one, two, three, four] = [period, period.powi(2) / 2.0, period.powi(3) / 6.0, period.powi(4) / 24.0];
