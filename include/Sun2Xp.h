@@ -160,7 +160,7 @@
 
    The file must be a regular file of at most 1 MiB. If it names neither a port nor a board for a finger,
    the finger is simulated, and announced too; with port = "simulated" it is not announced. OpenHand
-   refuses a file that names a real port or board for one finger, and none of the two for another.
+   refuses a file that names a real port or board for one finger, and neither of the two for another.
 
    A program that is setuid or setgid, or whose file has capabilities, does not trust its
    environment and working directory, which belong to its caller. It reads only

@@ -56,7 +56,7 @@ public:
     int system_errno() const noexcept { return system_errno_; }
     /// Name of the C call.
     const std::string &call() const noexcept { return call_; }
-    /// C calls that help, separated by commas; empty if what() has another remedy.
+    /// C calls that help, separated by commas; empty if no call helps. what() always has the whole remedy.
     const std::string &remedy() const noexcept { return remedy_; }
 
 private:
@@ -114,7 +114,7 @@ public:
         return last_;
     }
 
-    /// Removes a function. It is destroyed when it has returned.
+    /// Removes a function. Its function object is destroyed when no call of it is running any more.
     void remove(std::uintptr_t number)
     {
         std::shared_ptr<event_callback> removed;

@@ -136,8 +136,8 @@ fn inject_all(cases: &[Case], rate: f64, times: u64, warns: bool) -> Vec<String>
 
 fn inject_everything(times: u64) {
     println!(
-        "| injected | rate, Hz | reported as | detectable after, ms | then reported after, ms \
-         | then end state after, ms |"
+        "| injected | rate, Hz | reported as | detectable after, ms \
+         | reported this long after that moment, ms | end state this long after that moment, ms |"
     );
     println!("|---|---|---|---|---|---|");
     let mut wrong = inject_all(&of_the_finger(), 1000.0, times, false);
