@@ -178,11 +178,11 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 ///
 ///                                     1000 Hz and above    below 1000 Hz
 ///   state feedback         smallest   0.40 + 0.09 k        0.70 + 0.07 k
-///                          largest    2.50 - 0.22 k        2.00 - 0.20 k
+///                          largest    2.10 - 0.19 k        2.00 - 0.20 k
 ///   figures 9, 10, 11      smallest   1                    1
 ///                          largest    2.50 - 0.22 k        2.00 - 0.20 k
 ///
-/// By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. If the smallest ratio of the
+/// By default the range is 0.67 to 1.53 at 3 N/cm and 0.94 to 1 at 6 N/cm. If the smallest ratio of the
 /// table is above 1, or the largest is below 1, the limit is 1 instead: 1 is always admitted. For a
 /// finger with other links or tendons, k is first multiplied by 12.3 N/cm divided by S. S is the smallest
 /// stiffness that the tendons give the tip in any direction, with locked motors and with the joints in the

@@ -275,8 +275,11 @@ impl Controller {
         state.age = 0;
 
         let report = &mut state.report;
-        report.joints = self.joint_positions.joints(&motor_angles, &state.tensions);
-        report.joint_rates = self.joint_positions.joint_rates(&state.motor_speeds);
+        // State feedback observes the joints itself.
+        if self.state_feedback.is_none() || state.state_feedback.is_none() {
+            report.joints = self.joint_positions.joints(&motor_angles, &state.tensions);
+            report.joint_rates = self.joint_positions.joint_rates(&state.motor_speeds);
+        }
         report.tensions = tensions;
         report.under_tension = tensions.min() >= self.tight && state.stillness.at_rest();
     }

@@ -2,6 +2,24 @@
 
 use nalgebra::{Matrix3, Matrix6x3, UnitQuaternion, Vector3};
 
+/// Sines and cosines of the joint angles of a pose. A servo cycle computes them once for everything that needs them.
+#[derive(Clone, Copy, Debug)]
+pub struct JointSines {
+    /// sin theta.
+    pub sin: [f64; 3],
+    /// cos theta.
+    pub cos: [f64; 3],
+}
+
+impl JointSines {
+    /// Computes them at joint angles, rad.
+    #[inline]
+    pub fn of(theta: &Vector3<f64>) -> Self {
+        let [(s0, c0), (s1, c1), (s2, c2)] = [theta[0].sin_cos(), theta[1].sin_cos(), theta[2].sin_cos()];
+        Self { sin: [s0, s1, s2], cos: [c0, c1, c2] }
+    }
+}
+
 /// The link lengths l0, l1, l2 of a finger, cm (section 5.5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Links(pub [f64; 3]);
@@ -22,15 +40,14 @@ impl Links {
 
     /// Returns the Jacobian of [`Links::tip`], eq. 8, cm/rad. Rows are x, y, z, and columns are joints.
     pub fn jacobian(&self, theta: &Vector3<f64>) -> Matrix3<f64> {
-        self.jacobian_turned(theta[0].sin_cos(), theta)
+        self.jacobian_at(&JointSines::of(theta))
     }
 
-    /// Returns [`Links::jacobian`]. The sine and cosine of joint 0 come from the caller, which needs them too.
+    /// Returns [`Links::jacobian`] at a pose whose sines the caller has.
     #[inline]
-    fn jacobian_turned(&self, (s0, c0): (f64, f64), theta: &Vector3<f64>) -> Matrix3<f64> {
+    fn jacobian_at(&self, pose: &JointSines) -> Matrix3<f64> {
         let [l0, l1, l2] = self.0;
-        let (s1, c1) = theta[1].sin_cos();
-        let (s2, c2) = theta[2].sin_cos();
+        let JointSines { sin: [s0, s1, s2], cos: [c0, c1, c2] } = *pose;
         let s12 = c1 * s2 + s1 * c2; // eq. 11
         let c12 = c1 * c2 - s1 * s2; // eq. 12
         let reach = l0 + l1 * c1 + l2 * c12;
@@ -74,9 +91,15 @@ impl Links {
     /// [`Links::jacobian`], cm/rad. Rows 3 to 5 belong to the rotation of [`Links::tip_rotation`], rad/rad, and their
     /// columns are the axes of the joints.
     pub fn spatial_jacobian(&self, theta: &Vector3<f64>) -> Matrix6x3<f64> {
-        let (s0, c0) = theta[0].sin_cos();
+        self.spatial_jacobian_at(&JointSines::of(theta))
+    }
+
+    /// Returns [`Links::spatial_jacobian`] at a pose whose sines the caller has.
+    #[inline]
+    pub fn spatial_jacobian_at(&self, pose: &JointSines) -> Matrix6x3<f64> {
+        let (s0, c0) = (pose.sin[0], pose.cos[0]);
         let mut jacobian = Matrix6x3::zeros();
-        jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.jacobian_turned((s0, c0), theta));
+        jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.jacobian_at(pose));
         #[rustfmt::skip]
         let axes = Matrix3::new(
             0.0, c0, c0,

@@ -5,7 +5,7 @@
 //! finger's plane. The normal is a principal axis of every link, and the centres of mass are in the plane, so the
 //! inertia matrix does not couple joint 0 with the other joints.
 
-use crate::model::{LinkMomentum, LinkWeight, Links};
+use crate::model::{JointSines, LinkMomentum, LinkWeight, Links};
 use nalgebra::{Matrix3, Vector3};
 
 /// A link as a rigid body.
@@ -32,6 +32,11 @@ pub struct LinkDynamics {
     length: [f64; 3],
     link: [Cylinder; 3],
     tip_mass: f64,
+    /// The inertia of links 1 and 2 about joint 1, without the part that depends on theta_2: of link 1 with what it
+    /// carries at its end, and of link 2 alone, kg m^2.
+    bent: [f64; 2],
+    /// Coefficient of cos(theta_2) in the inertia that couples joints 1 and 2, kg m^2.
+    coupling: f64,
     /// Gravity in the finger's frame, m/s^2.
     gravity: Vector3<f64>,
     weight: LinkWeight,
@@ -42,8 +47,13 @@ impl LinkDynamics {
     /// in the finger's frame, m/s^2.
     pub fn new(links: Links, mass: [f64; 4], radii: [f64; 3], gravity: Vector3<f64>) -> Self {
         let length = links.0.map(|cm| cm * 0.01);
-        let link = std::array::from_fn(|i| Cylinder::new(mass[i], radii[i], length[i]));
-        Self { length, link, tip_mass: mass[3], gravity, weight: LinkWeight::new(links, mass) }
+        let link: [Cylinder; 3] = std::array::from_fn(|i| Cylinder::new(mass[i], radii[i], length[i]));
+        let ([_, l1, l2], [_, link1, link2], tip_mass) = (length, link, mass[3]);
+        let proximal = link1.transverse + link1.mass * l1 * l1 / 4.0 + (link2.mass + tip_mass) * l1 * l1;
+        let distal = link2.transverse + link2.mass * l2 * l2 / 4.0 + tip_mass * l2 * l2;
+        let coupling = (link2.mass / 2.0 + tip_mass) * l1 * l2;
+        let weight = LinkWeight::new(links, mass);
+        Self { length, link, tip_mass, bent: [proximal, distal], coupling, gravity, weight }
     }
 
     /// Sets gravity in the finger's frame, m/s^2.
@@ -53,15 +63,18 @@ impl LinkDynamics {
 
     /// Returns the inertia matrix H(theta), kg m^2.
     pub fn inertia(&self, theta: &Vector3<f64>) -> Matrix3<f64> {
-        self.inertia_at(&Pose::new(self, theta), self.coupling() * theta[2].cos())
+        self.inertia_at(theta, &JointSines::of(theta))
     }
 
-    /// Returns the inertia matrix H(theta), kg m^2. `coupled` is [`Self::coupling`] times cos(theta_2).
-    fn inertia_at(&self, pose: &Pose, coupled: f64) -> Matrix3<f64> {
-        let [_, l1, l2] = self.length;
-        let [_, link1, link2] = self.link;
-        let proximal = link1.transverse + link1.mass * l1 * l1 / 4.0 + (link2.mass + self.tip_mass) * l1 * l1;
-        let distal = link2.transverse + link2.mass * l2 * l2 / 4.0 + self.tip_mass * l2 * l2;
+    /// Returns the inertia matrix H(theta), kg m^2, at a pose whose sines the caller has.
+    #[inline]
+    pub fn inertia_at(&self, theta: &Vector3<f64>, sines: &JointSines) -> Matrix3<f64> {
+        self.coupled_inertia(&Pose::new(self, theta, sines), self.coupling * sines.cos[2])
+    }
+
+    /// Returns the inertia matrix H(theta), kg m^2. `coupled` is the coupling times cos(theta_2).
+    fn coupled_inertia(&self, pose: &Pose, coupled: f64) -> Matrix3<f64> {
+        let [proximal, distal] = self.bent;
         let (h11, h12) = (proximal + distal + 2.0 * coupled, distal + coupled);
         Matrix3::new(self.about_joint_0(pose), 0.0, 0.0, 0.0, h11, h12, 0.0, h12, distal)
     }
@@ -69,9 +82,15 @@ impl LinkDynamics {
     /// Returns c(theta, theta_dot), the Coriolis and centrifugal torques, N m. Their sign is such that the joint
     /// torques equal H theta_dd + c.
     pub fn coriolis(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64> {
-        let pose = Pose::new(self, theta);
+        self.coriolis_at(theta, &JointSines::of(theta), rate)
+    }
+
+    /// Returns [`LinkDynamics::coriolis`] at a pose whose sines the caller has.
+    #[inline]
+    pub fn coriolis_at(&self, theta: &Vector3<f64>, sines: &JointSines, rate: &Vector3<f64>) -> Vector3<f64> {
+        let pose = Pose::new(self, theta, sines);
         let (by_1, by_2) = self.about_joint_0_derivatives(&pose);
-        let bend = self.coupling() * theta[2].sin();
+        let bend = self.coupling * sines.sin[2];
         Vector3::new(
             rate[0] * (by_1 * rate[1] + by_2 * rate[2]),
             -bend * rate[2] * (2.0 * rate[1] + rate[2]) - 0.5 * by_1 * rate[0] * rate[0],
@@ -81,15 +100,14 @@ impl LinkDynamics {
 
     /// Returns the momentum of the links at a pose.
     pub fn momentum(&self, theta: &Vector3<f64>) -> LinkMomentum {
-        let pose = Pose::new(self, theta);
+        let pose = Pose::new(self, theta, &JointSines::of(theta));
         let (sin, cos) = (pose.s12 * pose.c1 - pose.c12 * pose.s1, pose.c12 * pose.c1 + pose.s12 * pose.s1);
         let (by_1, by_2) = self.about_joint_0_derivatives(&pose);
-        let coupling = self.coupling();
         LinkMomentum {
-            inertia: self.inertia_at(&pose, coupling * cos),
+            inertia: self.coupled_inertia(&pose, self.coupling * cos),
             by_1: 0.5 * by_1,
             by_2: 0.5 * by_2,
-            bend: coupling * sin,
+            bend: self.coupling * sin,
         }
     }
 
@@ -106,12 +124,6 @@ impl LinkDynamics {
     /// Returns the kinetic energy of the links, J.
     pub fn kinetic_energy(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> f64 {
         0.5 * rate.dot(&(self.inertia(theta) * rate))
-    }
-
-    /// Returns the coefficient of cos(theta_2) in the inertia that couples joints 1 and 2, kg m^2.
-    fn coupling(&self) -> f64 {
-        let [_, l1, l2] = self.length;
-        (self.link[2].mass / 2.0 + self.tip_mass) * l1 * l2
     }
 
     /// Returns the inertia about the axis of joint 0, kg m^2.
@@ -153,9 +165,9 @@ struct Pose {
 }
 
 impl Pose {
-    fn new(finger: &LinkDynamics, theta: &Vector3<f64>) -> Self {
+    fn new(finger: &LinkDynamics, theta: &Vector3<f64>, sines: &JointSines) -> Self {
         let [l0, l1, l2] = finger.length;
-        let (s1, c1) = theta[1].sin_cos();
+        let (s1, c1) = (sines.sin[1], sines.cos[1]);
         let (s12, c12) = (theta[1] + theta[2]).sin_cos();
         let elbow = l0 + l1 * c1;
         let reach = [l0 / 2.0, l0 + l1 * c1 / 2.0, elbow + l2 * c12 / 2.0, elbow + l2 * c12];

@@ -26,7 +26,7 @@ pub use direction::direction;
 pub use finger_number::FingerNumber;
 pub use fingers::Fingers;
 pub use inverse_kinematics::{InverseKinematics, OutOfReach};
-pub use kinematics::Links;
+pub use kinematics::{JointSines, Links};
 pub use link_dynamics::LinkDynamics;
 pub use link_momentum::LinkMomentum;
 pub(crate) use link_weight::LinkWeight;

@@ -7,6 +7,7 @@ use crate::control::spring::soft_limits::Push;
 use crate::control::spring::spring_transition::Spring;
 use crate::control::state_feedback::decision::Decision;
 use crate::control::tendons::tension_distribution::DistributedTensions;
+use crate::model::JointSines;
 use nalgebra::{Matrix3, Vector3};
 
 /// With Figures 9, 10 and 11 a damper acts at the soft limits. This is its damping divided by the stiffness of the
@@ -55,14 +56,25 @@ impl Controller {
     /// without deflection.
     pub(super) fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
         let (spring, joint_spring) = self.spring_transition.advance(&mut state.spring, set_point);
-        let k_theta = self.joint_stiffness.joint_stiffness(spring, &state.report.joints);
+        let mut pose = JointSines::of(&state.report.joints);
+        let k_theta = self.joint_stiffness.joint_stiffness_at(spring, &pose);
         let push = self.soft_limits.push(&state.report.joints);
         let scale = self.supported(&mut state.report, &k_theta, joint_spring, &push);
-        let spring = &Spring { stiffness: spring.stiffness * scale, ..*spring };
+        let softened;
+        let spring = if scale == 1.0 {
+            spring
+        } else {
+            softened = Spring { stiffness: spring.stiffness * scale, ..*spring };
+            &softened
+        };
         let joint_spring = &joint_spring.map(|joint_spring| joint_spring.softened(scale));
         let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
         };
+        // In the first cycle after another scheme, the report has the joints of the motors.
+        if elastic.joints != state.report.joints {
+            pose = JointSines::of(&elastic.joints);
+        }
         let limit = self.heating.limit(&state.heat);
         let begins = !matches!(state.doing, Doing::Following(_));
         state.doing = Doing::Following(elastic.joints);
@@ -70,7 +82,7 @@ impl Controller {
         let springs = (spring, joint_spring, &set_point.motion);
         let gravity = (&self.gravity, &state.gravity);
         let Decision { pulls, against_friction, joint_torques, desired_tensions, torque_scale } =
-            law.decide(elastic, springs, begins, &self.soft_limits, gravity, &distribution);
+            law.decide(elastic, &pose, springs, begins, &self.soft_limits, gravity, &distribution);
         state.against_friction = against_friction;
         self.command_pulls(state, &pulls, &limit, false);
         state.report.joint_torques = joint_torques;

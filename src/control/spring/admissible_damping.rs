@@ -112,6 +112,6 @@ mod tests {
     fn the_default_controller_has_the_ranges_of_the_manual() {
         let admissible = AdmissibleDamping::new(&ConfiguredFinger::default(), 1000.0);
         let ranges = [0.0, 1.0, 3.0, 6.0].map(|stiffness| admissible.range(stiffness));
-        assert_eq!(ranges, [(0.4, 2.5), (0.49, 2.28), (0.67, 1.84), (0.94, 1.18)]);
+        assert_eq!(ranges, [(0.4, 2.1), (0.49, 1.91), (0.67, 1.53), (0.94, 1.0)]);
     }
 }

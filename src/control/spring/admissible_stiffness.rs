@@ -47,9 +47,22 @@ impl AdmissibleStiffness {
     /// limits, the trace is used instead of the largest eigenvalue, because it is at least as large.
     #[inline]
     pub fn scale(&self, k_theta: &Matrix3<f64>, limits: &Vector3<f64>) -> f64 {
-        let [largest, ..] = eigenvalues(&(self.inverse * k_theta * self.inverse.transpose()));
+        let [largest, ..] = eigenvalues(&self.used(k_theta));
         let left = self.share - limits.dot(&self.compliance);
         if largest > left { left / largest } else { 1.0 }
+    }
+
+    /// Returns L^-1 K_theta L^-T. The products with the zeros above the diagonal of L^-1 are left out.
+    #[inline]
+    fn used(&self, k_theta: &Matrix3<f64>) -> Matrix3<f64> {
+        let l = &self.inverse;
+        let lower = |row: usize, [a, b, c]: [f64; 3]| match row {
+            0 => l[(0, 0)] * a,
+            1 => l[(1, 0)] * a + l[(1, 1)] * b,
+            _ => l[(2, 0)] * a + l[(2, 1)] * b + l[(2, 2)] * c,
+        };
+        let half = Matrix3::from_fn(|row, column| lower(row, k_theta.column(column).into_owned().into()));
+        Matrix3::from_fn(|row, column| lower(column, [half[(row, 0)], half[(row, 1)], half[(row, 2)]]))
     }
 
     /// Returns the largest stiffness that each joint can have while the other joints have none, N cm/rad.

@@ -2,7 +2,7 @@
 //! parallel.
 
 use crate::control::spring::spring_transition::Spring;
-use crate::model::Links;
+use crate::model::{JointSines, Links};
 use nalgebra::{Matrix3, Matrix6, Matrix6x3, Vector3};
 
 /// Stiffness Kx at which beta equals `rate_time`, N/cm.
@@ -89,7 +89,13 @@ impl JointStiffness {
 
     /// Returns K_theta of eq. 6 plus the additional stiffness of joint 0 with the tip near its axis, N cm/rad.
     pub fn joint_stiffness(&self, spring: &Spring, joints: &Vector3<f64>) -> Matrix3<f64> {
-        self.posed(spring, joints).k_theta
+        self.joint_stiffness_at(spring, &JointSines::of(joints))
+    }
+
+    /// Returns [`JointStiffness::joint_stiffness`] at a pose whose sines the caller has.
+    pub(crate) fn joint_stiffness_at(&self, spring: &Spring, pose: &JointSines) -> Matrix3<f64> {
+        let jacobian = self.links.spatial_jacobian_at(pose);
+        k_theta(&jacobian, &(&spring.stiffness * &jacobian), hold(&spring.stiffness, &jacobian))
     }
 
     /// Returns tau of the spring alone, N cm. The report's law is K_theta (theta_d - theta), eqs. 3 and 6. The exact
@@ -101,15 +107,28 @@ impl JointStiffness {
     /// Computes a spring at joint angles, rad.
     #[inline]
     pub(crate) fn posed(&self, spring: &Spring, joints: &Vector3<f64>) -> PosedSpring<'_> {
-        let jacobian = self.links.spatial_jacobian(joints);
-        let stiffened = spring.stiffness * jacobian;
-        let mut k_theta = jacobian.tr_mul(&stiffened);
+        self.posed_at(spring, joints, &JointSines::of(joints))
+    }
+
+    /// Returns [`JointStiffness::posed`] at a pose whose sines the caller has.
+    #[inline]
+    pub(crate) fn posed_at(&self, spring: &Spring, joints: &Vector3<f64>, pose: &JointSines) -> PosedSpring<'_> {
+        let jacobian = self.links.spatial_jacobian_at(pose);
+        let stiffened = &spring.stiffness * &jacobian;
         let hold = hold(&spring.stiffness, &jacobian);
-        k_theta[(0, 0)] += hold;
+        let k_theta = k_theta(&jacobian, &stiffened, hold);
         let Spring { exact, damping, .. } = *spring;
         let tip = tip(&jacobian);
         PosedSpring { of: self, joints: *joints, exact, damping, tip, stiffened, scale: 1.0, hold, k_theta }
     }
+}
+
+/// Returns K_theta, N cm/rad, from J, from K J, and from the additional stiffness of joint 0.
+#[inline]
+fn k_theta(jacobian: &Matrix6x3<f64>, stiffened: &Matrix6x3<f64>, hold: f64) -> Matrix3<f64> {
+    let mut k_theta = jacobian.tr_mul(stiffened);
+    k_theta[(0, 0)] += hold;
+    k_theta
 }
 
 /// Returns the position of the tip, cm, from the Jacobian of its motion, which already contains the sines of the pose.

@@ -49,7 +49,9 @@ fn inverse(matrix: &Matrix3<f64>) -> Matrix3<f64> {
 /// iteration, so it always takes the same time.
 fn square_root(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     let square = matrix * matrix;
-    let [a, b, c] = eigenvalues(matrix).map(|eigenvalue| eigenvalue.max(0.0).sqrt());
+    let [a, b, c] = eigenvalues(matrix);
+    let root = |eigenvalue: f64| eigenvalue.max(0.0).sqrt();
+    let (a, b, c) = (root(a), root(b), root(c));
     let (sum, pairs, product) = (a + b + c, a * b + b * c + c * a, a * b * c);
     (matrix * (sum * sum - pairs) - square + Matrix3::identity() * (sum * product)) / (sum * pairs - product)
 }

@@ -9,6 +9,7 @@ use crate::control::spring::spring_transition::Spring;
 use crate::control::state_feedback::observer::TendonMotion;
 use crate::control::state_feedback::reference::ReferenceMotion;
 use crate::control::tendons::tension_distribution::{BoundedDistribution, DistributedTensions};
+use crate::model::JointSines;
 use nalgebra::{Matrix3, Vector3, Vector4};
 
 /// The result of a cycle.
@@ -45,11 +46,12 @@ struct Shake {
 impl StateFeedback {
     /// Returns the pulls that act from the next sample on. They make the fingertip the spring `spring`, and they make
     /// the joints the spring `joint_spring`. The anchor of both springs has the motion `motion`. If `begins` is true,
-    /// the springs start without deflection. `gravity` is the compensation, with the gravity that planners have set,
-    /// m/s^2.
+    /// the springs start without deflection. `pose` has the sines of the joint angles in `state`. `gravity` is the
+    /// compensation, with the gravity that planners have set, m/s^2.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,
+        pose: &JointSines,
         (spring, joint_spring, motion): (&Spring, &Option<JointSpring>, &Option<Motion>),
         begins: bool,
         limits: &SoftLimits,
@@ -61,10 +63,9 @@ impl StateFeedback {
         }
         let now = self.at_next_sample(state);
         let reference = self.follow(state, &spring.joints, motion);
-        let spring = Spring { joints: reference.joints, ..*spring };
-        let inertia = self.dynamics.inertia(&state.joints);
+        let inertia = self.dynamics.inertia_at(&state.joints, pose);
         let joint_torques =
-            self.joint_torques(state, &now, (&spring, joint_spring), &reference, &inertia, (limits, gravity)) * 100.0;
+            self.joint_torques(state, &now, (spring, joint_spring), &reference, &inertia, (limits, gravity)) * 100.0;
         let DistributedTensions { tensions: distributed, scale: torque_scale } =
             distribution.distribute(&joint_torques);
         if begins {
@@ -97,7 +98,8 @@ impl StateFeedback {
             speeds,
             disturbances: of(|motion| motion.disturbance),
             joints: self.pseudo_inverse.tr_mul(&of(|motion| motion.travel)),
-            rates: self.pseudo_inverse.tr_mul(&speeds),
+            // The observers have just computed them from the same speeds.
+            rates: state.joint_rates,
         }
     }
 
@@ -132,12 +134,13 @@ impl StateFeedback {
         (limits, (compensation, gravity)): (&SoftLimits, (&GravityCompensation, &Option<Vector3<f64>>)),
     ) -> Vector3<f64> {
         let push = limits.push(&now.joints);
-        let posed = self.joint_stiffness.posed(spring, &now.joints);
+        let pose = JointSines::of(&now.joints);
+        let posed = self.joint_stiffness.posed_at(spring, &now.joints, &pose);
         let mut k_theta = posed.k_theta;
-        let mut sprung = posed.torques(&spring.joints);
+        let mut sprung = posed.torques(&reference.joints);
         if let Some(joint_spring) = joint_spring {
             k_theta += joint_spring.k_theta;
-            sprung += joint_spring.torques(&(spring.joints - now.joints));
+            sprung += joint_spring.torques(&(reference.joints - now.joints));
         }
         let k_theta = (k_theta + Matrix3::from_diagonal(&push.stiffness)) * 0.01;
         let apparent = self.apparent_motors + inertia;
@@ -151,7 +154,7 @@ impl StateFeedback {
         held * 0.01 - damping * (now.rates - reference.rates)
             + rubbing
             + apparent * reference.accelerations
-            + self.dynamics.coriolis(&now.joints, &reference.rates)
+            + self.dynamics.coriolis_at(&now.joints, &pose, &reference.rates)
             + self.joint_viscous.component_mul(&reference.rates)
             + joint_friction
     }

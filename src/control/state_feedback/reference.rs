@@ -23,6 +23,8 @@ pub(crate) struct Reference {
     /// The input of a stage minus its output, divided by the slope of the output from the last cycle to this one, s.
     /// `lag` is smaller than the time constant of a stage by about half a cycle, because the filter advances in steps.
     lag: f64,
+    /// 1 / `lag` to the powers 1 to 4.
+    per: [f64; 4],
 }
 
 /// Outputs of the stages, rad.
@@ -66,7 +68,9 @@ impl Reference {
     /// Constructs the filter from the time constant of each stage, s, and the rate, Hz.
     pub fn new(time: f64, rate: f64) -> Self {
         let cycles = 1.0 / (time * rate);
-        Self { gain: -(-cycles).exp_m1(), lag: 1.0 / (rate * cycles.exp_m1()) }
+        let lag = 1.0 / (rate * cycles.exp_m1());
+        let per = 1.0 / lag;
+        Self { gain: -(-cycles).exp_m1(), lag, per: [per, per.powi(2), per.powi(3), per.powi(4)] }
     }
 
     /// Returns the state of a reference at rest.
@@ -128,13 +132,13 @@ impl Reference {
     /// are the slopes of the angles from cycle to cycle. The time constant instead of `lag` would make them too small.
     pub fn motion(&self, state: &ReferenceState) -> ReferenceMotion {
         let [first, second, third, fourth, last] = state.0;
-        let per = 1.0 / self.lag;
+        let [per, per_2, per_3, per_4] = self.per;
         ReferenceMotion {
             joints: last,
             rates: (fourth - last) * per,
-            accelerations: (third - fourth * 2.0 + last) * per.powi(2),
-            jerk: (second - third * 3.0 + fourth * 3.0 - last) * per.powi(3),
-            snap: (first - second * 4.0 + third * 6.0 - fourth * 4.0 + last) * per.powi(4),
+            accelerations: (third - fourth * 2.0 + last) * per_2,
+            jerk: (second - third * 3.0 + fourth * 3.0 - last) * per_3,
+            snap: (first - second * 4.0 + third * 6.0 - fourth * 4.0 + last) * per_4,
         }
     }
 }

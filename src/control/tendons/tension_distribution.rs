@@ -91,15 +91,16 @@ impl BoundedDistribution<'_> {
     ///
     /// For each tendon j there is a tau_g that puts it at t_min. Tendon i then has the tension s (A_i - A_j q_i/q_j) +
     /// t_min q_i/q_j, where A = Q tau and s is the scale. Eq. 20 selects the largest of these tau_g. It gives tendon i
-    /// the largest of these tensions, so each of them must be at most t_max. These 16 conditions, one for each pair i,
-    /// j, bound s.
+    /// the largest of these tensions, so each of them must be at most t_max. These conditions, one for each pair i, j,
+    /// bound s.
     #[inline]
     pub fn distribute(&self, torques: &Vector3<f64>) -> DistributedTensions {
         let Self { of, maximum } = self;
         let wanted = of.from_torque * torques;
         let mut scale: f64 = 1.0;
         for i in 0..4 {
-            for j in 0..4 {
+            // The condition of a tendon with itself always holds: its maximum is not below its minimum.
+            for j in (0..4).filter(|&j| j != i) {
                 let added = wanted[i] - of.ratio[(i, j)] * wanted[j];
                 // The headroom is not negative, because no bound is below the tensions at rest.
                 let headroom = maximum[i] - of.idle[(i, j)];
