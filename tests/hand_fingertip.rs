@@ -122,7 +122,7 @@ fn an_adjustment_takes_effect_completely_or_not_at_all() {
     assert!(hand.report(1).expect("report").cycle.desired_tensions.min() > 9.0 - 1e-9);
     // Softer tendons reduce the largest damping ratio that the present stiffness admits.
     hand.adjust(1, "controller.scheme = 'state feedback'").expect("adjusted");
-    hand.send_damping(1, 1.8).expect("sent");
+    hand.send_damping(1, 1.3).expect("sent");
     let damped = hand.adjust(1, "tendon.stiffness = [150, 150, 150, 150]");
     assert!(matches!(damped, Err(HandError::SetPoint(SetPointError::Damping { .. }))), "{damped:?}");
     hand.send_damping(1, 1.0).expect("sent");
