@@ -24,7 +24,7 @@ pub struct Sample {
 /// The results of a row.
 pub struct Stability {
     pub samples: usize,
-    /// Number of samples that have an eigenvalue outside the unit circle, or do not come to rest.
+    /// Number of samples that have an eigenvalue outside the unit circle, do not come to rest, or have a slack tendon.
     pub unstable: usize,
     /// Largest modulus of an eigenvalue, per cycle, among the samples that come to rest.
     pub largest: f64,

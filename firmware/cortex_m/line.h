@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* For the interrupt of the UART: stores a received byte and the present time as its arrival. A byte that does not fit
-   is lost, as on any UART. The checksum reveals the damage. */
+/* For the interrupt of the UART: stores a received byte, and for a zero byte the present time as its arrival. A byte
+   that does not fit is lost, as on any UART. The checksum reveals the damage. */
 void line_received(uint8_t byte);
 
 /* For uart_transmit: takes the next byte to send. Returns false if there is none. */

@@ -14,7 +14,7 @@ enum { REFRESH = 10000 };
 enum { USABLE = 50 };
 
 static uint32_t sampled_at;
-/* When the sample was taken that was read last. A line that only carries noise begins samples that nobody reads. */
+/* The time of the sample that was read last, us. A line that only carries noise begins samples that nobody reads. */
 static uint32_t read_at;
 /* Whether nobody has read the last sample. */
 static bool unread;

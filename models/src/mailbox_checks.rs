@@ -82,7 +82,7 @@ pub fn a_request_to_close_is_answered() {
     assert_eq!(planner.ended(), Some(true));
 }
 
-/// Returns the set point that has arrived for this spring phase.
+/// Returns the set point that has arrived for the spring with this number (`FingerReport::springs`).
 fn new_set_point(servo: &mut ServoEnd, spring: u32) -> Option<SetPoint> {
     servo.new_set_point().filter(|sent| sent.spring == spring).map(|sent| sent.set_point)
 }

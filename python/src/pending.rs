@@ -33,7 +33,8 @@ pub struct Pending {
 }
 
 impl Pending {
-    /// Notes an opening. It is not waited for until the first call of [`Pending::goes_on`].
+    /// Notes an opening. The end of the interpreter does not wait for it before the first call of
+    /// [`Pending::goes_on`].
     pub fn opening() -> Self {
         Self { counted: AtomicBool::new(false), generation: fork::generation() }
     }

@@ -18,5 +18,5 @@ class Moment:
         self.monotonic: int = time.monotonic_ns()
 
     def time_of(self, measured: int) -> Time:
-        """The time of a measurement, ns of CLOCK_MONOTONIC, on the clock of ROS."""
+        """Returns the time of a measurement on the clock of ROS. `measured` is its time on CLOCK_MONOTONIC, ns."""
         return self.on_ros + Duration(nanoseconds=measured - self.monotonic)

@@ -45,7 +45,7 @@ pub struct Wanted {
 /// # Errors
 /// Returns an error if a name cannot be used, if one of the files exists already, if other users can use the authority
 /// or write in the folder, if the files of the authority do not belong together, or if a file cannot be written.
-/// Then no file and no folder has been made.
+/// Then the files and folders that it made are removed again.
 pub fn make(folder: &Path, wanted: &Wanted) -> Result<Vec<PathBuf>, ServeError> {
     check_names(folder, wanted)?;
     let absent = |folder: &&Path| !folder.as_os_str().is_empty() && folder.symlink_metadata().is_err();

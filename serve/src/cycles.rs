@@ -18,7 +18,7 @@ pub struct Cycles {
     controllers: [u32; FINGERS],
     /// For each finger, the number of the last cycle that was taken.
     last: [u64; FINGERS],
-    /// For each finger, whether it was caught at the last call.
+    /// For each finger, whether it was caught (see [`crate::silence`]) at the last call.
     caught: [bool; FINGERS],
     records: Vec<CycleRecord>,
 }
@@ -44,7 +44,8 @@ impl Cycles {
     }
 
     /// Takes the cycles since the last call. `goals` contain the command numbers. `progress` is the progress of the
-    /// fingers toward these goals. It becomes part of the newest record of each finger.
+    /// fingers toward these goals. It becomes part of the newest record of a finger if this record has the command
+    /// number of the goal.
     pub fn take(&mut self, goals: &Goals, progress: &[Arrival; FINGERS]) -> Taken {
         let mut taken = Taken::default();
         for finger in Finger::ALL {
@@ -76,7 +77,7 @@ impl Cycles {
             self.add(sent, taken);
         }
         self.caught[index] = report.expired;
-        // A finger that has stopped has no records. Its report still has its pose.
+        // A finger that has stopped has no new cycles. Its report still has its pose.
         if self.records.is_empty() && matches!(report.stage, Stage::Faulted(_) | Stage::Closed) {
             self.last[index] = report.losses.cycles.saturating_sub(1);
             let sent = self.of_report(finger, report, goals);

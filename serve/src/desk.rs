@@ -29,7 +29,7 @@ pub struct Desk {
     fingers: Fingers,
     counts: Counts,
     clients: BTreeSet<ClientName>,
-    /// Whether a finger was caught at the last call of [`Desk::look`].
+    /// Whether a finger was caught (see [`crate::silence`]) at the last call of [`Desk::look`].
     caught: bool,
     /// The time at which fingers that still move are stopped, ns.
     stop_at: Option<u64>,

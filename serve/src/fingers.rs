@@ -1,5 +1,6 @@
 //! Sends what the owner wants to the fingers of the hand: new parts of Targets, the rest of the way to a destination
-//! that is far ahead of a finger, and, when the owner is heard again, the set points of fingers that were caught.
+//! that is far ahead of a finger, and, when the owner is heard again, the set points of fingers that were caught
+//! (see [`crate::silence`]).
 
 mod leading;
 mod preparing;

@@ -36,13 +36,15 @@ pub struct Goal {
     /// Kx, N/cm, and relative damping that the previous owner has left.
     inherited: Option<(Matrix3<f64>, f64)>,
     /// The joint angles of the set point that the owner keeps because it has not commanded a place, rad. A finger that
-    /// was caught returns to them.
+    /// was caught (see [`crate::silence`]) returns to them.
     pub kept: Option<Vector3<f64>>,
     /// Whether the whole way to the destination has been sent, and not only the part that the lead admits.
     pub whole: bool,
-    /// Numbers of the finger's recoveries and orders when this goal was set. A later recovery or order cancels it.
+    /// Numbers of the finger's recoveries and orders (see [`FingerReport`]) when this goal was set. A later recovery or
+    /// order cancels the goal.
     phase: (u32, u32),
-    /// The spring phase in which the goal was sent last. A finger that is caught begins another spring phase.
+    /// `FingerReport::springs` when the goal was sent last. This number rises when the finger begins anew to follow set
+    /// points, for example when it is caught.
     springs: u32,
 }
 

@@ -1,5 +1,5 @@
-//! What the server publishes by itself: a State every 5 ms, Events, and a Status every second. It runs in one ordinary
-//! thread, because a reader whose line is full can hold up a message for a millisecond.
+//! What the server publishes by itself: a State every 5 ms, Events, and a Status every second. All of this runs in one
+//! ordinary thread, because a reader whose line is full can hold up a message for a millisecond.
 
 use crate::ServeError;
 use crate::cycles::{Cycles, Taken};
@@ -125,7 +125,7 @@ impl Publishing {
     }
 
     fn publish_event(&mut self, event: &Event) {
-        // Clients detect the Events that the queue has lost by their numbers.
+        // Clients detect Events that the queue has lost by gaps in the numbers.
         self.sent_events += 1;
         let Some(finger) = Finger::new(event.finger.get()) else { return };
         let sent = Message {

@@ -78,7 +78,7 @@ pub struct Limits {
     pub catch_ms: u32,
     /// Time without a Target after which every finger goes to its end state, ms.
     pub end_ms: u32,
-    /// Kx with which a finger is caught, N/cm.
+    /// Kx with which a caught finger holds its pose, N/cm.
     pub soft_stiffness: f64,
     /// Largest force with which a set point pulls a fingertip, N.
     pub lead_force: f64,

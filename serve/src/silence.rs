@@ -1,5 +1,7 @@
 //! The dead man's handle, as the server counts it: how long the owner may still be silent. The servos count the same
 //! times themselves, so they catch the fingers in time even if the server hangs.
+//!
+//! To catch a finger means to let it hold its pose softly because its Target is no longer valid.
 
 use std::time::Duration;
 use sun2xp::motion::Validity;

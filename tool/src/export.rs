@@ -25,7 +25,7 @@ pub struct Arguments {
     /// A recording of sun2xp record, or a black box.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// The folder of the CSV files. The default is the folder of FILE. With `-`, standard output receives all of it in
+    /// The folder of the CSV files. The default is the folder of FILE. With `-`, everything goes to standard output, in
     /// the long format.
     #[arg(long, value_name = "FOLDER")]
     output: Option<PathBuf>,
@@ -137,7 +137,7 @@ impl Files<'_> {
         Ok(())
     }
 
-    /// Returns the file of a finger or of the events. A new file begins with its header.
+    /// Returns the file of a finger, of the events or of the object. A new file begins with its header.
     fn file(&mut self, key: i32, header: &str) -> Result<&mut dyn Write, Failure> {
         let key = if self.standard_output { EVENTS } else { key };
         let output = match self.open.entry(key) {

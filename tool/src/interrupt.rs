@@ -5,7 +5,7 @@ use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The request, which all parts of the program share. None before the signals are watched.
+/// The request, which all parts of the program share. `None` before the signals are watched.
 static REQUESTED: Mutex<Option<Arc<AtomicBool>>> = Mutex::new(None);
 
 /// Notes whether the end of the program has been requested. Work that checks it can end in an orderly way.
@@ -13,7 +13,7 @@ pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
     /// Replaces the default action of the signals, which ends the process. If the signals are already watched, the
-    /// result also knows a request that has come since then.
+    /// result also reports a request that has come since the first call.
     ///
     /// # Errors
     /// Returns an error if the system refuses to watch the signals.

@@ -1,4 +1,4 @@
-"""The image of the board on a Cortex-M4 (Unicorn) with models of its registers.
+"""Runs the firmware image of the board on an emulated Cortex-M4 (Unicorn), with models of the peripheral registers.
 
 Time is the computed number of cycles."""
 
@@ -28,7 +28,7 @@ class Board:
     """`cached` is the accelerator of the flash as RM0090, 3.5.2, describes it: the 64 lines of instructions that were
     used last need no wait states. Prefetch is off. A load of a constant beside the code always waits. A load from the
     table of the checksum does not wait, because the table is in the cache for data. Without `cached`, every new line
-    and every load, even from memory, waits: the upper bound."""
+    and every load waits, even a load from SRAM: the upper bound."""
 
     def __init__(self, image, binary, cached=True):
         self.program = Program(image)

@@ -59,7 +59,7 @@ impl RemoteHand {
         self.link.acquire(true)
     }
 
-    /// Acquires the hand as [`RemoteHand::reopen`] does, and recovers no finger. [`RemoteHand::recover`] recovers each
+    /// Acquires the hand as [`RemoteHand::reopen`] does, and recovers no finger. Call [`RemoteHand::recover`] for each
     /// finger that may move.
     ///
     /// # Errors

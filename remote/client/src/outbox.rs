@@ -8,8 +8,8 @@ use sun2xp_remote_protocol::{Answer, FINGERS, Finger, LONGEST_VALIDITY_MS, Targe
 /// Interval at which a Target is repeated, ns. The protocol demands at most 25 ms.
 pub const REPETITION: u64 = 20_000_000;
 
-/// Smallest interval of two Targets, ns. It is below the period of a servo. It limits the number of Targets if a
-/// planner sends without a pause.
+/// Smallest interval of two Targets, ns. It is below the period of a servo at 1000 Hz. It limits the number of
+/// Targets if a planner sends without a pause.
 const LEAST_INTERVAL: u64 = 500_000;
 
 /// If a State is earlier than an Answer by more than this, ns, the server's machine was started again. A State cannot

@@ -87,7 +87,7 @@ pub(crate) fn fault(stage: Stage, finger: &FingerStatus) -> sun2xp_fault {
     }
 }
 
-/// `lost` is the number of events that the planner has not taken in time.
+/// `lost` is the number of events that were lost on the way or not taken in time.
 pub(crate) fn event(event: &Event, lost: u64) -> sun2xp_event {
     sun2xp_event {
         size: 0,

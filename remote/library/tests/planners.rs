@@ -7,7 +7,7 @@ mod rig;
 use rig::{Rig, Way};
 use std::process::ExitStatus;
 
-/// Largest difference of two numbers with a decimal point, rad.
+/// Largest difference of two numbers with a decimal point, in the unit of the numbers.
 const TOLERANCE: f64 = 0.01;
 
 /// A number with a decimal point, without the punctuation that follows it.

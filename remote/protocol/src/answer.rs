@@ -12,14 +12,14 @@ const KIND: MessageKind = MessageKind::Answer;
 pub struct Answer {
     /// Whether the action is done, or why it is not.
     pub code: Code,
-    /// `catch_ms` of the server, ms: at least 1.
+    /// `catch_ms` of the server, ms: the longest validity that it gives to a Target. At least 1.
     pub catch_ms: u32,
     /// For acquire: the new epoch. Otherwise: the epoch of the Request or Target.
     pub epoch: u64,
     /// Time, ns, server's clock: a value for [`Target::seen`](crate::Target::seen).
     pub time: u64,
-    /// For the refusal of a Target: its sequence number. For acquire: the number of the new epoch, which is
-    /// [`State::owner`](crate::State::owner) from now on. Otherwise 0.
+    /// For the refusal of a Target: its sequence number. For acquire: the rising number of the new epoch, which States
+    /// then show as [`State::owner`](crate::State::owner) (`epoch` is its random value). Otherwise 0.
     pub number: u64,
     /// The cause and the remedy; empty if it is done.
     pub text: String,

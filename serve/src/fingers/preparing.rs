@@ -27,7 +27,7 @@ impl Fingers {
         match report.stage {
             Stage::Running => {}
             Stage::Faulted(fault) => return Err(HandError::Faulted { finger: known, fault }),
-            // The servo would discard the part, because it belongs to an earlier spring phase.
+            // The servo would discard the part: it was prepared before the finger begins to follow set points.
             _ => return Err(HandError::Busy(known)),
         }
         let mut path = Vec::new();

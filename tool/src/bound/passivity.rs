@@ -19,7 +19,7 @@ const LOWEST: f64 = 1.0;
 const HIGHEST: f64 = 400.0;
 const STEPS: i32 = 26;
 
-/// Difference between anchor and joint angles, rad. It is not 0, because eq. 20 has a kink at zero load.
+/// Difference between anchor and joint angles, rad. It is not 0, because eq. 20 of the report has a kink at zero load.
 const DEFLECTION: f64 = 0.01;
 
 /// Distance of the tip from the axis of joint 0 in every pose, cm. Nearer poses are nearly singular.

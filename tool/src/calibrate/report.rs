@@ -81,7 +81,7 @@ impl Calibrated {
         add("motor.sign", "", |finger| finger.motor.sign.iter().map(|&sign| sign.into()).collect(), 0);
         add("encoder.sign", "", |finger| finger.encoder.sign.iter().map(|&sign| sign.into()).collect(), 0);
         add("encoder.zero", "", |finger| finger.encoder.zero.iter().map(|&zero| zero.into()).collect(), 0);
-        add("gauge.newton_per_count", "N", |finger| finger.gauge.newton_per_count.to_vec(), 5);
+        add("gauge.newton_per_count", "N per count", |finger| finger.gauge.newton_per_count.to_vec(), 5);
         add("gauge.zero", "", |finger| finger.gauge.zero.to_vec(), 1);
         add("tendon.stiffness", "N/cm", |finger| finger.tendon.stiffness.to_vec(), 1);
         add("friction.motor_coulomb", "N cm", |finger| finger.friction.motor_coulomb.to_vec(), 4);

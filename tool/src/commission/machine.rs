@@ -1,5 +1,5 @@
-//! What a commissioning needs of a finger: readings with the motors off, the routines of calibration, and the spring.
-//! A finger at a port and a finger in memory implement [`Machine`].
+//! What a commissioning needs of a finger: readings with the motors off, the routines of calibration, and the finger as
+//! a spring (the running controller). A finger at a port and a finger in memory implement [`Machine`].
 
 use crate::failure::Failure;
 use std::fmt::{self, Display, Formatter};

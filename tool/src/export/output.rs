@@ -26,7 +26,8 @@ impl Output {
     /// Begins a file. Without `force` there must be no file at `path`.
     ///
     /// # Errors
-    /// Returns an error if there is one, or if the folder cannot be written.
+    /// Returns an error if there is a file at `path` and `force` is false, if there is something other than a regular
+    /// file at `path`, or if the folder cannot be written.
     pub fn file(path: PathBuf, force: bool) -> Result<Self, Failure> {
         let old = fs::metadata(&path).ok();
         if fs::symlink_metadata(&path).is_ok() && !force {

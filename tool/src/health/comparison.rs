@@ -12,7 +12,7 @@ const TRAVEL: f64 = 0.05;
 const STIFFNESS: f64 = 0.1;
 /// Largest relative change of a gauge gain.
 const GAIN: f64 = 0.05;
-/// Permitted tension at rest relative to that of the commissioning.
+/// Largest relative change of a tension at rest.
 const TENSION: f64 = 0.25;
 /// The noise of a gauge may rise by this factor and in addition by this value, N rms.
 const NOISE: (f64, f64) = (2.0, 0.05);
@@ -129,9 +129,9 @@ fn heat(vitals: &Vitals, finger: &ConfiguredFinger) -> Option<[f64; 4]> {
 /// Compares the scales of the gauges and the tensions at rest.
 fn gauges_and_tensions(all: &mut Vec<Complaint>, before: &Vitals, today: &Vitals, found: &ConfiguredFinger) {
     let relative = |limit: f64| move |before: f64, today: f64| (today / before - 1.0).abs() > limit;
-    let gauge = "Weigh the gauge again: sun2xp commission --config FILE --finger N --step gauges";
+    let gauge = "Calibrate the gauge again with weights: sun2xp commission --config FILE --finger N --step gauges";
     let gains = before.newton_per_count.map(|_| found.gauge.newton_per_count);
-    each(all, ("gauge_gain", "scale of gauge", "N"), (before.newton_per_count, gains), relative(GAIN), gauge);
+    each(all, ("gauge_gain", "scale of gauge", "N per count"), (before.newton_per_count, gains), relative(GAIN), gauge);
     let loose = "Look for friction in the path of the tendon; if its tension has fallen, tension it";
     each(
         all,

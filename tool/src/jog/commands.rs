@@ -100,7 +100,7 @@ impl Command {
     /// Carries the command out, and returns what was done, in words.
     ///
     /// # Errors
-    /// Returns an error if the hand refuses the command, or if the command would move a real finger too far.
+    /// Returns an error for each reason in [`Refused`].
     pub fn execute(&self, hand: &Hand, configuration: &Configuration) -> Result<String, Refused> {
         match *self {
             Self::Joints { finger, joints } => send_joints(hand, configuration, finger, joints),

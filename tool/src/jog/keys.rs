@@ -90,7 +90,7 @@ pub fn command(panel: &mut JogPanel, configuration: &Configuration, code: KeyCod
                     let step = sign * PUSH_STEPS[panel.step];
                     let force = panel.force()?;
                     force[axis] += step;
-                    // The steps are tenths, which have rounding errors.
+                    // Decimal steps such as 0.1 N have no exact binary value. Rounding keeps their sum free of errors.
                     force[axis] = (force[axis] * 1e6).round() / 1e6;
                     Command::Push { finger, force: in_finger(configuration, finger, *force) }
                 }

@@ -15,7 +15,8 @@ pub struct Stopper {
 impl Stopper {
     /// Stops all fingers at once, and drops the commands that are still waiting.
     pub fn stop(&self) {
-        // The number comes first: a recovery that began between the two would take the stop as answered.
+        // The number rises first. In the reverse order, a recovery that begins between the two statements would answer
+        // the stop and move the finger again.
         self.stops.fetch_add(1, Ordering::SeqCst);
         sun2xp::stop_all();
     }
@@ -36,7 +37,7 @@ impl Stopper {
             return None;
         }
         let result = command();
-        // The stop may have come just before the command began, which may have revived a finger.
+        // The stop may have come between the check and the command, and the command may have recovered a finger.
         if self.stops() != stops {
             sun2xp::stop_all();
         }

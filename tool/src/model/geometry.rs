@@ -2,8 +2,9 @@
 //! the web page are made.
 //!
 //! Lengths are in cm, angles in rad, masses in kg and moments of inertia in kg m^2. The palm's frame is the frame of
-//! the hand. A link's frame has its origin on the link's joint, its z axis points along the link, and it equals the
-//! frame of the parent link at joint angle zero. The frame of link 0 is then the finger's frame (Figure 8).
+//! the hand. A link's frame has its origin on the link's joint and its z axis along the link. At joint angle zero, its
+//! axes are parallel to those of the parent link's frame. The frame of link 0 is then the finger's frame (Figure 8 of
+//! the report).
 
 use super::palm;
 use super::shape::{Colour, Shape};

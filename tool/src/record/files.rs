@@ -146,7 +146,7 @@ impl Files {
             return Ok(Turn::default());
         }
         let (path, created) = self.create_next()?;
-        // Messages before the next cycle follow the newest one, which is in the present file.
+        // Until the next cycle, messages get the time of the newest cycle, which is in the present file.
         let next = OpenFile::begin(path, created, &self.description, self.file.writer.time())?;
         self.begun += 1;
         let last = std::mem::replace(&mut self.file, next);

@@ -15,7 +15,7 @@ use sun2xp::files::open_regular_file;
 use sun2xp::model::{FingerNumber, ShownPath};
 use sun2xp::telemetry::{Description, Message};
 
-/// Largest record that is read, bytes. A chunk has at most 8 MB.
+/// Largest record that is read, bytes. A chunk has little more than 4 MB before compression.
 const LARGEST_RECORD: usize = 64 << 20;
 
 /// Largest number of channels. A recording has 11.

@@ -91,7 +91,7 @@ impl Mechanics {
     }
 
     /// Returns the smallest stiffness of the tip with locked motors, N/cm: the smallest eigenvalue of
-    /// J^-T (R k R^T) J^-1 over the poses.
+    /// J^-T (R k R^T) J^-1 over the poses that are not nearly singular.
     pub fn locked_stiffness(&self) -> f64 {
         let joints = self.tendons.r * Matrix4::from_diagonal(&self.stiffness) * self.tendons.r.transpose();
         let stiffness = self.regular().map(|inverse| {

@@ -4,10 +4,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use tokio::sync::OwnedSemaphorePermit;
 
-/// A connection must have sent the header of its request after this time.
+/// Time from its acceptance within which a connection must have sent the header of its request.
 pub const HEADER: Duration = Duration::from_secs(10);
 
-/// A connection that is not a page must have taken its answer after this time.
+/// Time from its acceptance within which a connection that is not a page must have taken its answer.
 const ANSWER: Duration = Duration::from_secs(60);
 
 /// The place of a connection among the limited number of them.

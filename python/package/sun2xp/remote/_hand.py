@@ -272,7 +272,7 @@ class RemoteHand(Reading):
         if action != "release":
             self._check(*([finger] if finger else []))
         payload = _messages.write_request(action, finger, epoch, **flags)
-        # If it were repeated, a calibration that has ended meanwhile would begin again.
+        # If the get were repeated, a calibration that has ended meanwhile would begin again.
         ask = self._network.get if action in ("calibrate", "identify") else self._answers
         for _, reply in ask(f"{self._prefix}{action}/{self._network.client}", payload, timeout):
             answer = _messages.read_answer(reply)

@@ -30,7 +30,7 @@ class Slot:
         #: Changes that no Target has yet.
         self._waiting: Optional[Part] = None
         self._open: List[_Command] = []
-        #: Bits of the newest record of this epoch; None if there is none yet.
+        #: Bits of the finger's newest record (its entry in a State) of this epoch; None if no record has arrived yet.
         self._bits: Optional[int] = None
 
     @property
@@ -39,8 +39,8 @@ class Slot:
         return self._waiting is not None
 
     def holds(self, bits: int) -> bool:
-        """Returns whether States have confirmed everything that was sent and not refused, and the newest record has
-        these bits."""
+        """Returns whether no change waits, States have confirmed everything that was sent and not refused, and the newest
+        record has these bits."""
         if self._open or self.waits or self._bits is None:
             return False
         return self._bits & bits == bits

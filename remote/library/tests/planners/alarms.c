@@ -1,4 +1,5 @@
-/* A timer interrupts the planner hundreds of times a second. Its handler sets what the next command is. */
+/* A timer interrupts the planner hundreds of times a second. Its handler counts the ticks, which determine the next
+   command. */
 #include <signal.h>
 #include <stdio.h>
 #include <sys/time.h>
