@@ -82,7 +82,7 @@ impl Controller {
         let springs = (spring, joint_spring, &set_point.motion);
         let gravity = (&self.gravity, &state.gravity);
         let Decision { pulls, against_friction, joint_torques, desired_tensions, torque_scale } =
-            law.decide(elastic, &pose, springs, begins, &self.soft_limits, gravity, &distribution);
+            law.decide(elastic, &pose, springs, begins, (&self.soft_limits, gravity), &distribution);
         state.against_friction = against_friction;
         self.command_pulls(state, &pulls, &limit, false);
         state.report.joint_torques = joint_torques;

@@ -36,11 +36,13 @@ impl SensorScales {
     }
 
     /// Converts the counts of all eight sensors.
+    #[inline]
     pub fn measured(&self, feedback: &Feedback) -> Measured {
         Measured { motor_angles: self.motor_angles(feedback), tensions: self.tensions(feedback) }
     }
 
     /// Returns m_theta of eq. 28, rad. It increases as the motor pulls its tendon in.
+    #[inline]
     pub fn motor_angles(&self, feedback: &Feedback) -> Vector4<f64> {
         Vector4::from_fn(|motor, _| {
             // The wrapping difference is correct even if the counter has wrapped around.
@@ -50,6 +52,7 @@ impl SensorScales {
     }
 
     /// Returns the tensions, N.
+    #[inline]
     pub fn tensions(&self, feedback: &Feedback) -> Vector4<f64> {
         Vector4::from_fn(|tendon, _| {
             (f64::from(feedback.gauge_counts[tendon]) - self.gauge_zero[tendon]) * self.newton_per_count[tendon]

@@ -95,7 +95,7 @@ impl JointStiffness {
     /// Returns [`JointStiffness::joint_stiffness`] at a pose whose sines the caller has.
     pub(crate) fn joint_stiffness_at(&self, spring: &Spring, pose: &JointSines) -> Matrix3<f64> {
         let jacobian = self.links.spatial_jacobian_at(pose);
-        k_theta(&jacobian, &(&spring.stiffness * &jacobian), hold(&spring.stiffness, &jacobian))
+        k_theta(&jacobian, &(spring.stiffness * jacobian), hold(&spring.stiffness, &jacobian))
     }
 
     /// Returns tau of the spring alone, N cm. The report's law is K_theta (theta_d - theta), eqs. 3 and 6. The exact
@@ -114,7 +114,7 @@ impl JointStiffness {
     #[inline]
     pub(crate) fn posed_at(&self, spring: &Spring, joints: &Vector3<f64>, pose: &JointSines) -> PosedSpring<'_> {
         let jacobian = self.links.spatial_jacobian_at(pose);
-        let stiffened = &spring.stiffness * &jacobian;
+        let stiffened = spring.stiffness * jacobian;
         let hold = hold(&spring.stiffness, &jacobian);
         let k_theta = k_theta(&jacobian, &stiffened, hold);
         let Spring { exact, damping, .. } = *spring;

@@ -54,8 +54,7 @@ impl StateFeedback {
         pose: &JointSines,
         (spring, joint_spring, motion): (&Spring, &Option<JointSpring>, &Option<Motion>),
         begins: bool,
-        limits: &SoftLimits,
-        gravity: (&GravityCompensation, &Option<Vector3<f64>>),
+        (limits, gravity): (&SoftLimits, (&GravityCompensation, &Option<Vector3<f64>>)),
         distribution: &BoundedDistribution,
     ) -> Decision {
         if begins {

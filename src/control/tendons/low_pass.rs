@@ -15,6 +15,7 @@ impl LowPass {
     }
 
     /// Advances `filtered` toward `input` by one cycle.
+    #[inline]
     pub fn advance(&self, filtered: &mut Vector4<f64>, input: &Vector4<f64>) {
         *filtered += (input - *filtered) * self.gain;
     }
