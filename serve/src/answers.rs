@@ -2,8 +2,8 @@
 //! zenoh that receive Targets must not wait for it. A reply has the congestion control of its query, which the client
 //! chooses. Zenoh 1.10 ignores the congestion control of the reply.
 //!
-//! When a thread drops a query, zenoh sends the end of the query in this thread. This sending can block too. So callbacks pass
-//! every query to one of these threads, even a query that gets no answer.
+//! When a thread drops a query, zenoh sends the end of the query in this thread. This sending can block too. So
+//! callbacks pass every query to one of these threads, even a query that gets no answer.
 
 use crate::places::{Place, Places};
 use crate::shared::Shared;

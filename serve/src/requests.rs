@@ -152,9 +152,9 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
     }
 }
 
-/// Makes the client the owner with this epoch, and sets `busy` if the request asks for a recovery. Returns the number of
-/// the epoch, and how often each finger was stopped so far. If the acquire is refused, returns the refusal, and nothing
-/// has changed.
+/// Makes the client the owner with this epoch, and sets `busy` if the request asks for a recovery. Returns the number
+/// of the epoch, and how often each finger was stopped so far. If the acquire is refused, returns the refusal, and
+/// nothing has changed.
 fn take(shared: &Shared, request: &Request, client: &ClientName, epoch: u64) -> Result<(u64, Stops), Answer> {
     let mut desk = shared.desk.lock();
     // An acquire that is refused because of the owner must not hold up the requests of this owner.

@@ -39,8 +39,8 @@ class Slot:
         return self._waiting is not None
 
     def holds(self, bits: int) -> bool:
-        """Returns whether no change waits, States have confirmed everything that was sent and not refused, and the newest
-        record has these bits."""
+        """Returns whether no change waits, States have confirmed everything that was sent and not refused, and the
+        newest record has these bits."""
         if self._open or self.waits or self._bits is None:
             return False
         return self._bits & bits == bits
