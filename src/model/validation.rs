@@ -188,7 +188,7 @@ impl ConfiguredFinger {
         each("motor.torque_limit", &self.motor.torque_limit, 1e-3, 6000.0, "N cm")?;
         each("motor.torque_constant", &self.motor.torque_constant, 1e-3, 1e4, "N cm/A")?;
         each("encoder.counts_per_revolution", &self.encoder.counts_per_revolution.map(f64::from), 4.0, 1e7, "")?;
-        each("gauge.newton_per_count", &self.gauge.newton_per_count.map(f64::abs), 1e-6, 10.0, "N")?;
+        each("gauge.newton_per_count", &self.gauge.newton_per_count.map(f64::abs), 1e-6, 10.0, "N per count")?;
         each("gauge.zero", &self.gauge.zero, -65_536.0, 65_536.0, "counts")
     }
 

@@ -52,7 +52,7 @@ mod tests {
         assert_eq!((scale.count(lowest), scale.count(highest)), (Some(1), Some(u16::MAX - 1)));
         assert_eq!((scale.count(lowest - 1.0), scale.count(highest + 1.0)), (None, None));
         let manual = include_str!("../../capi/io_calls.rs");
-        assert!(manual.contains("-8191 to 57342 steps"), "the C manual");
+        assert!(manual.contains("-8191 to 57342 times io->tension_unit"), "the C manual");
         let pages = [include_str!("finger_io.rs"), include_str!("../../../docs/other-hardware.md")];
         assert!(pages.iter().all(|page| page.contains("-8191 to 57 342 steps")));
     }
