@@ -1,5 +1,4 @@
-//! Writes complete files. Each file is written under a temporary name in the same folder, and then moved to its place
-//! in one step.
+//! Writes complete files: under a temporary name in the same folder, and then moved to their place in one step.
 
 use super::regular::check_kind;
 use std::collections::hash_map::RandomState;

@@ -101,7 +101,8 @@ const DITHER: f64 = 1.6;
 /// oscillate.
 const TENSION_DITHER: f64 = 0.06;
 
-/// See [`Numbers::dither_burst`]. With 0.25, steps of fingers with pulley friction that is not configured settled later.
+/// See [`Numbers::dither_burst`]. With 0.25, fingers with pulley friction that is not configured settled later after a
+/// step.
 const DITHER_BURST: f64 = 0.35;
 
 /// See [`Numbers::pulley_excess`]. An amplitude of p t would suffice at rest. With a larger amplitude the tendons slide
