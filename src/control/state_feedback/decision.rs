@@ -70,7 +70,7 @@ impl StateFeedback {
         if begins {
             state.transition.begin(&now.tensions, &distributed);
         }
-        let shake = self.shake(state, (&distributed, &now.tensions), &reference.rates);
+        let shake = self.shake(state, &distributed, &now.tensions);
         let desired_tensions = distributed + shake.tensions;
         let error = desired_tensions + state.transition.advance(self.period) - now.tensions;
         let against_friction = self.friction.pulls(&now.motor_speeds, &now.tensions);
@@ -176,16 +176,11 @@ impl StateFeedback {
     }
 
     /// Returns the dither of the joints and of the tensions. `desired` are the tensions without it, `now` the present
-    /// ones, N. `rates` are the joint rates of the reference, rad/s.
-    fn shake(
-        &self,
-        state: &mut StateFeedbackState,
-        (desired, now): (&Vector4<f64>, &Vector4<f64>),
-        rates: &Vector3<f64>,
-    ) -> Shake {
+    /// ones, N.
+    fn shake(&self, state: &mut StateFeedbackState, desired: &Vector4<f64>, now: &Vector4<f64>) -> Shake {
         let (shake, leading) = self.dither.advance(&mut state.dither);
         let phase = self.dither.phase(&state.dither);
-        let amplitude = self.tension_dither.advance(&mut state.tension_dither, desired, now, &phase, rates);
+        let amplitude = self.tension_dither.advance(&mut state.tension_dither, desired, now, &phase);
         Shake {
             tensions: self.pseudo_inverse * shake + amplitude * phase.x,
             rates: (self.pseudo_inverse * leading + amplitude * phase.y) * self.dither.frequency,

@@ -54,9 +54,6 @@ pub struct Numbers {
     pub dither: f64,
     /// Smallest amplitude of the dither of the tensions as a fraction of the tension. 0: no dither of the tensions.
     pub tension_dither: f64,
-    /// Amplitude to which the dither of the tensions rises after a motion of the reference, as a fraction of the
-    /// tensions of a finger without joint torque whose lowest tension is t_min.
-    pub dither_burst: f64,
     /// The part of the motors' friction that is fed forward.
     pub friction_share: f64,
     /// Frequency of the dither, Hz. With a lower frequency the motors need less torque for the dither, and the tip
@@ -100,10 +97,6 @@ const DITHER: f64 = 1.6;
 /// friction of twice the Coulomb friction. With 0.1, the tensions of a finger with rotors of half the inertia
 /// oscillate.
 const TENSION_DITHER: f64 = 0.06;
-
-/// See [`Numbers::dither_burst`]. With 0.25, steps of "worn" fingers settled after 614 instead of 567 ms in the worst of
-/// 48 poses.
-const DITHER_BURST: f64 = 0.35;
 
 /// See [`Numbers::pulley_excess`]. An amplitude of p t would suffice at rest. With a larger amplitude the tendons slide
 /// during most of a dither period, so that the finger settles within some periods after a push or a step.
@@ -243,7 +236,6 @@ impl Numbers {
             reference_time: configured.set_point_time.unwrap_or(tuned.reference_time / (rate / TABLE[0].0).min(1.0)),
             dither: configured.dither.unwrap_or(DITHER),
             tension_dither: configured.tension_dither.unwrap_or(TENSION_DITHER),
-            dither_burst: DITHER_BURST,
             friction_share: configured.friction_share.unwrap_or(FRICTION_SHARE),
             dither_frequency: DITHER_FREQUENCY.min(rate / 12.0),
             pulley_excess: PULLEY_EXCESS,

@@ -6,9 +6,8 @@
 //! more than p t, the tendon slides in both directions in every period, and the mean tension at the joint equals the
 //! mean tension at the gauge. The oscillation is along the null vector n of R, so that it does not move the joints.
 
-use super::dither_burst::{DitherBurst, DitherBurstState};
 use super::numbers::Numbers;
-use nalgebra::{Vector2, Vector3, Vector4};
+use nalgebra::{Vector2, Vector4};
 use serde::{Deserialize, Serialize};
 
 /// Largest amplitude as a fraction of each tension, so that no tendon becomes slack.
@@ -54,10 +53,6 @@ pub(crate) struct TensionDither {
     reserve: f64,
     /// Largest b, N. See [`Numbers::dither_rise`].
     risen: f64,
-    burst: DitherBurst,
-    /// b at the height of a burst, N. The limit [`TensionDither::risen`] does not apply to it. It does not grow with
-    /// the tensions: at hard walls, the dither of loaded fingers would make tendons slack.
-    burst_amplitude: f64,
 }
 
 /// The measured amplitude and its adjustment.
@@ -65,13 +60,8 @@ pub(crate) struct TensionDither {
 pub(crate) struct TensionDitherState {
     /// Components of the measured oscillation along n, in phase with the command and a quarter period ahead, N.
     measured: Vector2<f64>,
-    /// The wanted amplitude through the same filter, N.
-    #[serde(default)]
-    expected: f64,
     /// Commanded amplitude divided by the wanted one.
     scale: f64,
-    #[serde(default)]
-    burst: DitherBurstState,
 }
 
 impl TensionDither {
@@ -91,8 +81,7 @@ impl TensionDither {
             |friction: f64| if least > 0.0 { (numbers.pulley_excess * friction).clamp(least, LARGEST) } else { 0.0 };
         let part = pulley.map(wanted).component_mul(&inverse_common);
         // Tensions without joint torque are proportional to n, and the lowest of them is t_min.
-        let pretension = minimum / common.min();
-        let unloaded = part.component_mul(&common).max() * pretension;
+        let unloaded = part.component_mul(&common).max() * minimum / common.min();
         let rubs = numbers.pulley_excess * pulley.max() > least;
         Self {
             common,
@@ -104,8 +93,6 @@ impl TensionDither {
             measuring: 1.0 / (MEASURING * rate),
             adjusting: 1.0 / (ADJUSTING * rate),
             reserve: numbers.dither_reserve,
-            burst: DitherBurst::new(rate),
-            burst_amplitude: if least > 0.0 { numbers.dither_burst * pretension } else { 0.0 },
         }
     }
 
@@ -119,35 +106,30 @@ impl TensionDither {
     }
 
     pub fn start(&self) -> TensionDitherState {
-        TensionDitherState { measured: Vector2::zeros(), expected: 0.0, scale: 1.0, burst: DitherBurstState::default() }
+        TensionDitherState { measured: Vector2::zeros(), scale: 1.0 }
     }
 
     /// Returns the amplitude of each tendon, N. `desired` are the tensions without dither, `now` the present ones, N.
-    /// `phase` contains the sine and the cosine of omega t. `rates` are the joint rates of the reference, rad/s.
+    /// `phase` contains the sine and the cosine of omega t.
     pub fn advance(
         &self,
         state: &mut TensionDitherState,
         desired: &Vector4<f64>,
         now: &Vector4<f64>,
         phase: &Vector2<f64>,
-        rates: &Vector3<f64>,
     ) -> Vector4<f64> {
-        let slack = now.min() < self.low;
-        let burst = self.burst.advance(&mut state.burst, rates, slack);
         let wanted = self.part.component_mul(desired).max();
         let room = (desired * LARGEST).inf(&(self.most - desired)).component_mul(&self.inverse_common).min();
-        let wanted = wanted.min(self.risen);
-        let wanted = (wanted + (self.burst_amplitude - wanted).max(0.0) * burst).min(room);
+        let wanted = wanted.min(room).min(self.risen);
         if wanted <= 0.0 {
             return Vector4::zeros();
         }
         // The mean of 2 a sin^2 is a.
         let deviation = 2.0 * self.common.dot(&(now - desired));
         state.measured += (phase * deviation - state.measured) * self.measuring;
-        state.expected += (wanted - state.expected) * self.measuring;
-        let missing = 1.0 - state.measured.norm() / state.expected;
+        let missing = 1.0 - state.measured.norm() / wanted;
         let scale = state.scale + missing.max(-1.0) * self.adjusting;
-        let scale = if slack { scale * FALLING } else { scale };
+        let scale = if now.min() < self.low { scale * FALLING } else { scale };
         state.scale = scale.clamp(SCALES[0], SCALES[1]);
         self.common * (wanted * state.scale)
     }
@@ -172,16 +154,16 @@ mod tests {
         TensionDither::new(home().normalize(), &numbers, &Vector4::repeat(pulley), Vector4::repeat(60.0), 5.0, RATE)
     }
 
-    /// Runs the dither for two seconds on tensions that follow it with the gain `response`, with a reference of this
-    /// rate, rad/s. Returns the largest deviations of the tensions from `desired` in the last half second, N.
-    fn followed(dither: &TensionDither, desired: &Vector4<f64>, response: f64, rate: f64) -> Vector4<f64> {
+    /// Runs the dither for two seconds on tensions that follow it with the gain `response`. Returns the largest
+    /// deviations of the tensions from `desired` in the last half second, N.
+    fn followed(dither: &TensionDither, desired: &Vector4<f64>, response: f64) -> Vector4<f64> {
         let phasor = Dither::new(Vector3::zeros(), 40.0, RATE);
         let (mut phase, mut state) = (phasor.start(), dither.start());
         let (mut now, mut largest) = (*desired, Vector4::zeros());
         for cycle in 0..2000 {
             phasor.advance(&mut phase);
             let phase = phasor.phase(&phase);
-            let amplitude = dither.advance(&mut state, desired, &now, &phase, &Vector3::repeat(rate));
+            let amplitude = dither.advance(&mut state, desired, &now, &phase);
             now = desired + amplitude * (response * phase.x);
             if cycle >= 1500 {
                 largest = largest.sup(&(now - desired));
@@ -194,12 +176,12 @@ mod tests {
     fn the_measured_amplitude_becomes_the_wanted_one() {
         let desired = home() * 1.5;
         for response in [0.5, 1.0, 2.0] {
-            let found = followed(&dither(0.06, 0.0), &desired, response, 0.0).component_div(&desired);
+            let found = followed(&dither(0.06, 0.0), &desired, response).component_div(&desired);
             assert!(found.iter().all(|part| (part - 0.06).abs() < 0.004), "{response}: {found}");
-            let found = followed(&dither(0.06, 0.02), &desired, response, 0.0).component_div(&desired);
+            let found = followed(&dither(0.06, 0.02), &desired, response).component_div(&desired);
             assert!(found.iter().all(|part| (part - 0.1).abs() < 0.006), "{response}: {found}");
         }
-        assert_eq!(followed(&dither(0.0, 0.1), &desired, 1.0, 0.0), Vector4::zeros());
+        assert_eq!(followed(&dither(0.0, 0.1), &desired, 1.0), Vector4::zeros());
     }
 
     #[test]
@@ -208,21 +190,11 @@ mod tests {
         let r = finger.tendons().expect("the default tendons").r;
         for (extra, pulley) in [([0.0; 4], 0.1), ([30.0, 0.0, 0.0, 10.0], 0.1), ([50.0, 0.0, 0.0, 0.0], 0.05)] {
             let desired = home() + Vector4::from(extra);
-            let found = followed(&dither(0.06, pulley), &desired, 1.0, 0.0);
+            let found = followed(&dither(0.06, pulley), &desired, 1.0);
             assert!((r * found).amax() < 1e-9 * (1.0 + found.amax()), "{found}");
             assert!((desired - found).min() >= 0.55 * 5.0, "{found}");
             assert!((desired + found).max() <= 60.0 + 1e-9, "{found}");
         }
-    }
-
-    #[test]
-    fn a_slow_motion_raises_the_amplitude_as_far_as_there_is_room() {
-        let desired = home() * 1.5;
-        let found = followed(&dither(0.06, 0.0), &desired, 1.0, 0.05).component_div(&home());
-        assert!(found.iter().all(|part| (part - 0.35).abs() < 0.03), "{found}");
-        let found = followed(&dither(0.06, 0.0), &home(), 1.0, 0.05).component_div(&home());
-        assert!(found.max() <= LARGEST + 1e-9, "{found}");
-        assert_eq!(followed(&dither(0.0, 0.0), &desired, 1.0, 0.05), Vector4::zeros());
     }
 
     #[test]
