@@ -1,4 +1,4 @@
-//! Rows in which the controller's configuration differs from the true finger.
+//! Rows of the table in which the controller's configuration differs from the true finger.
 
 use crate::cases::{Case, Friction, stiffen};
 use crate::closed_loop::{Held, Senses};
@@ -52,8 +52,8 @@ pub fn tendon_stiffness(case: &Case, stiffness: f64, ratios: &[[f64; 4]]) -> Fid
     Fidelity::worst(&ratios.iter().map(with).collect::<Vec<_>>())
 }
 
-/// Measures tendons with each of these ratios after identification. Returns the worst error of an identified stiffness,
-/// and the worst apparent stiffness at each of `stiffnesses`.
+/// Measures tendons with each of these ratios after identification. Returns the worst relative error of an identified
+/// tendon stiffness, and how well the tip is the commanded spring at each of the tip stiffnesses `stiffnesses`.
 pub fn identified_tendons(
     case: &Case,
     stiffnesses: [f64; 2],

@@ -171,7 +171,8 @@ static void power_up(void)
 {
     uint32_t now = fake.now;
     memset(&fake, 0, sizeof fake);
-    /* The conversation starts shortly before the clock wraps, which must not matter. */
+    /* The first power-up sets the clock shortly before its wrap, and later ones keep it. So the clock wraps during a
+       conversation, which must not matter. */
     fake.now = now == 0 ? 0xFFFFFFFFu - 50000u : now;
     finger_start(&fingers[0], &fake_traits[0], 0);
     board_start(&board, 0, fingers, 1);

@@ -21,7 +21,8 @@ const POLLED: Duration = Duration::from_millis(2);
 /// The text of an Answer to a client that does not own the hand.
 const NOT_OWNED: &str = "you do not own the hand, or the epoch of the request is old: acquire the hand first";
 
-/// Answers a Request. `reply` sends the Answer, at once or later. `client` is the client whose key the Request has.
+/// Answers a Request. `reply` sends the Answer, at once or later. `client` is the client that the Zenoh key of the
+/// Request names.
 pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload: &[u8], reply: impl Reply) {
     let refuse = |code, text: String| shared.desk.lock().answer(code, text, 0, now());
     let request = match Request::decode(payload) {
@@ -125,7 +126,7 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
             Ok(()) if desk.begin(&client, epoch, time) => {
                 Answer { number, ..desk.answer(Code::Done, String::new(), epoch, time) }
             }
-            // No epoch begins, so fingers that were caught stay soft.
+            // No epoch begins, so fingers that were caught (see `crate::silence`) stay soft.
             Err(error) if desk.admits(&client, epoch) => {
                 desk.abandon(time);
                 desk.answer(code_of(&error), error.to_string(), 0, time)

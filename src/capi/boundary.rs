@@ -126,8 +126,8 @@ pub(super) fn delegated_or_done_here(
     })
 }
 
-/// Runs a slow call. All signals are blocked except during the wait itself, so that no handler can jump out of any
-/// other part. A jump out of the wait does not restore the floating-point environment. Therefore the thread has the
+/// Runs a slow call. All signals are blocked except during the wait itself, and SIGSEGV and SIGBUS also while the
+/// arguments are read. So no other handler can jump out of any other part. A jump out of the wait does not restore the floating-point environment. Therefore the thread has the
 /// planner's environment during the wait.
 fn slow(
     name: &'static str,

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 /// components may be infinite or zero, so the vector is divided by its largest component first.
 pub fn direction(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
     let largest = vector.amax();
-    // Each component is divided, because a subnormal number has no finite reciprocal.
+    // Each component is divided, because the reciprocal of a subnormal number can be infinite.
     (largest > 0.0).then(|| vector.map(|component| component / largest).normalize())
 }
 

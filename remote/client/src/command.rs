@@ -10,7 +10,8 @@ pub enum Pose {
     Tip([f64; 3]),
 }
 
-/// The part of a group that commands one finger. The finger keeps the values whose fields are none.
+/// The command for one finger in a group of commands that take effect together. The finger keeps the values whose
+/// fields are none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct FingerCommand {

@@ -62,7 +62,7 @@ impl RemoteEvents {
     }
 
     /// Waits for an event for at most `limit`, or without a limit if it is none, and takes the event. Returns none
-    /// after the limit, and if the hand is closed.
+    /// after the limit, or if the hand is closed and no event is left.
     #[must_use]
     pub fn wait(&self, limit: Option<Duration>) -> Option<Event> {
         self.when_ready(limit).events.pop_front()

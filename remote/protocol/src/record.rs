@@ -27,7 +27,7 @@ pub struct Record {
     pub settled: bool,
     /// Measured joint angles, rad.
     pub joints: [f64; 3],
-    /// Joint angles of the set point, rad; none if the finger is not a spring.
+    /// Joint angles of the set point, rad; none if the finger does not follow set points.
     pub set_point: Option<[f64; 3]>,
     /// Position of the tip in the finger's frame, cm.
     pub tip: [f64; 3],

@@ -35,7 +35,7 @@ pub(crate) struct Slack {
     pub(super) unopposed: f64,
     /// Whether the common stretch is kept, because the tensions are at the pretension.
     pub(super) steady: bool,
-    /// Whether tendons that seemed to have been taut were slack, and are wound in again.
+    /// Whether a slack tendon was taken for a taut one, so that slack tendons are wound in again.
     pub(super) touches_again: bool,
 }
 

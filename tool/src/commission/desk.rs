@@ -86,7 +86,7 @@ impl Desk<'_> {
     }
 
     /// Does one step until it passes, or until the person gives up. `failed` is called each time that it has not
-    /// passed, or has stopped with an error.
+    /// passed, or has stopped with an error. It is not called if nobody is there to answer.
     pub fn complete(
         &mut self,
         step: Step,

@@ -32,12 +32,12 @@ class RemoteEvents:
 
     def wait(self, timeout: Optional[float] = None) -> Optional[Event]:
         """Waits for the next event for at most `timeout` s, or without a limit, and takes it. Returns None after this
-        time, and if the hand or the queue is closed."""
+        time, or if the hand or the queue is closed and no event is left."""
         self._receiver.wait_for(lambda: self._queue or self._closed, timeout)
         return self.take()
 
     def close(self) -> None:
-        """Ends the queue, which gets no further events, and the waits of other threads for it."""
+        """Closes the queue. It gets no further events, and threads that wait for one return."""
         self._receiver.forget(self._queue)
         self._closed = True
         self._receiver.notify()

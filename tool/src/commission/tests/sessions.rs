@@ -34,7 +34,7 @@ fn desk<'a>(machine: &'a mut Bench, person: &'a mut Helper, finger: ConfiguredFi
     Desk { machine, person, finger, weights: vec![0.5 * GRAVITY, GRAVITY], vitals: Vitals::default() }
 }
 
-/// The zeros are right, and the spring that follows is the one that was sent.
+/// The zeros are right, and the stiffness that the last step measures is the commanded one.
 #[test]
 fn a_whole_commissioning_ends_with_a_spring() {
     for (seed, method) in [(0, ZeroingMethod::Stops), (4, ZeroingMethod::Pose)] {

@@ -75,7 +75,7 @@ impl Display for Wrong {
 impl Wrong {
     fn of_gauges_and_tendons(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
-            Self::GaugeReversed(gauge) => write!(f, "the count of gauge {gauge} falls with the tension"),
+            Self::GaugeReversed(gauge) => write!(f, "the count of gauge {gauge} falls when the tension rises"),
             Self::GaugeDead(gauge) => write!(f, "gauge {gauge} does not show the weight"),
             Self::GaugeScale(gauge, ratio) => {
                 let (percent, way) = ((ratio - 1.0) * 100.0, if *ratio < 1.0 { "low" } else { "high" });
@@ -88,8 +88,8 @@ impl Wrong {
             }
             Self::GaugeAtEnd(gauge, count, zero) => write!(
                 f,
-                "gauge {gauge} shows {count:.0} counts without load, which is the end of its converter's range. By the \
-                 weights its zero is at {zero:.0} counts"
+                "gauge {gauge} shows {count:.0} counts without load, which is the end of its converter's range. The \
+                 readings with weights show that its zero is at {zero:.0} counts"
             ),
             Self::GaugesUnclear(order) => write!(f, "{}", listed(order, showed)),
             Self::InitialLowered(initial, bound) => {
