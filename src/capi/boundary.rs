@@ -127,8 +127,8 @@ pub(super) fn delegated_or_done_here(
 }
 
 /// Runs a slow call. All signals are blocked except during the wait itself, and SIGSEGV and SIGBUS also while the
-/// arguments are read. So no other handler can jump out of any other part. A jump out of the wait does not restore the floating-point environment. Therefore the thread has the
-/// planner's environment during the wait.
+/// arguments are read. So no other handler can jump out of any other part. A jump out of the wait does not restore the
+/// floating-point environment. Therefore the thread has the planner's environment during the wait.
 fn slow(
     name: &'static str,
     handle: Handle,

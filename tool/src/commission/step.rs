@@ -73,7 +73,7 @@ impl Step {
             Self::Zeros => "Zeros gauges and encoders, then makes the finger a soft spring. Takes up to a minute.",
             Self::Tendons => {
                 "Moves every joint between its stops and presses against the lower ones, with up to 0.6 of the largest \
-                 tension. This measures the stretch of the tendons. Then zeros again with this stretch. Takes two minutes."
+                 tension. This measures the stretch of the tendons. Then zeros again with it. Takes two minutes."
             }
             Self::Bound => "Computes the largest stiffness at which the finger is stable. Takes one to two minutes.",
             Self::Computer => "Checks whether this computer runs the finger in time. The motors are off.",
@@ -91,8 +91,8 @@ impl Step {
             Self::Zeros => "The tendons come loose and tight again. Then the finger holds its pose.",
             Self::Tendons => "Slow motions of all joints, then each joint from stop to stop.",
             Self::Bound => {
-                "Nothing moves. The bound can be far below the stiffness that `sun2xp size` computes. The tool then says \
-                 what limits the bound."
+                "Nothing moves. The bound can be far below the stiffness that `sun2xp size` computes. The tool then \
+                 says what limits the bound."
             }
             Self::Computer => "Nothing moves.",
             Self::Spring => "The tip gives way under your hand, and returns.",
