@@ -4,7 +4,7 @@ use crate::Arguments;
 use crate::cases::{Case, Friction, direction, has_room};
 use crate::closed_loop::{ClosedLoop, Held, Senses};
 use crate::contact::residual;
-use crate::motion::STEP;
+use crate::motion::{ROOM, STEP};
 use crate::parallel::{each, worst};
 use crate::truths::Truth;
 use crate::truths_table::{cases, wanted};
@@ -55,7 +55,7 @@ fn at_pose(case: &Case, number: usize, pose: &Vector3<f64>, truth: &Truth) -> (V
     (truth.differ)(&mut finger);
     let mut random = Pcg64::seed_from_u64(case.seed + 100 + number as u64);
     let mut directions = (0..20).map(|_| direction(&mut random));
-    let way = directions.find(|way| has_room(&finger, pose, way, 1.2 * STEP)).unwrap_or_default();
+    let way = directions.find(|way| has_room(&finger, pose, way, ROOM)).unwrap_or_default();
     let (mut motions, mut fault) = (Vec::new(), None);
     for spring in SPRINGS {
         let (least, most) = AdmissibleDamping::new(&belief, case.rate).range(spring);

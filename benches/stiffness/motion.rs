@@ -22,7 +22,7 @@ pub struct Steps {
 /// Length of a step, cm.
 pub const STEP: f64 = 0.5;
 /// Distance that the joint limits must leave free for a step, cm, so that an overshoot does not reach them.
-const ROOM: f64 = 1.2 * STEP;
+pub const ROOM: f64 = 1.2 * STEP;
 /// Duration of a step, s. A step that has not settled by then counts with this time.
 const WATCHED: f64 = 1.5;
 /// The last part of this duration, in which the tip is averaged, s.
