@@ -1,4 +1,4 @@
-//! Rows of the table in which the controller's configuration differs from the true finger.
+//! Measures fingers that differ from the controller's configuration, for rows of the table in docs/stiffness.md.
 
 use crate::cases::{Case, Friction, stiffen};
 use crate::closed_loop::{Held, Senses};

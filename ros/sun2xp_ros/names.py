@@ -20,7 +20,7 @@ def palm(prefix: str) -> str:
 
 
 def base(prefix: str, finger: int) -> str:
-    """The frame of a finger, in which its stiffness is given (Figure 8 of the report)."""
+    """The frame of a finger, in which its stiffness is given (Figure 8 of COINS TR 90-48)."""
     return f"{prefix}finger{finger}_base"
 
 

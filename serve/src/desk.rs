@@ -107,8 +107,8 @@ impl Desk {
     }
 
     /// Takes a Target, or counts the reason why it is not taken. Returns an Answer for its sender if the hand refuses
-    /// the Target. `client` is the client whose key the Target has, and `now` is the time at which the Target was
-    /// received, ns.
+    /// the Target. `client` is the client that is named in the Zenoh key of the Target, and `now` is the time at which
+    /// the Target was received, ns.
     pub fn take_target(&mut self, client: &ClientName, payload: &[u8], now: u64) -> Option<Answer> {
         let tested = Target::decode(payload).map_err(|_: DecodeError| Rejection::Malformed).and_then(|target| {
             let owned = self.ownership.admits(client, target.epoch);

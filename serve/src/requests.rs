@@ -126,7 +126,8 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
             Ok(()) if desk.begin(&client, epoch, time) => {
                 Answer { number, ..desk.answer(Code::Done, String::new(), epoch, time) }
             }
-            // No epoch begins, so fingers that were caught (see `crate::silence`) stay soft.
+            // `Desk::begin` is not called, so fingers that were caught (see `crate::silence`) do not follow their set
+            // points again. They hold their pose softly until they go to their end state.
             Err(error) if desk.admits(&client, epoch) => {
                 desk.abandon(time);
                 desk.answer(code_of(&error), error.to_string(), 0, time)

@@ -126,9 +126,10 @@ pub(super) fn delegated_or_done_here(
     })
 }
 
-/// Runs a slow call. All signals are blocked except during the wait itself, and SIGSEGV and SIGBUS also while the
-/// arguments are read. So no other handler can jump out of any other part. A jump out of the wait does not restore the
-/// floating-point environment. Therefore the thread has the planner's environment during the wait.
+/// Runs a slow call. The planner's signal mask is in force only during the wait itself. While the arguments are copied,
+/// only the fault signals (for example SIGSEGV) can be delivered. All signals are blocked in all other parts of the
+/// call, so no handler can jump out of these parts. A jump out of the wait does not restore the floating-point
+/// environment. Therefore the thread has the planner's environment during the wait.
 fn slow(
     name: &'static str,
     handle: Handle,

@@ -18,7 +18,8 @@ pub enum Pose {
     Tip([f64; 3]),
 }
 
-/// The part of a group that commands one finger. A quantity that is `None` keeps its value.
+/// The command for one finger in a group, which is a set of commands that take effect in one cycle. A quantity that is
+/// `None` keeps its value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct FingerCommand {

@@ -10,7 +10,7 @@ use crate::model::configuration::{ConfiguredFinger, Unusable};
 
 /// Time in which every motion must decay to 1/e, s. At 1000 Hz the largest modulus is then below 1 - 1e-4. Most slow
 /// motions of the default finger take 1.2 s with state feedback. The slowest takes 5 s, with the controller of
-/// Figure 11 and an almost straight finger. So this margin excludes no motion that is merely slow.
+/// Figure 11 of COINS TR 90-48 and an almost straight finger. So this margin excludes no motion that is merely slow.
 const DECAY_TIME: f64 = 10.0;
 
 /// A stiffness that no pose supports, N/cm. The servo scales it down to the supported stiffness.

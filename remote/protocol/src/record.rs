@@ -13,7 +13,7 @@ pub struct Record {
     pub stage: Stage,
     /// The command number that the server applied last; 0 if none in this epoch.
     pub command: u32,
-    /// The number of the cycle since open.
+    /// The number of the cycle, counted since the server opened the hand.
     pub cycle: u64,
     /// The beginning of the cycle, ns, server's clock.
     pub begin: u64,

@@ -85,8 +85,8 @@ impl Desk<'_> {
         }
     }
 
-    /// Does one step until it passes, or until the person gives up. `failed` is called each time that it has not
-    /// passed, or has stopped with an error. It is not called if nobody is there to answer.
+    /// Does one step until it passes, or until the person gives up. `failed` is called each time that the step does not
+    /// pass or stops with an error. It is not called if the step stops because nobody answers or the person leaves.
     pub fn complete(
         &mut self,
         step: Step,

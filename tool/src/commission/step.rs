@@ -61,8 +61,8 @@ impl Step {
         match self {
             Self::Board => "Queries the identity of the board, and tests its emergency stop. The motors are off.",
             Self::Encoders => {
-                "Reads the encoders while you turn each motor by hand. The motors are off. If encoders are swapped, \
-                 the tool asks you, and then turns each motor a little."
+                "Reads the encoders while you turn each motor by hand. The motors are off, unless encoders are \
+                 swapped. In that case the tool asks you to hold the finger still, and then turns each motor a little."
             }
             Self::Gauges => {
                 "Reads the gauges without load, and while you hang known weights on each tendon. The motors are off."

@@ -8,7 +8,7 @@ use super::shape::{Colour, Form, Shape};
 const THICKNESS: f64 = 1.2;
 /// Distance from the axes of the joints 0 down to the upper side of the plate, cm.
 const CLEARANCE: f64 = 1.4;
-/// Distance of the edges of the plate from the bases, cm.
+/// Distance from the outermost bases to the axes of the plate's round edges, along x and along y, cm.
 const MARGIN: f64 = 1.6;
 
 /// Returns the base of a finger, in the finger's frame: the shaft of joint 0 with its two supports. `radius` is that of

@@ -31,7 +31,7 @@ class FingerState:
 
     #: Number of the finger, 1 to 3.
     finger: int
-    #: Number of the cycle since open.
+    #: Number of the cycle, counted since the server opened the hand.
     cycle: int
     #: Beginning of the cycle.
     time: int
@@ -47,7 +47,8 @@ class FingerState:
     touching: bool
     #: Joint angles, rad: shape (3,).
     position: Array
-    #: Joint angles of the set point, rad: shape (3,). None if the finger is not a spring.
+    #: Joint angles of the set point, rad: shape (3,). None if the finger is not controlled as a
+    #: spring, for example during calibration or after a fault.
     set_point: Optional[Array]
     #: Position of the tip in the finger's frame, cm: shape (3,).
     tip: Array

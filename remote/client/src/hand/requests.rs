@@ -14,11 +14,12 @@ impl RemoteHand {
         self.request(Action::Recover, finger)
     }
 
-    /// Brings finger 1, 2 or 3, or every finger, to its end state at once. Any client may do this, whoever owns the
-    /// hand.
+    /// Brings finger 1, 2 or 3, or every finger, to its end state at once. Every client with the permission "read" or
+    /// "command" at the server may do this, even if another client owns the hand.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger, or if the hand cannot be reached.
+    /// Returns an error if there is no such finger, if the server does not give this client a permission, or if the
+    /// hand cannot be reached.
     pub fn stop(&self, finger: Option<i32>) -> Result<(), RemoteError> {
         self.request(Action::Stop, finger)
     }
@@ -28,7 +29,7 @@ impl RemoteHand {
     /// returns an error, repeat it as long as [`RemoteHand::is_owner`] is true.
     ///
     /// # Errors
-    /// Returns an error if the hand cannot be reached.
+    /// Returns an error if the server does not give this client a permission, or if the hand cannot be reached.
     pub fn emergency_stop(&self) -> Result<(), RemoteError> {
         self.link.shared.lock().outbox.hold(true);
         self.stop(None)?;

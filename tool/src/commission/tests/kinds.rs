@@ -247,7 +247,7 @@ fn every_kind_is_named_on_every_hand() {
     all_kinds(0..4);
 }
 
-/// The table of docs/commissioning.md.
+/// Prints the figures of docs/commissioning.md, "Which faults are named".
 #[test]
 #[ignore = "long: 400 commissionings"]
 fn every_kind_is_named_twenty_times() {
