@@ -8,6 +8,7 @@ mod construction;
 mod damping_design;
 pub(super) mod decision;
 mod dither;
+mod dither_burst;
 mod friction_feed_forward;
 mod numbers;
 mod observer;

@@ -151,8 +151,11 @@ fn a_tendon_that_hangs_for_a_moment_on_an_identified_hand_is_no_fault() {
 }
 
 /// Injects a defect into a part of the rubbing hand, which continues to move. Returns the part, the fault, and the time
-/// to the fault, ms. The time counts from the first cycle in which `begins` returns true.
-fn report(seed: u64, defect: impl Fn(u8) -> Defect, begins: impl Fn(&Bench, u8) -> bool) -> (u8, Option<Fault>, f64) {
+/// to the fault, ms. `shows` returns the direction in which the defect shows in a cycle, or 0. The time counts from the
+/// first cycle in which it shows. It counts again from the next such cycle if the defect then shows in the other
+/// direction, or has not shown for a period of the dither.
+fn report(seed: u64, defect: impl Fn(u8) -> Defect, shows: impl Fn(&Bench, u8) -> f64) -> (u8, Option<Fault>, f64) {
+    const DITHER_PERIOD: u64 = 23 * MILLISECOND;
     let mut bench = bench(&RUBBING, seed);
     let before = 3000 + bench.random(0.0, 1000.0) as u64;
     bench.run(before);
@@ -160,26 +163,31 @@ fn report(seed: u64, defect: impl Fn(u8) -> Defect, begins: impl Fn(&Bench, u8) 
     bench.mark();
     assert!(bench.with_finger(|finger| finger.inject(&defect(part))));
     let injected = bench.now();
-    let mut began = None;
+    let (mut began, mut last, mut direction) = (None, injected, 0.0);
     while bench.fault().is_none() && bench.now() < injected + 5000 * MILLISECOND {
         bench.cycle();
-        if began.is_none() && begins(&bench, part) {
-            began = Some(bench.now());
+        let (now, shown) = (bench.now(), shows(&bench, part));
+        if shown != 0.0 {
+            if began.is_none() || shown != direction || now - last > DITHER_PERIOD {
+                began = Some(now);
+            }
+            (last, direction) = (now, shown);
         }
     }
     (part, bench.fault(), (bench.now() - began.unwrap_or(bench.now())) as f64 * 1e-6)
 }
 
-fn at_once(_: &Bench, _: u8) -> bool {
-    true
+fn at_once(_: &Bench, _: u8) -> f64 {
+    1.0
 }
 
-/// Whether the pull of a motor and the tension of its tendon differ by more than friction may hold.
-fn out_of_balance(bench: &Bench, motor: u8) -> bool {
+/// Returns the sign of the pull of a motor minus the tension of its tendon, or 0 if friction may hold the difference.
+fn out_of_balance(bench: &Bench, motor: u8) -> f64 {
     let (motor, finger) = (usize::from(motor) - 1, bench.finger());
     let (pull, tension) = (bench.truth.pulls[motor], bench.truth.tensions[motor]);
     let held = finger.monitors.stall_torque[motor] / finger.geometry.motor_radius[motor];
-    (pull - tension).abs() > held + finger.monitors.stall_fraction * pull.abs().max(tension)
+    let tolerated = held + finger.monitors.stall_fraction * pull.abs().max(tension);
+    if (pull - tension).abs() > tolerated { (pull - tension).signum() } else { 0.0 }
 }
 
 /// Injects a defect with several seeds. Returns the median and the longest time until the report, ms.
@@ -187,11 +195,11 @@ fn reports(
     seeds: u64,
     kinds: &[FaultKind],
     defect: impl Fn(u8) -> Defect,
-    begins: impl Fn(&Bench, u8) -> bool,
+    shows: impl Fn(&Bench, u8) -> f64,
 ) -> (f64, f64) {
     let mut times: Vec<f64> = (0..seeds)
         .map(|seed| {
-            let (part, fault, time) = report(seed, &defect, &begins);
+            let (part, fault, time) = report(seed, &defect, &shows);
             let right = fault.is_some_and(|fault| kinds.contains(&fault.kind));
             assert!(right, "{kinds:?}, seed {seed}, part {part}: {fault:?} after {time} ms");
             time

@@ -8,6 +8,7 @@ use crate::control::spring::joint_stiffness::JointStiffness;
 use crate::control::spring::slew::Slew;
 use crate::control::state_feedback::damping_design::DampingDesign;
 use crate::control::state_feedback::dither::Dither;
+use crate::control::state_feedback::dither_burst::DitherBurst;
 use crate::control::state_feedback::friction_feed_forward::FrictionFeedForward;
 use crate::control::state_feedback::observer::{ElasticTendon, ObserverDesign, TendonObserver};
 use crate::control::state_feedback::pulley_feed_forward::PulleyFeedForward;
@@ -136,17 +137,21 @@ fn damping_design(numbers: &Numbers, relative_damping: f64, stiffness: f64) -> D
     }
 }
 
-/// Returns the dither of the tensions. `common` is the unit vector of the tensions without joint torque. `highest` is
-/// the largest tension of each tendon, N.
+/// Returns the dither of the tensions. `lower_reserve` is the distance of the tensions from t_min without this dither,
+/// and `highest` is the largest tension of each tendon, N.
 fn tension_dither(
     finger: &ConfiguredFinger,
     numbers: &Numbers,
-    common: Vector4<f64>,
-    highest: Vector4<f64>,
+    tendons: &Tendons,
+    (lower_reserve, highest): (f64, Vector4<f64>),
     rate: f64,
 ) -> TensionDither {
-    let pulley = Vector4::from(finger.friction.pulley);
-    TensionDither::new(common, numbers, &pulley, highest, finger.tendon.minimum, rate)
+    let (pulley, minimum) = (Vector4::from(finger.friction.pulley), finger.tendon.minimum);
+    let pretension = tendons.pretension(minimum);
+    // A burst is short. So the desired tensions stay above t_min in it, but without a distance for the noise.
+    let lowest = minimum + lower_reserve - NOISE_RESERVE * GAUGE_NOISE;
+    let burst = DitherBurst::new(&(tendons.r.abs() * pretension), rate);
+    TensionDither::new(pretension.normalize(), numbers, (&pulley, burst), (lowest, highest), minimum, rate)
 }
 
 impl StateFeedback {
@@ -176,7 +181,7 @@ impl StateFeedback {
             Vector4::from_fn(|motor, _| lower_reserve + FRICTION_RESERVE * friction.at(motor, maximum[motor]));
         let common = tendons.pretension(1.0).normalize();
         let highest = maximum - upper_reserve;
-        let tension_dither = tension_dither(finger, numbers, common, highest, rate);
+        let tension_dither = tension_dither(finger, numbers, tendons, (lower_reserve, highest), rate);
         Ok(Self {
             period: 1.0 / rate,
             observers: drives.observers(finger, numbers, rate)?,

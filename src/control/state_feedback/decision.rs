@@ -63,14 +63,15 @@ impl StateFeedback {
         let now = self.at_next_sample(state);
         let reference = self.follow(state, &spring.joints, motion);
         let inertia = self.dynamics.inertia_at(&state.joints, pose);
-        let joint_torques =
-            self.joint_torques(state, &now, (spring, joint_spring), &reference, &inertia, (limits, gravity)) * 100.0;
+        let (sprung, torques) =
+            self.joint_torques(state, &now, (spring, joint_spring), &reference, &inertia, (limits, gravity));
+        let joint_torques = torques * 100.0;
         let DistributedTensions { tensions: distributed, scale: torque_scale } =
             distribution.distribute(&joint_torques);
         if begins {
             state.transition.begin(&now.tensions, &distributed);
         }
-        let shake = self.shake(state, &distributed, &now.tensions);
+        let shake = self.shake(state, (&distributed, &now.tensions), (&reference.rates, &sprung));
         let desired_tensions = distributed + shake.tensions;
         let error = desired_tensions + state.transition.advance(self.period) - now.tensions;
         let against_friction = self.friction.pulls(&now.motor_speeds, &now.tensions);
@@ -121,8 +122,9 @@ impl StateFeedback {
         reference
     }
 
-    /// Returns the joint torques, N m. They are the sum of the torques of the spring, the soft limits, gravity
-    /// compensation and the damper, and of the feed-forward for friction and for the motion of the reference.
+    /// Returns the joint torques of the spring, N cm, and all joint torques, N m. These are the sum of the torques of
+    /// the spring, the soft limits, gravity compensation and the damper, and of the feed-forward for friction and for
+    /// the motion of the reference.
     fn joint_torques(
         &self,
         state: &mut StateFeedbackState,
@@ -131,7 +133,7 @@ impl StateFeedback {
         reference: &ReferenceMotion,
         inertia: &Matrix3<f64>,
         (limits, (compensation, gravity)): (&SoftLimits, (&GravityCompensation, &Option<Vector3<f64>>)),
-    ) -> Vector3<f64> {
+    ) -> (Vector3<f64>, Vector3<f64>) {
         let push = limits.push(&now.joints);
         let pose = JointSines::of(&now.joints);
         let posed = self.joint_stiffness.posed_at(spring, &now.joints, &pose);
@@ -150,12 +152,13 @@ impl StateFeedback {
         let rubbing = self.pulleys.as_ref().map_or_else(Vector3::zeros, |pulleys| {
             self.r * pulleys.tensions(&self.r.tr_mul(&reference.rates), &now.tensions)
         });
-        held * 0.01 - damping * (now.rates - reference.rates)
+        let torques = held * 0.01 - damping * (now.rates - reference.rates)
             + rubbing
             + apparent * reference.accelerations
             + self.dynamics.coriolis_at(&now.joints, &pose, &reference.rates)
             + self.joint_viscous.component_mul(&reference.rates)
-            + joint_friction
+            + joint_friction;
+        (sprung, torques)
     }
 
     /// Returns the feed-forward of the joints' Coulomb friction, N m. Its slope is limited to a fraction of the
@@ -176,11 +179,17 @@ impl StateFeedback {
     }
 
     /// Returns the dither of the joints and of the tensions. `desired` are the tensions without it, `now` the present
-    /// ones, N.
-    fn shake(&self, state: &mut StateFeedbackState, desired: &Vector4<f64>, now: &Vector4<f64>) -> Shake {
+    /// ones, N. `rates` are the joint rates of the reference, rad/s, and `sprung` is the joint torque of the spring,
+    /// N cm.
+    fn shake(
+        &self,
+        state: &mut StateFeedbackState,
+        (desired, now): (&Vector4<f64>, &Vector4<f64>),
+        (rates, sprung): (&Vector3<f64>, &Vector3<f64>),
+    ) -> Shake {
         let (shake, leading) = self.dither.advance(&mut state.dither);
         let phase = self.dither.phase(&state.dither);
-        let amplitude = self.tension_dither.advance(&mut state.tension_dither, desired, now, &phase);
+        let amplitude = self.tension_dither.advance(&mut state.tension_dither, (desired, now), &phase, (rates, sprung));
         Shake {
             tensions: self.pseudo_inverse * shake + amplitude * phase.x,
             rates: (self.pseudo_inverse * leading + amplitude * phase.y) * self.dither.frequency,

@@ -54,6 +54,9 @@ pub struct Numbers {
     pub dither: f64,
     /// Smallest amplitude of the dither of the tensions as a fraction of the tension. 0: no dither of the tensions.
     pub tension_dither: f64,
+    /// Amplitude to which the dither of the tensions rises after a motion of the reference, as a fraction of the
+    /// tensions of a finger without joint torque whose lowest tension is t_min.
+    pub dither_burst: f64,
     /// The part of the motors' friction that is fed forward.
     pub friction_share: f64,
     /// Frequency of the dither, Hz. With a lower frequency the motors need less torque for the dither, and the tip
@@ -145,6 +148,8 @@ struct TunedNumbers {
     damped_inertia: f64,
     /// Time constant of each stage of the reference filter, s.
     reference_time: f64,
+    /// At 1000 Hz, with 0.35 "worn" fingers settle sooner, and "cheap" fingers later.
+    dither_burst: f64,
 }
 
 impl Tuned for TunedNumbers {
@@ -161,6 +166,7 @@ impl Tuned for TunedNumbers {
             common_damping: number(lower.common_damping, upper.common_damping),
             damped_inertia: number(lower.damped_inertia, upper.damped_inertia),
             reference_time: number(lower.reference_time, upper.reference_time),
+            dither_burst: number(lower.dither_burst, upper.dither_burst),
         }
     }
 }
@@ -180,6 +186,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
             common_damping: 0.6,
             damped_inertia: 1.4,
             reference_time: 0.012,
+            dither_burst: 0.25,
         },
     ),
     (
@@ -196,6 +203,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
             common_damping: 0.266,
             damped_inertia: 10.2,
             reference_time: 0.008,
+            dither_burst: 0.3,
         },
     ),
     (
@@ -212,6 +220,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
             common_damping: 0.184,
             damped_inertia: 9.03,
             reference_time: 0.008,
+            dither_burst: 0.3,
         },
     ),
 ];
@@ -236,6 +245,7 @@ impl Numbers {
             reference_time: configured.set_point_time.unwrap_or(tuned.reference_time / (rate / TABLE[0].0).min(1.0)),
             dither: configured.dither.unwrap_or(DITHER),
             tension_dither: configured.tension_dither.unwrap_or(TENSION_DITHER),
+            dither_burst: tuned.dither_burst,
             friction_share: configured.friction_share.unwrap_or(FRICTION_SHARE),
             dither_frequency: DITHER_FREQUENCY.min(rate / 12.0),
             pulley_excess: PULLEY_EXCESS,

@@ -6,8 +6,9 @@
 //! more than p t, the tendon slides in both directions in every period, and the mean tension at the joint equals the
 //! mean tension at the gauge. The oscillation is along the null vector n of R, so that it does not move the joints.
 
+use super::dither_burst::{DitherBurst, DitherBurstState};
 use super::numbers::Numbers;
-use nalgebra::{Vector2, Vector4};
+use nalgebra::{Vector2, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
 /// Largest amplitude as a fraction of each tension, so that no tendon becomes slack.
@@ -15,6 +16,9 @@ const LARGEST: f64 = 0.4;
 
 /// Tension below which an overestimated amplitude falls quickly, as a fraction of t_min.
 const LOW: f64 = 0.4;
+/// Envelope of a burst below which the amplitude is adjusted again.
+const ENDED: f64 = 0.02;
+
 /// Factor per cycle of an amplitude that falls quickly.
 const FALLING: f64 = 0.97;
 
@@ -47,12 +51,18 @@ pub(crate) struct TensionDither {
     most: Vector4<f64>,
     /// Tension below which the amplitude falls quickly, N.
     low: f64,
+    /// Lowest desired tension in a burst, N.
+    lowest: f64,
     measuring: f64,
     adjusting: f64,
     /// See [`Numbers::dither_reserve`].
     reserve: f64,
     /// Largest b, N. See [`Numbers::dither_rise`].
     risen: f64,
+    burst: DitherBurst,
+    /// Largest b of a burst, N. The limit [`TensionDither::risen`] does not apply to it. It does not grow with
+    /// the tensions: at hard walls, the dither of loaded fingers would make tendons slack.
+    burst_amplitude: f64,
 }
 
 /// The measured amplitude and its adjustment.
@@ -62,16 +72,18 @@ pub(crate) struct TensionDitherState {
     measured: Vector2<f64>,
     /// Commanded amplitude divided by the wanted one.
     scale: f64,
+    #[serde(default)]
+    burst: DitherBurstState,
 }
 
 impl TensionDither {
-    /// Constructs the dither. `common` is n. `pulley` is the friction of the pulleys. `most` is the largest tension of
-    /// each tendon, and `minimum` is t_min, N.
+    /// Constructs the dither. `common` is n. `pulley` is the friction of the pulleys. `lowest` is the lowest desired
+    /// tension in a burst, `most` is the largest tension of each tendon, and `minimum` is t_min, N.
     pub fn new(
         common: Vector4<f64>,
         numbers: &Numbers,
-        pulley: &Vector4<f64>,
-        most: Vector4<f64>,
+        (pulley, burst): (&Vector4<f64>, DitherBurst),
+        (lowest, most): (f64, Vector4<f64>),
         minimum: f64,
         rate: f64,
     ) -> Self {
@@ -81,7 +93,8 @@ impl TensionDither {
             |friction: f64| if least > 0.0 { (numbers.pulley_excess * friction).clamp(least, LARGEST) } else { 0.0 };
         let part = pulley.map(wanted).component_mul(&inverse_common);
         // Tensions without joint torque are proportional to n, and the lowest of them is t_min.
-        let unloaded = part.component_mul(&common).max() * minimum / common.min();
+        let pretension = minimum / common.min();
+        let unloaded = part.component_mul(&common).max() * pretension;
         let rubs = numbers.pulley_excess * pulley.max() > least;
         Self {
             common,
@@ -90,9 +103,12 @@ impl TensionDither {
             risen: if rubs { f64::INFINITY } else { numbers.dither_rise * unloaded },
             most,
             low: LOW * minimum,
+            lowest,
             measuring: 1.0 / (MEASURING * rate),
             adjusting: 1.0 / (ADJUSTING * rate),
             reserve: numbers.dither_reserve,
+            burst,
+            burst_amplitude: if least > 0.0 { numbers.dither_burst * pretension } else { 0.0 },
         }
     }
 
@@ -106,18 +122,26 @@ impl TensionDither {
     }
 
     pub fn start(&self) -> TensionDitherState {
-        TensionDitherState { measured: Vector2::zeros(), scale: 1.0 }
+        TensionDitherState { measured: Vector2::zeros(), scale: 1.0, burst: DitherBurstState::default() }
+    }
+
+    /// Returns the largest b with which these tensions stay above the lowest tension of a burst, N.
+    fn above_lowest(&self, tensions: &Vector4<f64>) -> f64 {
+        tensions.add_scalar(-self.lowest).component_mul(&self.inverse_common).min()
     }
 
     /// Returns the amplitude of each tendon, N. `desired` are the tensions without dither, `now` the present ones, N.
-    /// `phase` contains the sine and the cosine of omega t.
+    /// `phase` contains the sine and the cosine of omega t. `rates` are the joint rates of the reference, rad/s,
+    /// and `sprung` is the joint torque of the spring, N cm.
     pub fn advance(
         &self,
         state: &mut TensionDitherState,
-        desired: &Vector4<f64>,
-        now: &Vector4<f64>,
+        (desired, now): (&Vector4<f64>, &Vector4<f64>),
         phase: &Vector2<f64>,
+        (rates, sprung): (&Vector3<f64>, &Vector3<f64>),
     ) -> Vector4<f64> {
+        let slack = now.min() < self.low;
+        let burst = self.burst.advance(&mut state.burst, rates, sprung, slack);
         let wanted = self.part.component_mul(desired).max();
         let room = (desired * LARGEST).inf(&(self.most - desired)).component_mul(&self.inverse_common).min();
         let wanted = wanted.min(room).min(self.risen);
@@ -127,11 +151,15 @@ impl TensionDither {
         // The mean of 2 a sin^2 is a.
         let deviation = 2.0 * self.common.dot(&(now - desired));
         state.measured += (phase * deviation - state.measured) * self.measuring;
-        let missing = 1.0 - state.measured.norm() / wanted;
-        let scale = state.scale + missing.max(-1.0) * self.adjusting;
-        let scale = if now.min() < self.low { scale * FALLING } else { scale };
+        if burst < ENDED {
+            let missing = 1.0 - state.measured.norm() / wanted;
+            state.scale += missing.max(-1.0) * self.adjusting;
+        }
+        let scale = if slack { state.scale * FALLING } else { state.scale };
         state.scale = scale.clamp(SCALES[0], SCALES[1]);
-        self.common * (wanted * state.scale)
+        let amplitude = wanted * state.scale;
+        let most = (self.burst_amplitude * state.scale).min(self.above_lowest(desired)).min(room);
+        self.common * (amplitude + (most - amplitude).max(0.0) * burst)
     }
 }
 
@@ -151,25 +179,40 @@ mod tests {
     fn dither(least: f64, pulley: f64) -> TensionDither {
         let configured = ConfiguredController { tension_dither: Some(least), ..ConfiguredController::default() };
         let numbers = Numbers::new(&configured, RATE).expect("usable numbers");
-        TensionDither::new(home().normalize(), &numbers, &Vector4::repeat(pulley), Vector4::repeat(60.0), 5.0, RATE)
+        let burst = DitherBurst::new(&Vector3::repeat(20.0), RATE);
+        let pulley = Vector4::repeat(pulley);
+        TensionDither::new(home().normalize(), &numbers, (&pulley, burst), (5.0, Vector4::repeat(60.0)), 5.0, RATE)
     }
 
-    /// Runs the dither for two seconds on tensions that follow it with the gain `response`. Returns the largest
-    /// deviations of the tensions from `desired` in the last half second, N.
-    fn followed(dither: &TensionDither, desired: &Vector4<f64>, response: f64) -> Vector4<f64> {
+    /// Runs the dither for `time` (s) on tensions that follow it with the gain `response`, with a reference of this
+    /// rate, rad/s. Returns the largest deviations of the tensions from `desired` in the last 0.1 s, N.
+    fn run(
+        dither: &TensionDither,
+        state: &mut TensionDitherState,
+        (desired, response): (&Vector4<f64>, f64),
+        rate: f64,
+        time: f64,
+    ) -> Vector4<f64> {
         let phasor = Dither::new(Vector3::zeros(), 40.0, RATE);
-        let (mut phase, mut state) = (phasor.start(), dither.start());
+        let mut phase = phasor.start();
         let (mut now, mut largest) = (*desired, Vector4::zeros());
-        for cycle in 0..2000 {
+        let cycles = (time * RATE) as usize;
+        for cycle in 0..cycles {
             phasor.advance(&mut phase);
             let phase = phasor.phase(&phase);
-            let amplitude = dither.advance(&mut state, desired, &now, &phase);
+            let moving = (&Vector3::repeat(rate), &Vector3::zeros());
+            let amplitude = dither.advance(state, (desired, &now), &phase, moving);
             now = desired + amplitude * (response * phase.x);
-            if cycle >= 1500 {
+            if cycle + 100 >= cycles {
                 largest = largest.sup(&(now - desired));
             }
         }
         largest
+    }
+
+    /// Runs the dither for two seconds at rest.
+    fn followed(dither: &TensionDither, desired: &Vector4<f64>, response: f64) -> Vector4<f64> {
+        run(dither, &mut dither.start(), (desired, response), 0.0, 2.0)
     }
 
     #[test]
@@ -195,6 +238,21 @@ mod tests {
             assert!((desired - found).min() >= 0.55 * 5.0, "{found}");
             assert!((desired + found).max() <= 60.0 + 1e-9, "{found}");
         }
+    }
+
+    #[test]
+    fn the_end_of_a_motion_raises_the_amplitude_as_far_as_there_is_room() {
+        let after_a_motion = |least, desired: Vector4<f64>| {
+            let dither = dither(least, 0.0);
+            let mut state = dither.start();
+            run(&dither, &mut state, (&desired, 1.0), 4.0, 0.5);
+            run(&dither, &mut state, (&desired, 1.0), 0.0, 0.1).component_div(&home())
+        };
+        let found = after_a_motion(0.06, home() * 1.5);
+        assert!(found.iter().all(|part| (part - 0.3).abs() < 0.02), "{found}");
+        let found = after_a_motion(0.06, home() * 1.2);
+        assert!(found.max() <= 0.2 + 1e-9, "{found}");
+        assert_eq!(after_a_motion(0.0, home() * 1.5), Vector4::zeros());
     }
 
     #[test]
