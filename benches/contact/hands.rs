@@ -106,7 +106,7 @@ fn named(finger: &mut ConfiguredFinger, hand: NamedHand) {
     finger.simulation = hand.simulation();
 }
 
-/// Configures what a calibration stores, without the errors of the calibration.
+/// Configures the values that a calibration without errors would store.
 fn calibrated(finger: &mut ConfiguredFinger, own: &mut ConfiguredFinger, hand: NamedHand) {
     named(finger, hand);
     let simulation = &finger.simulation;

@@ -11,7 +11,7 @@ use sun2xp::realtime::{Clock, MonotonicClock, Priority, Schedule, now, spawn};
 /// Number of late cycles and of pauses per core that are stored: enough for half an hour on a busy machine.
 const KEPT: usize = 4_000_000;
 
-/// A cycle that was not complete when the next one was due. All times in ns.
+/// A cycle that was not complete when the next one was due. All times are in ns.
 #[derive(Clone, Copy)]
 pub struct LateCycle {
     /// Scheduled start.
@@ -26,9 +26,9 @@ pub struct LateCycle {
     pub computed: u64,
 }
 
-/// A clock that records late cycles from the calls that a servo makes in one cycle. The servo sleeps until the start of
-/// the cycle, and reads the time when it wakes up. Its last two readings in the cycle are the start and the end of its
-/// computation. So the measured library needs no change.
+/// A clock that records late cycles. It finds them by the calls that a servo makes in one cycle, so the measured
+/// library needs no change. The servo sleeps until the start of the cycle, and reads the time when it wakes up. Its
+/// last two readings in the cycle are the start and the end of its computation.
 pub struct NotingClock {
     period: u64,
     beginning: Cell<u64>,
@@ -114,7 +114,7 @@ fn thread_time() -> u64 {
 /// ns.
 pub type Pause = (u64, u64);
 
-/// One thread per core that only wakes up, like those of cyclictest, and records when it was late.
+/// One thread for each core. Like the threads of cyclictest, it only wakes up, and records when it was late.
 pub struct Watchers {
     ended: Arc<AtomicBool>,
     threads: Vec<JoinHandle<Vec<Pause>>>,
@@ -198,8 +198,8 @@ impl Pauses {
 pub enum Cause {
     /// Its thread was woken late. If the thread had been woken on time, the cycle would have met its deadline.
     WakeUp,
-    /// During the cycle, a core did not run a thread whose priority is above that of all servos. This lasted at least
-    /// as long as the cycle was late.
+    /// During the cycle, a core did not run a thread whose priority is above that of all servos. This pause lasted at
+    /// least as long as the time by which the cycle was late.
     Pause,
     /// A poll that returned late, or other threads, kept the thread off its core. The run time of the thread was at
     /// most the part of a period that is left after [`REPLY_WINDOW`]. If the thread had kept its core, the cycle would

@@ -22,7 +22,7 @@ pub struct Finger {
     pub uncollected: (Consumer<CycleTiming>, BlackBox),
 }
 
-/// Connects to all fingers of a hand, each on its own port. `period` is in ns, and the phases are staggered.
+/// Connects to all fingers of a hand, each on its own port. `period` is in ns. The phases of the fingers are staggered.
 pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> Result<Vec<Finger>, Failure> {
     reach_with(configuration, period, board_priority, |_, servo| servo)
 }

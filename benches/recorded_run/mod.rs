@@ -100,7 +100,7 @@ impl Recording {
         }
     }
 
-    /// Returns which states the run has covered. Without them a comparison would be meaningless.
+    /// Returns which states the run has covered. A comparison is meaningful only if the run has covered these states.
     pub fn seen(&self) -> String {
         let cycles = |met: fn(&Report) -> bool| self.reports.iter().filter(|report| met(report)).count();
         let (low, high) = self.finger.joint_limits();

@@ -129,8 +129,8 @@ pub fn axes() -> impl Iterator<Item = Vector3<f64>> {
     [Vector3::x(), Vector3::y(), Vector3::z()].into_iter().flat_map(|axis| [axis, -axis])
 }
 
-/// Returns whether the tip can move `distance` cm in a straight line from `pose` without straightening the finger and
-/// within the joint limits.
+/// Returns whether the tip can move `distance` cm in a straight line from `pose`. The finger must stay bent, and its
+/// joints must stay within their limits.
 pub fn has_room(finger: &ConfiguredFinger, pose: &Vector3<f64>, direction: &Vector3<f64>, distance: f64) -> bool {
     const STRIDE: f64 = 0.05;
     const BENT: f64 = 0.35;

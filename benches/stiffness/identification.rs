@@ -1,5 +1,5 @@
-//! Runs the identification routine on a finger whose tendons differ from their configuration. Users run the same
-//! routine before they use a hand.
+//! Runs the identification routine on a finger that differs from its configuration. Users run the same routine before
+//! they use a hand.
 
 use crate::cases::{Case, Friction, stiffen};
 use nalgebra::Vector3;

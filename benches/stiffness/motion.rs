@@ -9,7 +9,7 @@ use sun2xp::model::configuration::ConfiguredFinger;
 
 /// The results of a set of steps.
 pub struct Steps {
-    /// Time until the tip stays within 5 % of the step, s: worst and median.
+    /// Time until the distance of the tip from its target stays within 5 % of the step, s: worst and median.
     pub worst: f64,
     pub median: f64,
     /// Worst overshoot, as a part of the step.
@@ -25,18 +25,18 @@ pub const STEP: f64 = 0.5;
 pub const ROOM: f64 = 1.2 * STEP;
 /// Duration of a step, s. A step that has not settled by then counts with this time.
 const WATCHED: f64 = 1.5;
-/// The last part of this duration, in which the tip is averaged, s.
+/// Length of the last part of a step, over which the position of the tip is averaged, s.
 const ENDING: f64 = 0.2;
 
 /// The result of one step.
 pub struct Step {
     /// Time until the distance of the tip from its target stays within 5 % of [`STEP`], s.
     pub time: f64,
-    /// Time until the distance of the tip from the place where it ends stays within 5 % of [`STEP`], s.
+    /// Time until the distance of the tip from its final position stays within 5 % of [`STEP`], s.
     pub to_its_end: f64,
-    /// Distance of this end from the target, as a part of the step.
+    /// Distance of the final position from the target, as a part of the step.
     pub off: f64,
-    /// Overshoot beyond the target and beyond the end, as parts of the step.
+    /// Overshoot beyond the target and beyond the final position, as parts of the step.
     pub overshoot: f64,
     pub beyond_its_end: f64,
     least_true: f64,
@@ -96,8 +96,8 @@ fn settling_time(tips: &[Vector3<f64>], target: &Vector3<f64>, rate: f64) -> f64
     tips.iter().rposition(|tip| !settled(tip)).map_or(0.0, |last| (last + 1) as f64 / rate)
 }
 
-/// Steps the anchor from every pose in the first direction that the joint limits permit. Returns for each step the
-/// motion of the tip: pairs of the time, s, and the distance along the step, as a part of the step.
+/// Steps the anchor from every pose in the first direction that the joint limits permit. Returns the motion of the tip
+/// for each step, as pairs. A pair consists of the time, s, and the distance along the step, as a part of the step.
 pub fn step_responses(case: &Case, stiffness: f64, seconds: f64) -> Vec<Vec<(f64, f64)>> {
     let mut cases = case.poses_and_directions(ROOM);
     cases.dedup_by_key(|(pose, _)| *pose);
@@ -113,8 +113,8 @@ pub fn step_responses(case: &Case, stiffness: f64, seconds: f64) -> Vec<Vec<(f64
     })
 }
 
-/// Moves the anchor by 30 mm in 200 ms with minimum jerk, at Kx 3. Returns the largest error from 100 ms after the end,
-/// cm, and the smallest true tension, N.
+/// Moves the anchor by 30 mm in 200 ms with minimum jerk, at Kx 3. Returns the largest error in the period from 100 ms
+/// to 400 ms after the end, cm, and the smallest true tension, N.
 pub fn reach(case: &Case) -> (f64, f64) {
     const WAY: f64 = 3.0;
     let all = each(&case.poses_and_directions(WAY), |_, (pose, direction)| {

@@ -30,7 +30,7 @@ pub struct Stability {
     pub largest: f64,
 }
 
-/// Number of samples for each pose that the other rows measure.
+/// Number of samples of a row here for each pose of the other rows of the table.
 const DENSITY: usize = 20;
 
 /// Returns poses within `limits`, with springs up to the bound and small loads. Without a load, tendons 1 and 4 would
@@ -61,7 +61,7 @@ pub fn anywhere(case: &Case) -> Stability {
     measure(case, &samples(case, &limits))
 }
 
-/// Measures fingers that press against walls of the three stiffnesses on any side.
+/// Measures fingers that press against walls of the three stiffnesses in random directions.
 pub fn against_walls(case: &Case) -> Stability {
     let links = ConfiguredFinger::default().links();
     let mut samples = samples(case, &USUAL);
@@ -103,7 +103,7 @@ pub fn growth(case: &Case, description: &ConfiguredFinger, sample: &Sample) -> O
     finger.push(sample.load);
     if let Some((surface, anchor)) = &sample.wall {
         finger.plant.set_surface(Some(*surface));
-        // If the anchor is out of reach, a weaker force presses the tip against the wall instead. That sample is
+        // If the anchor is out of reach, a force of 1 N presses the tip against the wall instead. That sample is
         // equally good.
         if !finger.move_anchor(anchor) {
             finger.push((anchor - finger.anchor()).normalize());

@@ -28,8 +28,8 @@ pub struct Trial {
     pub error: [f64; 2],
     /// Motion at rest, cm rms, at each of [`SPRINGS`].
     pub rest: [f64; 2],
-    /// Settling time of a step of 5 mm at 3 N/cm, s, and overshoot as a part of the step. Both are relative to where
-    /// the tip ends.
+    /// Settling time of a step of 5 mm at 3 N/cm, s, and overshoot as a part of the step. Both are relative to the
+    /// final position of the tip.
     pub settling: f64,
     pub overshoot: f64,
     /// Distance between the target and the final position of the tip, as a part of the step.

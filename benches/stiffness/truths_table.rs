@@ -11,7 +11,7 @@ use std::time::Instant;
 use sun2xp::control::Numbers;
 use sun2xp::model::configuration::{ConfiguredController, ConfiguredFinger, Scheme};
 
-/// Largest motion of a finger at rest, cm rms.
+/// Largest motion of a finger that counts as at rest, cm rms.
 const AT_REST: f64 = 0.005;
 
 pub fn run(arguments: &Arguments, only: &str, begun: Instant) -> Result<(), Box<dyn Error>> {
@@ -63,7 +63,7 @@ pub fn default_numbers(rate: f64) -> Result<Numbers, Box<dyn Error>> {
     Numbers::new(&ConfiguredController::default(), rate).map_err(|unusable| unusable.reason.into())
 }
 
-/// `all` are the results of each seed.
+/// Returns a row of the table. `all` has the results of each seed.
 fn row(name: &str, all: &[Vec<Trial>]) -> String {
     let refused: Vec<_> = all.iter().flatten().filter_map(|trial| trial.refused.as_ref()).collect();
     let done: Vec<&Vec<Trial>> = all.iter().filter(|seed| seed.iter().all(|trial| trial.refused.is_none())).collect();

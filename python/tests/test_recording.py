@@ -27,8 +27,8 @@ def test_the_tool_is_installed():
     assert failed.returncode == 1 and failed.stderr.startswith("sun2xp: ")
 
 
-def test_control_c_ends_the_tool():
-    process = subprocess.Popen([TOOL, "board", "--link", "unused"], stdout=subprocess.PIPE, cwd="/tmp")
+def test_control_c_ends_the_tool(tmp_path):
+    process = subprocess.Popen([TOOL, "board", "--link", "unused"], stdout=subprocess.PIPE, cwd=tmp_path)
     time.sleep(1)
     process.send_signal(2)
     assert process.wait(20) in (0, 1, -2)
@@ -51,6 +51,13 @@ def test_a_black_box_has_the_last_cycles(hand):
     assert abs(running["joints"][-1] - [0.1, 0.6, 0.9]).max() < 0.04
     assert box.description["configuration"]["hand"]["rate"] == 1000
     assert "finger 1" in repr(box)
+
+
+def test_a_recording_without_cycles_becomes_an_empty_table(hand):
+    hand.stop(1)
+    box = hand.black_box(1)
+    box.cycles = {1: box.cycles[1][:0]}
+    assert box.seconds(1).shape == (0,)
 
 
 def test_a_recording_becomes_a_table(tmp_path):

@@ -1,4 +1,4 @@
-//! Repair of a port: reopens it and shakes hands again, and checks that its boards are the same as at open.
+//! Repair of a port: reopens it, checks that its boards are the same as at open, and shakes hands with them again.
 
 use crate::board::protocol::{Configured, Identity, Status};
 use crate::board::{Connection, Link, LinkError, Port, Terms, Transport};
@@ -25,7 +25,8 @@ pub(super) struct PortRepair {
     released: bool,
     /// The released link or a new one; `None` while the port is gone.
     link: Option<Link<Connection>>,
-    /// Whether the link has not failed, or its boards have answered since and are the same as at open.
+    /// Whether the boards are known to be those of open. Either the link has not failed, or the boards have answered
+    /// after its failure and are the same as at open.
     pub checked: bool,
     /// Place of the finger that was last given to the servo while other fingers of the port ran.
     given: Option<usize>,
@@ -41,7 +42,7 @@ pub(super) struct KnownBoard {
     pub zero_valid: bool,
     /// Whether the board is hardware of the program. It keeps its terms until the hand is closed.
     pub has_io: bool,
-    /// Whether the board was found without terms after open. It has restarted then.
+    /// Whether the board was found without terms after open. This means that it has restarted.
     pub restarted: bool,
 }
 
@@ -67,7 +68,7 @@ impl PortRepair {
         self.released
     }
 
-    /// Whether the servo has ended. Then it does not take a link back.
+    /// Whether the servo has ended. A servo that has ended does not take a link back.
     pub fn servo_ended(&self) -> bool {
         self.handover.released.is_abandoned()
     }
@@ -101,7 +102,8 @@ impl PortRepair {
         };
         let outcome = work(&mut self.boards, &mut link);
         let failed = matches!(outcome, Err(HandError::Link { source: LinkError::Port(_), .. }));
-        // A failed port is closed by dropping its link. The next attempt opens it. Hardware of the program stays.
+        // Dropping the link to a port closes the failed port, and the next attempt opens it. The link to hardware of
+        // the program is kept.
         if !failed || link.transport().port().is_none() {
             self.link = Some(link);
         }
@@ -162,9 +164,9 @@ impl PortRepair {
         given
     }
 
-    /// Takes back the count of a finger that was given to the servo, and that the servo has not taken. The servo has
-    /// released the link, and discards the finger. The repair of the link replaces its handshake. `repairs` has the
-    /// counts in the order of the boards.
+    /// Subtracts the repair of a finger that was given to the servo and that the servo has not taken. The servo has
+    /// released the link, and discards the finger. The repair of the link replaces the handshake of this finger.
+    /// `repairs` has the counts in the order of the boards.
     pub fn discard_given(&mut self, repairs: &[AtomicU32; FINGERS]) {
         if let Some(place) = self.given.take().filter(|_| !self.is_taken()) {
             repairs[place].fetch_sub(1, Ordering::Release);
@@ -207,7 +209,7 @@ impl KnownBoard {
     }
 
     /// Stops the board and agrees on the terms with it. Its zeros must be those of open. Call [`KnownBoard::compare`]
-    /// before, because a Stop and terms are only for the board of open.
+    /// first, because only the board of open may receive a Stop and terms.
     fn configure<T: Transport>(&mut self, link: &mut Link<T>) -> Result<Configured, HandError> {
         // A board whose port failed has not received a Stop. If cable and power are back before its watchdog trips, the
         // board still executes its last command. If another board of the port does not answer `compare_all`, this one

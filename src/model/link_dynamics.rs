@@ -32,8 +32,9 @@ pub struct LinkDynamics {
     length: [f64; 3],
     link: [Cylinder; 3],
     tip_mass: f64,
-    /// The inertia of links 1 and 2 about joint 1, without the part that depends on theta_2: of link 1 with what it
-    /// carries at its end, and of link 2 alone, kg m^2.
+    /// The two parts of the inertia about joint 1 that do not depend on theta_2, kg m^2. The first part is the inertia
+    /// of link 1 with link 2 and the tip as point masses at its end. The second part is the inertia of link 2 and the
+    /// tip about joint 2.
     bent: [f64; 2],
     /// Coefficient of cos(theta_2) in the inertia that couples joints 1 and 2, kg m^2.
     coupling: f64,

@@ -25,12 +25,13 @@ pub type MessageReceiver = fn(Severity, &str) -> bool;
 
 static RECEIVER: OnceLock<MessageReceiver> = OnceLock::new();
 
-/// Offers all later messages to `receiver`. The first receiver stays.
+/// Offers all later messages to `receiver`. If there already is a receiver, that receiver stays.
 pub fn offer_messages_to(receiver: MessageReceiver) {
     RECEIVER.get_or_init(|| receiver);
 }
 
-/// Passes a message of one line to the receiver, or prints it.
+/// Passes a message of one line to the receiver. Prints it if there is no receiver or if the receiver does not accept
+/// it.
 pub fn report(severity: Severity, text: &str) {
     if !RECEIVER.get().is_some_and(|receiver| receiver(severity, text)) {
         print_line(text);
@@ -40,8 +41,8 @@ pub fn report(severity: Severity, text: &str) {
 /// Writes one line to standard error with a single system call, so that the lines of several threads do not mix.
 /// Allocates nothing. The thread is not cancelled during the write.
 ///
-/// If standard error accepts no more, the line is lost, and the process receives neither SIGPIPE nor SIGXFSZ.
-/// `eprintln!` is not used: it would panic then, and its lock could stay locked forever in a forked child.
+/// If standard error accepts no more data, the line is lost, and the process receives neither SIGPIPE nor SIGXFSZ.
+/// `eprintln!` is not used: it would panic in this case, and its lock could stay locked forever in a forked child.
 fn print_line(text: &str) {
     let parts = ["sun2xp: ", text, "\n"]
         .map(|part| libc::iovec { iov_base: part.as_ptr().cast_mut().cast(), iov_len: part.len() });

@@ -1,4 +1,4 @@
-//! Limits on the length of files, functions and lines. Comments count.
+//! Limits on the length of files, functions and lines. Lines with comments count too.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ const LINE: usize = 120;
 /// Folders whose files are not the project's: build products, and a crate of Zenoh with its upstream format.
 const FOREIGN: [&str; 3] = ["target", "build", "zenoh-link-tls"];
 
-/// Returns the Rust and C files of the project below a folder.
+/// Returns the Rust, C and C++ files of the project below a folder.
 pub fn source_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).expect("a folder") {

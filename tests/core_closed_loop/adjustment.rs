@@ -1,4 +1,4 @@
-//! Adjusts the parameters that section 5 calls adjustable while the finger runs.
+//! Adjusts parameters while the finger runs. Section 5 of the report calls these parameters adjustable.
 
 use crate::rig::{Loop, SCHEMES, quiet, spring};
 use nalgebra::Vector3;
@@ -29,8 +29,8 @@ const CHANGES: &[Change] = &[
     ("much larger motor radius", |finger| finger.geometry.motor_radius = [0.0600; 4], true),
 ];
 
-/// Largest change of a command from one cycle to the next, N at the tendon, of a pushed finger: at rest, during the
-/// adjustment, and when the controller is simply replaced.
+/// Returns the largest change of a command from one cycle to the next, N at the tendon, for a finger on which a force
+/// acts. The three values are those at rest, during the adjustment, and when the controller is simply replaced.
 fn jumps(scheme: Scheme, change: fn(&mut ConfiguredFinger)) -> [f64; 3] {
     let mut finger = quiet(scheme);
     let activity = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);

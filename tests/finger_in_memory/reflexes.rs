@@ -1,4 +1,4 @@
-//! Reflexes in the servo: how fast the command changes, the set point after a reaction, and its limits.
+//! Reflexes in the servo: how fast the command changes, which set point holds after a reaction, and when no rule fires.
 
 use crate::finger_on_a_cable::{ServedFinger, World};
 use crate::rig::{Bench, Line};
@@ -33,7 +33,7 @@ fn fired(bench: &mut Bench) -> Vec<u32> {
     events.filter(|event| event.kind == EventKind::ReflexFired).map(|event| event.values[0] as u32).collect()
 }
 
-/// A board samples as a Command arrives, and the Command that answers this sample is sent in the next period. So the
+/// A board samples when a Command arrives, and the Command that answers this sample is sent in the next period. So the
 /// touch in one period changes the Command of the next one.
 #[test]
 fn a_touch_changes_the_next_command() {
@@ -44,7 +44,7 @@ fn a_touch_changes_the_next_command() {
     bench.cycles(5);
     assert!(fired(&mut bench).is_empty());
     push(&bench, [0.0, 0.0, -0.3]);
-    // The element is pressed in the physics before the second of these periods, which fetches the event.
+    // The simulation presses the element before the second of these periods. That period fetches the event.
     bench.cycles(2);
     assert_eq!(fired(&mut bench), [number.expect("a place")]);
     assert_eq!(bench.report().set_point.stiffness, spatial(&soft));
@@ -170,8 +170,8 @@ fn only_a_lost_reply_is_a_lost_link() {
     assert_eq!(fired(&mut bench), [three.expect("a place")]);
 }
 
-/// Contacts at any time between two Commands: the event belongs to the next sample, and the Command after it has
-/// changed, so no contact waits longer than two periods.
+/// Contacts occur at any time between two Commands. The event belongs to the next sample, and the Command after this
+/// sample contains the reaction. So no contact waits longer than two periods.
 #[test]
 fn no_contact_waits_longer_than_two_periods() {
     let mut bench = Bench::with(an_element);
@@ -193,8 +193,8 @@ fn no_contact_waits_longer_than_two_periods() {
     }
 }
 
-/// Two fingers in two threads. Finger 1 reacts to the touch of finger 2 in the period after the one in which finger 2
-/// notices the touch, whichever of them runs first in a period.
+/// Two fingers with one servo each, as in two threads. Finger 1 reacts to the touch of finger 2 in the period after the
+/// one in which finger 2 notices the touch. The order in which the fingers run in a period makes no difference.
 #[test]
 fn a_finger_reacts_to_the_touch_of_another_one_period_later() {
     let mut configuration = Configuration::default();

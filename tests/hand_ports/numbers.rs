@@ -1,4 +1,4 @@
-//! The unique numbers of boards: no two ports of a hand may have the same.
+//! The unique numbers of boards: no two ports of a hand may have boards with the same number.
 
 use crate::rig::{START, TARGET, close, goes, on_ports, open, turn};
 use sun2xp::hand::Hand;

@@ -24,7 +24,7 @@ class Recording:
     Attributes:
         cycles: for each finger, 1 to 3, a structured array with one row for each cycle. docs/python.md lists its
             fields. A number that a cycle does not have is NaN.
-        marks: changes of stages, events, warnings, faults and gaps, in the order of the file.
+        marks: events, warnings, faults, gaps and changes of the stage, in the order of the file.
         description: the hand: its name, the time at which it was opened, and its configuration.
         complete: whether the recorder has finished the file. False while the recorder runs, and if it was killed.
     """
@@ -42,7 +42,7 @@ class Recording:
 
     def seconds(self, finger: int) -> numpy.ndarray:
         """The times of the cycles of a finger since the first cycle of the recording, s: shape (n,)."""
-        first = min(cycles["time"][0] for cycles in self.cycles.values() if len(cycles))
+        first = min((cycles["time"][0] for cycles in self.cycles.values() if len(cycles)), default=0)
         return (self.cycles[finger]["time"] - first) * 1e-9
 
     def to_pandas(self, finger: int) -> "pandas.DataFrame":

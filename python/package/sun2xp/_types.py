@@ -1,6 +1,6 @@
 """The results of calls. Lengths are in cm, forces in N, torques in N cm, angles in rad, stiffnesses in N/cm.
 
-Arrays have no single truth value, so results are not compared as a whole.
+An array has no single truth value, so `==` does not compare the values of two results.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ class Tip:
     force_directions: int
     #: Measured tensions of tendons 1 to 4, N: shape (4,).
     tensions: Array
-    #: Stiffness in force, N/cm: shape (3, 3).
+    #: Stiffness that is in effect, N/cm: shape (3, 3).
     stiffness: Array
     #: Force on the touched object without friction, weight and acceleration of the finger, N: shape (3,).
     contact_force: Array
@@ -184,7 +184,7 @@ class Limits:
 class ObjectState:
     """The object that simulated fingers touch, in the palm's frame."""
 
-    #: Simulated time since the boards have started, s.
+    #: Simulated time since the boards started, s.
     time: float
     #: Position of the centre of mass, cm: shape (3,).
     position: Array
@@ -194,7 +194,7 @@ class ObjectState:
     velocity: Array
     #: Angular velocity, rad/s: shape (3,).
     angular_velocity: Array
-    #: Force of each finger on the object, N: shape (3, 3), one row a finger.
+    #: Force of each finger on the object, N: shape (3, 3), with one row for each finger.
     forces: Array
 
 
@@ -348,7 +348,7 @@ class Mark:
     time: int
     #: Number of the finger; None for the whole hand.
     finger: Optional[int]
-    #: Number of the cycle; None if it belongs to no cycle.
+    #: Number of the cycle; None if the mark belongs to no cycle.
     cycle: Optional[int]
     #: "stage", "event", "gap", "warning" or "fault".
     kind: str

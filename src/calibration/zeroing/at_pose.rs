@@ -69,10 +69,10 @@ impl Zeroing {
             self.phase = Phase::RestInPose { grip, joints, reading };
             return going(Step::ReadingEncoders, 0.97, activity);
         }
-        // The instruments have already subtracted the offsets.
+        // The instruments have already subtracted the offsets of the gauges.
         let none = Vector4::zeros();
         let at_rest = reading.joints(instruments, &none);
-        // The zeros correct the error that the joint angles had during the swing. This reading only gives the common
+        // The zeros correct the error that the joint angles had during the swing. This reading gives only the common
         // travel by which the motors have wound in all tendons. At the pretension this travel does not depend on the
         // stiffness.
         let too_far = joints - self.pose;

@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 /// Largest permitted deviation of a joint, rad. It bounds the error of the zeros.
 pub(super) const TOLERANCE: f64 = 0.004;
 
-/// Usual time constant of the low-pass filter on the joints, s. It removes the noise of the gauges and the oscillation
-/// caused by state feedback.
+/// Usual time constant of the low-pass filter on the joints, s. The filter removes the noise of the gauges and the
+/// oscillation caused by state feedback.
 const SMOOTHING: f64 = 0.02;
 
 /// Mean and extremes of the joint angles over a period of time.
@@ -39,8 +39,8 @@ impl Standstill {
         self.samples += 1.0;
         self.sum += joints;
         let settled = self.smoothing / period;
-        // Until the filter has settled, this is the mean of all samples. At the time at which the filter has settled,
-        // the mean has as little noise as the filter.
+        // Until the filter has settled, `smoothed` is the mean of all samples. When the filter settles, this mean has
+        // about as little noise as the filter.
         self.smoothed += (joints - self.smoothed) / self.samples.min(settled);
         if self.samples >= settled {
             let (lowest, highest) = self.extremes.unwrap_or((self.smoothed, self.smoothed));

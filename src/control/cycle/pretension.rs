@@ -66,7 +66,8 @@ impl Controller {
         state.doing = Doing::Tightening(tightening);
     }
 
-    /// Returns the measurements. The gauges show tensions that are too large by `offset`, N, so it is subtracted.
+    /// Returns the measurements. The gauges show tensions that are too large by `offset`, N, so the offset is
+    /// subtracted.
     fn slackness(&self, state: &State, offset: &Vector4<f64>) -> Slackness {
         Slackness {
             travel: state.motor_angles.component_mul(&self.radius),

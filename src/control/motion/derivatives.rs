@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// The motion of a set point at one instant. State feedback feeds all four derivatives forward, because the motor
-/// torque of an elastic finger depends on the fourth one. The controllers of Figures 9 to 11
-/// of the report (COINS TR 90-48) use only the rates.
+/// torque of an elastic finger depends on the fourth one. The controllers of Figures 9 to 11 of the report
+/// (COINS TR 90-48) use only the rates.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Motion {
     /// Joint rates, rad/s.

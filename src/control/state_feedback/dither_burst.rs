@@ -1,9 +1,9 @@
 //! Envelope of the dither of the tensions after a motion of the reference.
 //!
-//! A motion leaves every pulley at one end of its friction. A dither whose amplitude is near the friction moves the
-//! tendons only at its peaks, so the finger settles slowly. A larger dither that decays over some periods leaves the
-//! pulleys without this difference, as an alternating field that decays demagnetises iron. Afterwards the small
-//! dither suffices.
+//! After a motion, the tensions on the two sides of every pulley differ by the whole friction. A dither whose amplitude
+//! is near the friction moves the tendons only at its peaks, so the finger settles slowly. A larger dither that decays
+//! over some periods removes this difference, as an alternating field that decays demagnetises iron. Afterwards the
+//! small dither suffices.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

@@ -17,9 +17,10 @@ const SATURATED: f64 = 0.98;
 /// Fraction of its desired tension below which a tendon is considered to be slack.
 const SLACK: f64 = 0.2;
 
-/// (t_d - K_delta v) / g, with the desired tension t_d and the speed v of the motor side. g is an estimate of the
-/// quotient of a tension and the pull commanded for it, so the M^-1 of eq. 22 is multiplied by 1/g. g follows t / pull
-/// through a low-pass filter, where pull is the pull that acted when the tension t was measured.
+/// Computes the pull (t_d - K_delta v) / g from the desired tension t_d and the speed v of the motor side. g is an
+/// estimate of the quotient of a tension and the pull commanded for it, so the M^-1 of eq. 22 is multiplied by 1/g. A
+/// low-pass filter makes g follow t / pull. In this quotient, pull is the pull that acted when the tension t was
+/// measured.
 ///
 /// Only the conversion from tension to torque is adapted. In (RM)^-T the letter M stands for geometry. An estimate of
 /// that M would change the measured joint angles, the angles would change the tensions, and the tensions would change

@@ -11,7 +11,7 @@ use crate::realtime::{LockedMemory, Pages, SharedPages};
 const KINDS: usize = 32;
 const _: () = assert!(EventKind::ALL.len() < KINDS, "a kind has no place");
 
-/// The counters. Clones are the same counters.
+/// The counters. All clones share them.
 #[derive(Clone)]
 pub struct Bulletin(SharedPages<[[AtomicU32; KINDS]; FINGERS]>);
 

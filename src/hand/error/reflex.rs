@@ -40,7 +40,7 @@ pub enum ReflexError {
          event"
     )]
     OwnFinger(FingerNumber),
-    /// The finger has the largest number of rules.
+    /// The finger already has as many rules as it can have.
     #[error("finger {0} already has {MOST_RULES} reflexes: remove one first")]
     TooMany(FingerNumber),
     /// There is no rule with this number.

@@ -16,11 +16,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// A queue of all events of a hand, in the order of their times. All functions may be called from several threads. Each
-/// event is then returned to one of them.
+/// event is then returned to only one of these threads.
 ///
-/// A queue that is not read loses the oldest events, and counts them. An event is in order, except if the servo of
-/// another finger is late by more than two periods. Then the events of that finger come later than those of the others.
-/// The time of an event is always that of its cycle.
+/// A queue that is not read loses the oldest events, and counts them. Events are in order unless the servo of a finger
+/// is late by more than two periods. In that case the events of this finger come after later events of the other
+/// fingers. The time of an event is always that of its cycle.
 pub struct EventQueue {
     shared: Arc<QueueState>,
     readiness: Mutex<Option<Readiness>>,

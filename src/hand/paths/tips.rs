@@ -1,4 +1,4 @@
-//! Paths of the tip: a spline through the tip positions, followed with joint angles.
+//! Paths of the tip: a spline through the tip positions, approximated by a spline in joint angles.
 
 use crate::finger::MOST_PIECES;
 use crate::hand::admission::Admission;
@@ -6,8 +6,8 @@ use crate::hand::{PathError, SetPointError};
 use crate::model::path::{Knot, Piece, Start, spline};
 use nalgebra::Vector3;
 
-/// Distance of the tip from its path that is always accepted, cm. With a larger distance more pieces are used, as far
-/// as the table permits.
+/// Distance of the tip from its path that is always accepted, cm. If the distance is larger, more pieces are used, as
+/// far as the table of pieces permits.
 const ACCURATE: f64 = 0.001;
 
 /// Largest distance of the tip from its path that is accepted, cm.
@@ -83,7 +83,7 @@ impl Admission {
     }
 
     /// Returns the largest distance of the tip from its path between the knots, cm, and the number of the pose to which
-    /// the finger moves there.
+    /// the finger moves at that time.
     fn deviation(&self, pieces: &[Piece], path: &[Piece], per_pose: usize) -> (f64, usize) {
         let mut worst = (0.0, 0);
         for (index, piece) in pieces.iter().enumerate() {

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 /// A named set of defaults for the other keys of `[finger.simulation]`. What the controller assumes stays the same, so
-/// a finger with a set other than `Nominal` differs from its configuration. Calibration measures the differences.
+/// a finger with a set other than `Nominal` differs from its configuration. Calibration measures some of the
+/// differences.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -11,8 +12,8 @@ pub enum NamedHand {
     /// The finger that the default configuration describes.
     #[default]
     Nominal,
-    /// A hand after years of use: twice the friction, stiction, soft and unequal tendons, inexact gauges and moment
-    /// arms.
+    /// A hand after years of use. It has stiction, twice the friction of `Nominal`, soft and unequal tendons that
+    /// creep, and inexact gauges and moment arms.
     Worn,
     /// A hand whose tendons run through sheaths: friction between motor and gauge, tendons that harden and creep.
     Sheathed,

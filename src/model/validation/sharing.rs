@@ -35,7 +35,7 @@ impl Configuration {
         }
         if self.address(first) == self.address(second) {
             let reason = format!(
-                "fingers {first} and {second} share the address {} on port {port}: leave \
+                "fingers {first} and {second} share the address {} on the port {port}: leave \
                  `address` out, or give each finger the address that its board has",
                 self.address(first)
             );

@@ -75,11 +75,12 @@ impl Action {
                 }
                 Ok(Action::Touch(Surface::Wall { point: [px, py, pz], normal: [nx, ny, nz], stiffness }))
             }
+            ("ball", &[_, _, _, radius, _]) if radius <= 0.0 => Err("the radius is not above zero".into()),
             ("ball", &[x, y, z, radius, stiffness]) => {
                 Ok(Action::Touch(Surface::Ball { centre: [x, y, z], radius, stiffness }))
             }
             ("turn" | "hang", &[part, _]) if ![1.0, 2.0, 3.0, 4.0].contains(&part) => {
-                Err(format!("{part} is not between 1 and 4"))
+                Err(format!("{part} is not 1, 2, 3 or 4"))
             }
             ("turn", &[motor, turns]) => Ok(Action::Turn(motor as usize - 1, turns * std::f64::consts::TAU)),
             ("hang", &[tendon, newton]) => Ok(Action::Hang(tendon as usize - 1, newton)),
@@ -172,6 +173,9 @@ mod tests {
             ("wall 1 0 0 0 0 0 0 10", "no direction"),
             ("wall 1 0 0 0 1 0 0 -10", "negative"),
             ("ball 1 0 0 0 1 -10", "negative"),
+            ("ball 1 0 0 0 -1 10", "radius"),
+            ("ball 1 0 0 0 0 10", "radius"),
+            ("turn 1 2.5 1", "2.5 is not 1, 2, 3 or 4"),
             (
                 "shove 1",
                 "no order shove: the orders are force, wall, ball, hold, turn, tighten, hang, free, state, quit, cut, \

@@ -12,8 +12,8 @@ pub struct Line {
 }
 
 impl Line {
-    /// Fits pairs of count and N by least squares. Returns `None` for fewer than two different counts, and for a slope
-    /// of zero.
+    /// Fits a line to pairs of a count and a force, N, by least squares. Returns `None` for fewer than two different
+    /// counts, and for a slope of zero.
     pub fn through(points: &[(f64, f64)]) -> Option<Self> {
         let number = points.len() as f64;
         let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / number;

@@ -76,7 +76,7 @@ impl Display for Refused {
 
 /// One finger that is being commissioned.
 pub trait Machine {
-    /// Says hello to the board. The motors are off afterwards.
+    /// Shakes hands with the board. The motors are off afterwards.
     fn board(&mut self) -> Result<BoardSeen, Failure>;
 
     /// Uses this configuration from now on. The motors are off afterwards.

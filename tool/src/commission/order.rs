@@ -20,7 +20,7 @@ pub fn repeats(order: [usize; 4]) -> bool {
 
 /// If exactly one motor or tendon has no sensor in `order`, and exactly one sensor is not in `order`, the two belong
 /// together. Adds this sensor to the order, which is then complete. If the sensor was reported as `dead` under the
-/// number of the motor or tendon, it gets its own number.
+/// number of the motor or tendon, the report gets the sensor's own number.
 pub fn name_the_missing(outcome: &mut Outcome, order: &mut [usize; 4], dead: fn(usize) -> Wrong) {
     let missing: Vec<usize> = (0..4).filter(|&place| order[place] == 0).collect();
     let unused: Vec<usize> = (1..=4).filter(|sensor| !order.contains(sensor)).collect();

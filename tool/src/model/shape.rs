@@ -70,7 +70,7 @@ impl Colour {
 
     /// Returns the colour of a finger's links.
     pub fn of_finger(finger: FingerNumber) -> Self {
-        // Blue, orange and green of Okabe and Ito, which people with any colour vision can distinguish.
+        // Similar to the blue, orange and green of Okabe and Ito, which people with any colour vision can distinguish.
         Self([[0x56, 0xa5, 0xe0], [0xe6, 0x9f, 0x3c], [0x2b, 0xb0, 0x8c]][finger.index()])
     }
 

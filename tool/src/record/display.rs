@@ -13,7 +13,7 @@ const BETWEEN_LINES: Duration = Duration::from_secs(5);
 /// Time between two steps of the spinner on a terminal.
 const BETWEEN_STEPS: Duration = Duration::from_millis(500);
 
-/// Shows the progress of a recording. It disappears from a terminal when it is dropped.
+/// Shows the progress of a recording. When the display is dropped, the progress disappears from a terminal.
 pub struct Display {
     bar: Option<ProgressBar>,
     duration: Option<Duration>,
@@ -21,11 +21,11 @@ pub struct Display {
 }
 
 impl Display {
-    /// Begins, with the name of the first file.
+    /// Begins to show the progress, with the name of the first file.
     pub fn new(file: &Path, duration: Option<Duration>) -> Self {
         let bar = io::stderr().is_terminal().then(|| {
             let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-            // The template is a constant. Without it the bar has its usual form.
+            // The template is a constant and valid. If it were not valid, the bar would keep its usual form.
             if let Ok(style) = ProgressStyle::with_template("{spinner:.red} {prefix:.bold}  {msg}") {
                 bar.set_style(style.tick_chars("●○ "));
             }

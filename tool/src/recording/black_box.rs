@@ -11,7 +11,7 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::model::{FingerNumber, Part, ShownPath};
 use sun2xp::telemetry::{Description, Message};
 
-/// Returns whether a file is a text of JSON, as a black box is. An MCAP file begins with another byte.
+/// Returns whether a file begins like JSON text, as a black box does. An MCAP file begins with another byte.
 pub fn is_one(path: &Path) -> io::Result<bool> {
     let mut first = [0];
     Ok(path.is_file() && File::open(path)?.read(&mut first)? == 1 && first == *b"{")
@@ -58,8 +58,8 @@ pub fn read(path: &Path) -> Result<(Description, Vec<Entry>), Failure> {
     Ok((description, entries))
 }
 
-/// Checks the configurations. An altered file may have any values, and the programs that draw and convert a recording
-/// expect those that a hand may have.
+/// Checks the configurations. An altered file may have any values. The programs that draw and convert a recording
+/// expect values that a hand may have.
 fn check(origin: &Origin) -> Result<(), String> {
     let refused = |key: &str, reason: &str| format!("{key} {reason}");
     origin.hand.check().map_err(|wrong| refused(wrong.key, &wrong.reason))?;

@@ -11,7 +11,7 @@ use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use sun2xp::realtime::{CycleStage, Distribution};
 use sun2xp::reflexes::{Condition, MOST_RULES, Reaction, Reflex};
 
-/// Runs a simulated hand for `duration`, and returns the maximum of every time, or with `p999` its 99.9 % value.
+/// Runs a simulated hand for `duration`. Returns the maximum of each time, or its 99.9 % value if `p999` is set.
 pub fn measure(configuration: &Configuration, duration: Duration, p999: bool) -> Result<Costs, Failure> {
     let mut simulated = configuration.clone();
     simulated.fingers.iter_mut().for_each(ConfiguredFinger::simulate);
@@ -33,7 +33,7 @@ pub fn measure(configuration: &Configuration, duration: Duration, p999: bool) ->
 }
 
 /// Gives a finger as many reflexes as it can have. All of them fire again and again, so one of them reacts in every
-/// cycle, and the measured computing time includes the aperiodic server at its limit.
+/// cycle. The measured computing time thus includes the aperiodic server at its limit.
 fn busy_with_reflexes(hand: &Hand, finger: FingerNumber) -> Result<(), Failure> {
     let reflex = Reflex {
         condition: Condition::ForceAbove(0.0),

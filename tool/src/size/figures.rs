@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::nalgebra::Vector4;
 
-/// A finger is stable at 1000 Hz up to this fraction of its smallest stiffness with locked motors, with some margin.
+/// Up to this fraction of its smallest stiffness with locked motors, a finger is stable at 1000 Hz with some margin.
 const STABLE_PART: f64 = 0.7;
 
 /// Each motor oscillates on its tendon. This is the least number of servo cycles in one period of the fastest of these
@@ -34,7 +34,7 @@ pub struct Figure {
     pub unit: &'static str,
     /// Whether the configured value suffices.
     pub sufficient: bool,
-    /// What to change if it does not, or what to look for in a data sheet.
+    /// What to change if the configured value does not suffice, or what to look for in a data sheet.
     pub advice: &'static str,
 }
 
@@ -75,7 +75,7 @@ pub fn figures(configured: &ConfiguredFinger, rate: f64, wanted: &Wanted) -> Res
 }
 
 impl Finger<'_> {
-    /// Returns the tension that each motor holds with a torque against its friction, N (eq. 22).
+    /// Returns the tension that each motor produces with `torque` when it pulls against its friction, N (eq. 22).
     fn tension(&self, torque: &[f64; 4]) -> Vector4<f64> {
         let friction = &self.configured.friction;
         Vector4::from_fn(|motor, _| {
@@ -133,7 +133,7 @@ impl Finger<'_> {
             ),
             Figure::choose(
                 "voltage that turns a motor at that speed",
-                // N cm/A to V s/rad.
+                // The factor converts N cm/A to V s/rad.
                 speed.component_mul(&constant).max() * 1e-2,
                 "V",
                 "a supply above this voltage plus winding resistance times current",

@@ -1,4 +1,5 @@
-//! Who may read the page: requests to this address by a page of this address, with the token if there is one.
+//! Decides who may read the page. A request must go to this address, and may only come from a page of this address. A
+//! request for data must also contain the token if there is one.
 //!
 //! A foreign page in the user's browser can send requests to loopback too. The browser names that page in `Origin`, so
 //! a request with another origin is refused. A foreign name that resolves to loopback (DNS rebinding) makes the foreign
@@ -17,7 +18,7 @@ const TOKEN_BYTES: usize = 16;
 pub struct Access {
     /// The address of the server.
     pub address: SocketAddr,
-    /// The token, which every reader of data must give; none on loopback without control.
+    /// The token that every request for data must contain. It is none on loopback without control.
     pub token: Option<String>,
     /// The name of this machine.
     pub machine: Option<String>,
@@ -53,8 +54,8 @@ impl Access {
             return Err(Refusal::Host);
         }
         if !headers.contains_key(ORIGIN) {
-            // This is no request of a foreign page. A browser sends `Origin` with every WebSocket, and whenever a page
-            // requests data of another page.
+            // This is no request with which a foreign page could read data. A browser sends `Origin` with every
+            // WebSocket, and with every request whose response a page of another origin could read.
             return Ok(());
         }
         let own = only(headers, ORIGIN.as_str()).and_then(|origin| origin.strip_prefix("http://"));
@@ -96,7 +97,7 @@ impl Access {
     }
 }
 
-/// Returns the value of a header that occurs once.
+/// Returns the value of a header. Returns none if the header does not occur exactly once.
 fn only<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
     let mut values = headers.get_all(name).iter();
     let value = values.next()?.to_str().ok()?;

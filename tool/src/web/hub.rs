@@ -1,4 +1,4 @@
-//! What all pages get: the messages of the hand, and for a page that has just connected, all that it must know.
+//! Distributes the messages of the hand to all pages. A page that has just connected first gets all that it must know.
 
 use axum::extract::ws::Utf8Bytes;
 use std::collections::{BTreeMap, VecDeque};
@@ -11,14 +11,14 @@ const WAITING: usize = 64;
 /// Number of events that a new page gets.
 const EVENTS: usize = 500;
 
-/// Kind of a message, which decides what a new page gets of it.
+/// Kind of a message. It determines whether a page that connects later gets the message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A new hand. A new page gets nothing that was published before it.
+    /// A new hand. A new page gets nothing that was published before this message.
     Hand,
-    /// There is no hand, with the reason.
+    /// There is no hand. The message gives the reason. A new page gets the newest one.
     Gone,
-    /// Samples. A new page gets later ones only.
+    /// Samples. A new page gets only later samples.
     Batch,
     /// State of a finger. A new page gets the newest one.
     State(i32),
@@ -75,12 +75,12 @@ impl Hub {
                 }
             }
         }
-        // An error means that there is no page. The lock is still held. So a page that connects now gets this message
-        // once: from this call, or from `subscribe` with all others.
+        // An error means that there is no page. The lock is still held. So a page that connects at this moment gets the
+        // message at most once: either from this call or from `subscribe`.
         let _ = self.sender.send(Update { kind, text });
     }
 
-    /// Returns all that a new page must know, and what comes after it.
+    /// Returns the messages that a new page must know, and the receiver of the later messages.
     pub fn subscribe(&self) -> (Vec<Utf8Bytes>, Receiver<Update>) {
         let now = self.now();
         let parts = now.hand.iter().chain(now.states.values()).chain(now.statuses.values());

@@ -105,7 +105,8 @@ async fn guard(
         headers.insert(name, HeaderValue::from_static(value));
     }
     if response.status() != StatusCode::SWITCHING_PROTOCOLS {
-        // A connection has one request, so that it cannot hold its place by further ones that it never completes.
+        // A connection has only one request. Otherwise it could hold its place with further requests that it never
+        // completes.
         response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
     }
     response

@@ -26,16 +26,17 @@ impl Reference {
         let ahead = *anchor - state.0[0];
         *state = converted(state);
         *along = along.as_ref().map(converted);
-        // The first stage keeps its rate, too. With a longer time constant, this would move the anchor beyond a set
-        // point at rest. So the anchor then stays, and the reference slows down.
+        // The first stage keeps its rate, too. With a longer time constant, the anchor must be farther ahead of the
+        // first stage for this rate. It could then be beyond a set point at rest. So the anchor stays in this case, and
+        // the reference slows down.
         if longer < 1.0 || along.is_some() {
             *anchor = state.0[0] + ahead * longer;
         }
     }
 
-    /// Replaces the set point whose motion the reference follows by another one, which now has this motion. `along` is
-    /// as in [`Reference::advance_along`]. The difference between the two set points thus becomes a deviation, and
-    /// passes through the filter.
+    /// Makes the reference follow the motion of another set point, which now has the angles `joints` and the motion
+    /// `motion`. `along` is as in [`Reference::advance_along`]. The difference between the two set points thus becomes
+    /// a deviation, which passes through the filter.
     pub fn replace_along(
         &self,
         along: &mut Option<ReferenceState>,
@@ -50,7 +51,8 @@ impl Reference {
     }
 }
 
-/// Returns the joint angles and the motion that a set point had one period, s, ago. Its snap is considered constant.
+/// Returns the joint angles and the motion that a set point had one period earlier. `period` is in s. The snap is
+/// considered constant.
 fn before(joints: &Vector3<f64>, motion: &Motion, period: f64) -> (Vector3<f64>, Motion) {
     let Motion { rates, accelerations, jerk, snap } = *motion;
     let [one, two, three, four] = [period, period.powi(2) / 2.0, period.powi(3) / 6.0, period.powi(4) / 24.0];
@@ -80,8 +82,8 @@ mod tests {
         })
     }
 
-    /// The speed of the anchor is 5 rad/s. The adjustment comes while the reference speeds up, at full speed, and while
-    /// it slows down.
+    /// The speed of the anchor is 5 rad/s. The adjustment comes while the reference speeds up, while it has its full
+    /// speed, and while it slows down.
     #[test]
     fn another_time_constant_does_not_move_a_reference_on_its_way() {
         let (first, slew) = (Reference::new(0.008, RATE), Slew::new(5.0, RATE));
@@ -100,7 +102,7 @@ mod tests {
                 all.push(filter.motion(&state));
             }
             let [rates, accelerations] = largest_jumps(&all);
-            // The stages of a filter of 1 ms lag by a whole time constant in each cycle.
+            // A cycle is as long as the time constant of a filter of 1 ms, so the motion changes a lot within a cycle.
             let most = if time < 0.002 { [1.5, 1500.0] } else { [0.3, 100.0] };
             assert!(rates < most[0] && accelerations < most[1], "{time} {cycles}: {rates} {accelerations}");
             let fastest = all.iter().fold(0.0f64, |fastest, motion| fastest.max(motion.rates.amax()));

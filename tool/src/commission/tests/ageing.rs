@@ -38,7 +38,7 @@ fn aged_fingers_are_named_and_a_healthy_one_is_not() {
         (|truth| truth.simulation.tendon_stiffness[1] = 240.0, "tendon_stiffness", "tendon 2"),
         (|truth| truth.simulation.motor_coulomb_friction[2] = 2.1e-3, "motor_friction", "friction of motor 3"),
         (|truth| truth.encoder.zero[3] -= 600, "encoder_slip", "zero of encoder 4"),
-        // A tendon that has become longer by 0.9 mm: its motor winds in farther.
+        // The tendon has become longer by 0.9 mm, so its motor winds it in farther.
         (|truth| truth.encoder.zero[0] += 600, "longer_tendon", "zero of encoder 1"),
     ];
     for (age, kind, part) in ageings {

@@ -52,7 +52,7 @@ fn lost_replies_are_read_again_and_the_weighed_tendons_are_kept() {
     world.borrow_mut().lost.0 = 3;
     assert!(step(Step::Gauges, &world, &mut person, &belief).0.passed());
     assert!(person.questions.is_empty(), "{:?}", person.questions);
-    // Then the person is asked, and the step goes on where it was.
+    // After four failed readings in a row, the person is asked. Then the step continues where it was.
     (world.borrow_mut().lost.0, person.patience) = (7, 1);
     person.acts.clear();
     assert!(step(Step::Gauges, &world, &mut person, &belief).0.passed());
@@ -105,7 +105,7 @@ fn a_step_that_is_given_up_is_noted() {
     assert_eq!(person.questions.len(), 1, "{:?}", person.questions);
 }
 
-/// A hand may be in the way of the finger.
+/// The person's hand may be in the way of the finger.
 #[test]
 fn nothing_moves_if_the_person_cannot_prepare_it() {
     for (doing, cannot) in [
@@ -138,7 +138,7 @@ fn a_bent_gauge_is_named_although_the_heaviest_weight_does_not_hang() {
     let (world, belief) = world(|_| ());
     let (mut machine, mut person) = (Bench(world.clone()), Helper::new(&world));
     person.cannot = Some(|act| matches!(act, Act::Hang(_, newton) if newton > 2.0 * GRAVITY));
-    // The heavier of the two others is wrong by 2 N.
+    // The heavier of the two weights that hang is wrong by 2 N.
     person.hung = |newton| if newton > 0.75 * GRAVITY { newton + 2.0 } else { newton };
     let (weights, vitals) = (vec![0.5 * GRAVITY, GRAVITY, 5.0 * GRAVITY], Vitals::default());
     let mut desk = Desk { machine: &mut machine, person: &mut person, finger: belief, weights, vitals };
@@ -215,7 +215,7 @@ fn a_lowered_stiffness_and_its_limit_are_reported() {
     assert!(finger.initial_stiffness().symmetric_eigenvalues().max() <= 0.4 + 1e-9);
 }
 
-/// The finger trembles, or nobody holds it: the likely cause and the way out are in the message.
+/// If the finger trembles or nobody holds it, the message names the likely cause and the way out.
 #[test]
 fn a_refused_pose_says_how_to_zero_at_the_stops() {
     let (world, mut belief) = world(|_| ());
