@@ -3,9 +3,9 @@
 
        Can [INTERFACE]
 
-   The drives are simulated by CanDrives, which this program starts. They exchange CAN frames over INTERFACE, by default
-   over vcan0 if the machine has it (ip link add dev vcan0 type vcan; ip link set vcan0 up), and otherwise over Unix
-   datagram sockets. */
+   The drives are simulated by CanDrives, which this program starts. The two programs exchange CAN frames over
+   INTERFACE. Without an argument, they use vcan0 if the machine has it (ip link add dev vcan0 type vcan; ip link set
+   vcan0 up), and otherwise Unix datagram sockets. */
 
 #define _GNU_SOURCE
 #include <errno.h>
@@ -43,8 +43,8 @@ static void start_far_end(const char *program, const char *place, pid_t *process
 }
 
 /* Waits for a frame with encoder counts and then one with tensions, in the order in which the drives send them. A late
-   frame of the exchange before may come first: tensions without counts before them are ignored, and later counts
-   replace earlier ones. */
+   frame of the previous exchange may come first. Tensions without counts before them are therefore ignored, and later
+   counts replace earlier ones. */
 static int receive_sample(struct drives *drives, struct sun2xp_io_sample *sample, double deadline)
 {
     int numbers[4], has_counts = 0, identifier, i;

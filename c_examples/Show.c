@@ -73,7 +73,7 @@ static void grip(struct Grip To)
     check(sun2xp_send_group(hand, 3, Group));
 }
 
-/* Interpolates between two values, for a part from 0 to 1. The motion begins and ends without a jerk. */
+/* Interpolates between two values, for a part from 0 to 1. The speed is zero at the beginning and at the end. */
 static double between(double from, double to, double part)
 {
     return from + (to - from) * (HALF - HALF * cos(HALF * TURN * part));

@@ -73,7 +73,8 @@ static int can_open(struct can_bus *bus, const char *place, int finger)
     return bind(bus->socket, (struct sockaddr *)&can, sizeof can);
 }
 
-/* Sends four numbers of 16 bits without waiting. to: the finger whose end receives it, or 0 for the drives. */
+/* Sends four numbers of 16 bits without waiting. to: the finger whose end receives the frame, or 0 for the
+   drives. */
 static int can_send(const struct can_bus *bus, int to, unsigned identifier, const int numbers[4])
 {
     struct can_frame frame = {.can_id = identifier, .can_dlc = 8};

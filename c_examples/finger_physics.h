@@ -1,6 +1,6 @@
 /* finger_physics.h - the physics of a finger, for examples whose hardware is a simulation: three joints, four tendons
-   that only pull, four motors. Values: docs/sun2xp.toml, [finger.simulation]. The three links have no Coriolis torques.
-   C89, SI units. */
+   that only pull, four motors. Values: docs/sun2xp.toml, [finger.simulation]. Gravity and Coriolis torques are
+   omitted. C89, SI units. */
 
 #ifndef FINGER_PHYSICS_H
 #define FINGER_PHYSICS_H

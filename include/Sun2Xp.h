@@ -5,7 +5,8 @@
        SUN2XP_WRITE_HEADER=1 cargo test --test header
 
    This file is the interface and the manual for planners of 1990: five calls and HandError. sun2xp.h
-   has everything else for new programs. Both may be used together.
+   has everything else for new programs. Both may be used together. The report is COINS Technical
+   Report 90-48 (1990), which describes the controller.
 
        1. Quick start             5. Planners of 1990
        2. Return values, errno    6. Threads, signals, fork, exit

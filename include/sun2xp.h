@@ -10,6 +10,7 @@
 
    The calls follow in sections, each with its manual. Sun2Xp.h has the five calls of 1990. The calls of
    this header work on the hand of those calls too: sun2xp_default_hand returns the handle of that hand.
+   The report is COINS Technical Report 90-48 (1990), which describes the controller.
 
 
    1. QUICK START
@@ -143,12 +144,12 @@
         1 MiB   sun2xp_send_path
        64 KiB   sun2xp_wait, sun2xp_on_event, sun2xp_event_descriptor, sun2xp_wait_event
 
-   They test this directly after EPERM, even if their entries do not list ENOMEM there. There are two
-   exceptions: sun2xp_send_path tests it after EFAULT, and sun2xp_wait_event after its other reasons, if
-   there is no event. If memory runs out while one of these calls runs, the process is aborted, and the
-   boards' watchdogs end the motion. If less than 4 MiB are free when a finger faults, no black box is
-   written, and a message says so. If the library was loaded with dlopen, the first call of a thread needs
-   memory for its thread-local data. If there is none, the C library aborts the process.
+   These calls test the free memory directly after EPERM, even if their entries do not list ENOMEM there.
+   There are two exceptions: sun2xp_send_path tests it after EFAULT, and sun2xp_wait_event after its other
+   reasons, if there is no event. If memory runs out while one of these calls runs, the process is aborted,
+   and the boards' watchdogs end the motion. If less than 4 MiB are free when a finger faults, no black box
+   is written, and a message says so. If the library was loaded with dlopen, the first call of a thread
+   needs memory for the thread-local data of the library. If there is none, the C library aborts the process.
 
    Cancellation: pthread_cancel does not interrupt a call. It takes effect at the program's next
    cancellation point or, with asynchronous cancellation, when the call returns.
@@ -852,8 +853,8 @@ int sun2xp_send_contact(sun2xp_hand *hand, int finger, int dimensions, const dou
 
  The ratio changes without a jump in torque and stays until another ratio is sent. It becomes 1 again when
  the finger becomes a spring after a fault or a calibration, when a set point expires, and when a reflex
- with the reaction SUN2XP_THEN_SOFTEN fires. A reflex with SUN2XP_THEN_DAMP replaces it. A finger with much
- less or much more damping does not come to rest. The range therefore depends on the controller
+ with the reaction SUN2XP_THEN_SOFTEN fires. A reflex with SUN2XP_THEN_DAMP replaces it. A finger whose
+ ratio is much below or much above 1 does not come to rest. The permitted range depends on the controller
  (finger.controller.scheme), the rate and the largest eigenvalue k of the stiffness, N/cm:
 
                                      1000 Hz and above    below 1000 Hz
@@ -1429,8 +1430,8 @@ int sun2xp_tare_touch(sun2xp_hand *hand, int finger);
  Result of sun2xp_object. Vectors are in the palm's frame.
 
  The member time stops while the machine is too busy for the simulation. The member rotation is the unit
- matrix at the start. The member force has no errors of gauges, and is zero for a finger that does not
- touch the object.
+ matrix at the start. The member force comes from the simulation and not from the gauges. It is zero for a
+ finger that does not touch the object.
  */
 struct sun2xp_object {
     size_t size;                            /* sizeof (struct sun2xp_object), set before the call. */
@@ -1446,7 +1447,7 @@ struct sun2xp_object {
 /*
  sun2xp_object - read pose and motion of the object in the simulated hand
 
-   object   result, some milliseconds old at most; set object->size before the call
+   object   result, at most some milliseconds old; set object->size before the call
 
  All simulated fingers touch one object if hand.simulated_object is configured: a ball or a box with
  mass and friction. It can lie on a table. hand.gravity also acts on the object.
@@ -1621,7 +1622,7 @@ int sun2xp_status(sun2xp_hand *hand, int finger, struct sun2xp_status *status);
                                                line in both directions, and the board. */
 #define SUN2XP_STAGE_READ 3                 /* Reading the reply. */
 #define SUN2XP_STAGE_DECODE 4               /* Decoding the bytes to the finger's reply, including all checks. */
-#define SUN2XP_STAGE_COMPUTE 5              /* Computing the command and the report. */
+#define SUN2XP_STAGE_COMPUTE 5              /* Computing the command, and the state that planners read. */
 #define SUN2XP_STAGE_CYCLE 6                /* From the scheduled start of a cycle to the end of its computation. */
 #define SUN2XP_STAGE_AGE 7                  /* Age of the newest measurement when the command computed from it takes
                                                effect, by the board's clock. It is one period if nothing is late. */

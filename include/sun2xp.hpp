@@ -260,7 +260,7 @@ public:
     }
 
     /// Waits until the condition holds. Returns false if it does not hold within the time, and for a hand on another
-    /// machine also if no reports arrive from it. Also for all_fingers.
+    /// machine also if no reports arrive from it. Accepts all_fingers.
     bool wait(until condition, seconds longest)
     {
         const int result = sun2xp_wait(hand_, number_, static_cast<int>(condition), longest.count());
@@ -269,9 +269,9 @@ public:
 
     void zero() { detail::checked(sun2xp_zero(hand_, number_)); }
     void identify() { detail::checked(sun2xp_identify(hand_, number_)); }
-    /// Also for all_fingers.
+    /// Accepts all_fingers.
     void recover() { detail::checked(sun2xp_recover(hand_, number_)); }
-    /// Also for all_fingers.
+    /// Accepts all_fingers.
     void stop() { detail::checked(sun2xp_stop(hand_, number_)); }
     void write_black_box(const std::string &path)
     {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes packaging/third-party-licences.txt: the licences of all crates that the library, the tool and the Python package
-contain. Writes packaging/third-party-licences-remote.txt: those of the other crates that the server and the library of
-remote hands contain.
+"""Writes packaging/third-party-licences.txt: the licences of all crates that the library, the tool and the Python
+package contain. Writes packaging/third-party-licences-remote.txt: those of the other crates that the server and the
+library of remote hands contain.
 
 Run it after a change of Cargo.lock. tool/tests/third_party.rs compares the lists of crates.
 """
@@ -46,7 +46,7 @@ def files(package):
     """Returns the files with licences in the sources of a crate."""
     folder = pathlib.Path(package["manifest_path"]).parent
     found = sorted(file for file in folder.iterdir() if file.is_file() and file.name.upper().startswith(NAMES))
-    # If a user may choose from several licences, the text of the MIT licence is the shortest.
+    # If a user may choose from several licences, the list has only the MIT licence, because its text is the shortest.
     mit = [file for file in found if "MIT" in file.name.upper()]
     return mit if mit and "MIT" in (package["license"] or "") and "AND" not in package["license"] else found
 

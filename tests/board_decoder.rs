@@ -115,7 +115,7 @@ proptest! {
                 prop_assert_eq!(again.as_bytes(), &wire[..]);
             }
         } else {
-            // Only a number of the end state can be without meaning, and makes the frame unreadable.
+            // Only an undefined number of the end state makes an undamaged frame unreadable.
             prop_assert!(matches!(kind, Kind::Configure | Kind::Configured) && body[3] > 1);
         }
     }

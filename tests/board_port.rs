@@ -20,7 +20,7 @@ fn board() -> SimulatedPort {
 }
 
 fn terms() -> Terms {
-    // Long, because the test machine may be busy. The watchdog itself is tested on simulated time.
+    // The watchdog time is long, because the test machine may be busy. The watchdog itself is tested on simulated time.
     let hand = ConfiguredHand { watchdog_ms: 500, ..Default::default() };
     Terms::new(&hand, &ConfiguredFinger::default())
 }

@@ -26,7 +26,8 @@ impl Dice {
         WireFrame::new(&message).as_bytes().to_vec()
     }
 
-    /// Random bytes, or frames with a few bytes changed, lost, doubled, inserted, or exchanged block by block.
+    /// Random bytes, or frames with up to three errors: a byte changed, inserted or removed, the end cut off, or the
+    /// bytes rotated.
     fn stream(&mut self) -> Vec<u8> {
         if self.throw(3) == 0 {
             let length = self.throw(80);

@@ -1,5 +1,5 @@
-//! A planner that knows only the calls of 1990. Its own functions, types and constants have names that a hand suggests,
-//! such as `GetFault`.
+//! A planner that knows only the calls of 1990. Its own functions, types and constants have names that a library for a
+//! hand could use too, such as `GetFault`.
 
 #[allow(dead_code)]
 mod c;

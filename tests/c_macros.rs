@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
 
-/// Words of C and C++. A separate test makes macros of them.
+/// Keywords of C and C++. A separate test makes macros of them.
 const WORDS: &[&str] = &[
     "auto",
     "case",
@@ -103,8 +103,8 @@ fn every_word_of_c_may_be_a_macro() {
     may_be_macros(WORDS.iter().copied(), &[&[allowed], &[allowed, "-DSUN2XP_NO_GENERIC"]]);
 }
 
-/// Macros named like words of C that stay defined during the planner's calls. Planners use such macros to remove words
-/// that a compiler does not know, such as `const`, or to turn every `float` into `double`.
+/// Macros named like keywords of C that stay defined during the planner's calls. Planners use such macros to remove
+/// keywords that a compiler does not know, such as `const`, or to turn every `float` into `double`.
 #[test]
 fn calls_compile_where_words_of_c_are_macros() {
     let bench = Bench::new();

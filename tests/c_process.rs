@@ -82,7 +82,7 @@ fn the_floating_point_environment_of_a_planner_is_its_own() {
 
 #[test]
 fn a_small_stack_is_enough_for_every_call() {
-    // The finger is being pushed, so sun2xp_zero would refuse its pose.
+    // The finger is moving when the program calls sun2xp_zero. With the method "pose", the call would be refused.
     Bench::new().succeed(STRICT, &["small_stack.c"]);
 }
 

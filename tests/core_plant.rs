@@ -130,7 +130,8 @@ proptest! {
         ..Default::default()
     })]
 
-    /// Motors without torque. The finger is released from a strained state between tendons, stops, a wall and gravity.
+    /// The motors have no torque. The finger is released from a state in which tendons, stops, a wall and gravity
+    /// strain it.
     #[test]
     fn passive_parts_never_create_energy(
         joint_0 in -50.0..50.0f64, joint_1 in -25.0..95.0f64, joint_2 in 8.0..118.0f64,

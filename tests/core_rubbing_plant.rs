@@ -158,7 +158,7 @@ fn moment_arms_turn_the_joints_by_their_ratio() {
             finger.simulation.joint_coulomb_friction = [0.0; 3];
         });
         plant.set_external_force(Vector3::new(0.5, 0.0, 0.0));
-        // The brake is off, so the motors yield in a longer time than this.
+        // The brake is off, so the motors yield too, but they need more than this millisecond.
         pull(plant, &home(), 0.001);
         plant.joint_rates()[0]
     };

@@ -23,7 +23,8 @@ fn soft_finger(root: [f64; 16], normal: [f64; 3]) -> (Matrix4<f64>, Vector3<f64>
     (k, normal, Contact::soft_finger(k, normal).expect("a spring"))
 }
 
-/// Away from the axis of joint 0, where the tip alone does not hold that joint.
+/// Joint angles with which the tip is off the axis of joint 0. If the tip is on this axis, its spring does not hold
+/// joint 0.
 fn theta() -> impl Strategy<Value = Vector3<f64>> {
     (-1.0..1.0f64, -0.5..1.7f64, 0.1..2.0f64)
         .prop_map(|(a, b, c)| Vector3::new(a, b, c))

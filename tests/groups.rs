@@ -71,7 +71,7 @@ impl Planner {
                 Ok::<_, Infallible>(())
             });
             let Ok(change) = change.expect("not faulted");
-            // The planner sends faster than the servos take. A planner in the same process gets a refusal here.
+            // The planner sends groups faster than the servos take them. `Hand::send_group` refuses a group here.
             if !change.has_room() {
                 return;
             }

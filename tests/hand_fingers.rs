@@ -37,7 +37,7 @@ fn a_finger_is_opened_without_the_ports_of_the_others() {
             hand.status(finger).expect("a status").rate > 0.0 && hand.push_simulated(finger, [0.1, 0.0, 0.0]).is_ok()
         );
     }
-    // The finger with the requested number, not the finger at that index.
+    // The call affects the finger with the requested number, not the finger at that index.
     hand.find_signs(3, |_| {}).expect("signs");
     assert!(hand.report(3).expect("a report").calibration.is_some());
     assert!(hand.report(1).expect("a report").calibration.is_none());

@@ -131,7 +131,7 @@ fn kinematics_agree_with_each_other_and_with_the_tip() {
         let difference = (Vector3::from(torques.measured) - Vector3::from(torques.commanded)).amax();
         assert!(difference < 3.0, "finger {finger} at rest: {torques:?}");
     }
-    // The thumb is opposite to the fingers.
+    // Finger 2 has another base than fingers 1 and 3.
     let tips = [1, 2, 3].map(|finger| hand.palm_pose(finger).expect("a pose").base);
     assert!(tips[0] != tips[1] && tips[1] != tips[2]);
     assert_eq!(hand.jacobian(1, Some([f64::NAN, 0.0, 0.0])).expect_err("NaN").errno(), libc::EINVAL);

@@ -33,7 +33,7 @@ impl Mishap {
     const ALL: [Mishap; 6] =
         [Mishap::Dropped, Mishap::Damaged, Mishap::CutShort, Mishap::Late, Mishap::Doubled, Mishap::AmongRubbish];
 
-    /// Returns whether the mishap costs a period, because the reply does not arrive in it.
+    /// Returns whether the mishap costs a period. It does if the reply does not arrive in its own period.
     fn costs(self) -> bool {
         !matches!(self, Mishap::Doubled | Mishap::AmongRubbish)
     }

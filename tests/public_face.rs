@@ -48,8 +48,8 @@ fn exported() -> (Vec<String>, Vec<String>) {
     for item in items() {
         match item {
             Item::Use(item) if matches!(item.vis, Visibility::Public(_)) => at_root.extend(names(&item.tree)),
-            // A module with a file of its own is public only with the feature. A module in the file re-exports the
-            // names of one topic.
+            // A module with a file of its own is public only with the feature. A module in src/lib.rs itself
+            // re-exports the names of one topic.
             Item::Mod(item) if matches!(item.vis, Visibility::Public(_)) => match &item.content {
                 None => assert!(
                     item.attrs.iter().any(|attribute| attribute.path().is_ident("cfg")),

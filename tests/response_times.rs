@@ -33,8 +33,8 @@ impl Running<'_> {
     }
 }
 
-/// The longest time of a cycle of each thread, from its scheduled beginning, within `ticks`. One tick is 1 ns. Every
-/// core runs the ready thread of the highest priority.
+/// Returns for each thread the longest time from the scheduled beginning of a cycle to its end, within `ticks`. One
+/// tick is 1 ns. Every core runs the thread of the highest priority among the ready threads that may run on it.
 fn simulate(threads: &[PeriodicThread], cores: usize, ticks: u64, seed: u64) -> Vec<u64> {
     let mut random = Pcg64::seed_from_u64(seed);
     // Mostly the worst case, sometimes anything below it.

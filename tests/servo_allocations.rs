@@ -64,7 +64,7 @@ fn note(_: &Event, _: u64) {
     EVENTS.fetch_add(1, Relaxed);
 }
 
-/// Sends paths, which replace each other while they run, until finger 1 has run so many cycles.
+/// Sends paths until finger 1 has run `end` cycles in total. Each path replaces the one that is running.
 fn send_paths(hand: &Hand, end: u64) {
     for step in 0u32.. {
         let joints = [0.1, 0.5, 1.0 + 0.1 * f64::from(step % 7)];

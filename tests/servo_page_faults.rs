@@ -35,7 +35,7 @@ fn a_servo_thread_causes_no_page_fault() {
         assert_eq!(before.len(), 3, "{before:?}");
         if real_time == RealTime::Try {
             // The threads of the second hand may reuse the stacks of the first.
-            assert!(before.iter().all(|(_, faults)| *faults > 0), "starting a thread takes some: {before:?}");
+            assert!(before.iter().all(|(_, faults)| *faults > 0), "starting a thread causes page faults: {before:?}");
         }
         let end = [1, 2, 3].map(|finger| cycles(finger) + periods);
         let mut angle = 0.0;

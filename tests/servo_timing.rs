@@ -13,7 +13,7 @@ use sun2xp::simulated::SimulatedCable;
 
 const PERIOD: u64 = 1_000_000;
 
-/// A host and a board, whose clock may be faster than the host's.
+/// A host and a board, whose clock may be faster or slower than the host's.
 #[derive(Default)]
 struct Clocks {
     now: u64,
@@ -115,7 +115,7 @@ fn a_late_cycle_runs_late_and_skipped_periods_are_not_made_up() {
     let losses = rig.finger.mailbox.report().losses;
     assert_eq!((losses.cycles, losses.overruns, losses.skipped_periods, losses.lost_replies), (10, 0, 0, 0));
 
-    // 3.4 periods late: this cycle runs, three periods are skipped, and the next one begins at once.
+    // This cycle runs 3.4 periods late. Two periods are skipped, and the cycle of the third begins at once.
     rig.world.place().hooks.oversleep = 3 * PERIOD + 400_000;
     rig.cycles(6);
     let losses = rig.finger.mailbox.report().losses;
@@ -141,13 +141,13 @@ fn feedback_is_one_period_old_and_older_where_replies_stay_away() {
     let losses = rig.finger.mailbox.report().losses;
     assert_eq!((losses.lost_replies, losses.late_replies, losses.skipped_periods), (3, 3, 0));
 
-    // The delay exceeds the range of the board's clock. It is not counted, because the count would be wrong.
+    // The delay exceeds the range of the board's clock. The age is not recorded, because it would be wrong.
     rig.world.place().hooks.oversleep = 70 * PERIOD;
     rig.cycles(2);
     assert!(rig.age().count <= 1);
 }
 
-/// The last reading of the board's clock, before the stop, is not a reading of later cycles.
+/// Later cycles must not use the last reading of the board's clock from before the stop.
 #[test]
 fn a_stopped_finger_does_not_change_the_period() {
     let mut rig = Rig::new(0.0, true);

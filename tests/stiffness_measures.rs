@@ -179,7 +179,7 @@ fn a_motor_model_in_the_kinematics_is_detected() {
     }
 }
 
-/// R as printed has one wrong sign and no inverse.
+/// The report of 1990 prints R with one wrong sign. The printed R has no inverse.
 #[test]
 fn the_printed_r_is_refused_by_every_scheme() {
     let case = case(Scheme::StateFeedback);

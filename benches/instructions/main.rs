@@ -4,9 +4,9 @@
 //!     cargo bench --bench instructions                    counts, and compares with recorded.toml
 //!     cargo bench --bench instructions -- --record        counts, and writes recorded.toml again
 //!
-//! The benchmark fails if the number is more than 2 % above the recorded number. Another compiler or C library
-//! generates other code. In that case nothing is compared, and a line on standard error says so. Record again when such
-//! a version becomes the usual one, or when an increase is intended.
+//! The benchmark fails if the number is more than 2 % above the recorded number. With another compiler or C library,
+//! the code and its number of instructions differ. In that case nothing is compared, and a line on standard error says
+//! so. Record again when such a version becomes the usual one, or when an increase is intended.
 
 #[allow(dead_code, reason = "only the comparison with C uses all of it")]
 #[path = "../recorded_run/mod.rs"]

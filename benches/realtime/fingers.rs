@@ -27,7 +27,7 @@ pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> 
     reach_with(configuration, period, board_priority, |_, servo| servo)
 }
 
-/// Like [`reach`]. `change` changes the servo of each finger.
+/// Does the same as [`reach`], but `change` changes the servo of each finger.
 pub fn reach_with(
     configuration: &Configuration,
     period: u64,

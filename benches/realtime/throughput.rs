@@ -1,5 +1,5 @@
-//! Measures the cycles per second without a rate limit. The system's terminals, the codec and the core then set the
-//! rate. A cycle whose reply was lost does not count.
+//! Measures the cycles per second without a rate limit. The system's terminals, the codec of the board protocol and the
+//! controller then set the rate. A cycle whose reply was lost does not count.
 
 use crate::Failure;
 use crate::fingers::reach;

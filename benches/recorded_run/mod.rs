@@ -33,7 +33,8 @@ const STIFFNESS: Matrix3<f64> = Matrix3::new(
 
 pub const CYCLES: usize = CYCLES_A_SET_POINT * SET_POINTS.len();
 
-/// The set point during which the fingertip is pushed, and the force, N. The tendons cannot withstand it.
+/// Index of the set point during which the fingertip is pushed, and the force, N. The tendons cannot withstand this
+/// force.
 const PUSHED: usize = 3;
 const PUSH: Vector3<f64> = Vector3::new(0.0, 8.0, 25.0);
 

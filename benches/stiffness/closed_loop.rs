@@ -1,4 +1,4 @@
-//! The control core and the simulated finger in one loop, with one cycle between sample and torque.
+//! The controller and the simulated finger in one loop, with one cycle between sample and torque.
 
 use crate::cases::{Case, Friction};
 use nalgebra::{Matrix3, Vector3, Vector4};

@@ -6,7 +6,7 @@
 //!     cargo bench --bench stiffness -- --truths [TEXT] [--identified] [--law report] [--seeds N] [--short]
 //!     cargo bench --bench stiffness -- --search [TEXT] [--numbers TOML]
 //!
-//! The control core runs against the simulated finger, in memory and in simulated time. One cycle passes between a
+//! The controller runs against the simulated finger, in memory and in simulated time. One cycle passes between a
 //! sample and its torque.
 
 mod cases;
@@ -39,7 +39,8 @@ use sun2xp::model::configuration::{Law, Scheme};
 #[derive(Parser)]
 #[command(about = "Measures how accurately a finger behaves as the commanded spring")]
 struct Arguments {
-    /// Number of random poses. The default is 24, 4 with --quick, 12 with --truths, and 2 with --search.
+    /// Number of random poses. The default is 24, 4 with --quick, 12 with --truths, 6 with --damping, and 2 with
+    /// --search.
     #[arg(long)]
     poses: Option<usize>,
     /// Few poses, and 1000 Hz only.
@@ -70,8 +71,8 @@ struct Arguments {
     /// With --truths: number of seeds.
     #[arg(long, default_value_t = 8)]
     seeds: u64,
-    /// With --truths: instead of these trials, whether each finger comes to rest at both ends of the range of damping
-    /// ratios that SendDamping admits.
+    /// With --truths: instead of the table, measures whether each finger comes to rest at both ends of the range of
+    /// damping ratios that SendDamping admits.
     #[arg(long)]
     damping: bool,
     /// With --truths: no walls and no bumps.

@@ -15,7 +15,7 @@ fn believing_otherwise(case: &Case, stiffness: f64, differ: impl Fn(&mut Configu
     believing(case, stiffness, |finger, _| differ(finger))
 }
 
-/// Like [`believing_otherwise`], but both the true finger and the configuration may differ from the default.
+/// Does the same as [`believing_otherwise`], but the configuration may differ from the default too.
 fn believing(
     case: &Case,
     stiffness: f64,

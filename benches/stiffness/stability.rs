@@ -30,7 +30,7 @@ pub struct Stability {
     pub largest: f64,
 }
 
-/// Number of samples of a row here for each pose of the other rows of the table.
+/// Number of samples of a row of this file, divided by the number of poses of any other row of the table.
 const DENSITY: usize = 20;
 
 /// Returns poses within `limits`, with springs up to the bound and small loads. Without a load, tendons 1 and 4 would
@@ -77,7 +77,7 @@ pub fn against_walls(case: &Case) -> Stability {
 
 fn measure(case: &Case, samples: &[Sample]) -> Stability {
     let found = each(samples, |_, sample| growth(case, &case.finger(&sample.pose, Friction::None), sample));
-    // A finger with its tip on the axis of joint 0 has an eigenvalue of 1, because nothing holds that joint.
+    // The fitted eigenvalues have rounding errors.
     const ROUNDING: f64 = 1e-5;
     let inside = |growth: &f64| *growth < 1.0 + ROUNDING;
     Stability {

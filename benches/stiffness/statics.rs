@@ -72,7 +72,7 @@ pub fn pushed_about(held: &Held) -> Pushed {
 }
 
 /// Pushes the tip with a triangular wave of 3 s, with friction. The largest force deflects the spring by 2 mm in either
-/// direction. Returns the error of the slope of the deflection.
+/// direction. Returns the error of the stiffness that follows from the slope of the deflection.
 pub fn triangle(case: &Case, stiffness: f64) -> f64 {
     const AMPLITUDE: f64 = 0.2;
     worst(each(&case.poses(), |_, pose| {

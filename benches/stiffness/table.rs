@@ -184,7 +184,7 @@ fn percent(part: f64) -> String {
     format!("{:.2} %", 100.0 * part)
 }
 
-/// Formats the error of the reported stiffness, and the reported stiffness if it is less than Kx.
+/// Formats the error relative to the reported stiffness, and the reported stiffness if it is less than Kx.
 fn fidelity(found: Fidelity) -> String {
     let error = percent(found.error);
     if found.scale < 1.0 {

@@ -1,4 +1,4 @@
-/* mujoco_hand.c - a hand whose fingers are simulated in another process, in step with the servo. C11.
+/* mujoco_hand.c - a hand whose fingers are simulated in another process, in step with the servo (C11).
 
        mujoco_hand MEMORY      the fingers that simulation.py simulates over this file
        mujoco_hand             the built-in simulated fingers
@@ -41,7 +41,7 @@ struct memory {
 /* The step of the present cycle, for all fingers. Only the servo thread uses it. */
 struct step {
     double deadline;                    /* of the commands of the cycle */
-    int owed;                           /* whether the simulation has not made the last requested step */
+    int owed;                           /* 1 until the simulation has made the last requested step */
     int result;
 };
 

@@ -68,7 +68,7 @@ def with_elastic_tendons(text):
 
 
 class Hand:
-    """The simulated hand. Arrays of the tendons have three rows of four."""
+    """The simulated hand. Arrays of the tendons have 12 entries: tendons 1 to 4 of finger 1, then of 2 and 3."""
 
     def __init__(self, text):
         text, pose, pretension = with_elastic_tendons(text)

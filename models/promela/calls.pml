@@ -2,8 +2,8 @@
 
 #define CLOSED_MEANWHILE (!open_hand || exiting || over)
 
-/* Statements under locks are one step, because nothing in them waits except for the locks. With -DCALLS they are
- * separate steps, so that threads can hold locks while others take some. */
+/* Statements under locks are one step, because they wait only for the locks. With -DCALLS they are separate steps, so
+ * that a thread can hold some locks while another thread takes others. */
 #ifdef CALLS
 #define SECTION
 #else

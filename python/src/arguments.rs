@@ -60,8 +60,8 @@ pub fn as_array<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayD
     Ok(array.cast_into::<PyArrayDyn<f64>>()?)
 }
 
-/// Whether each number of the array is at a multiple of its own size. In the columns of a structured array they may be
-/// elsewhere. The crate `numpy` reads such arrays at wrong places.
+/// Whether the address of each number of the array is a multiple of the number's size. A column of a structured array
+/// can have other addresses, and the crate `numpy` reads such an array at wrong addresses.
 fn is_regular<D: Dimension>(array: &Bound<'_, PyArray<f64, D>>) -> bool {
     const SIZE: usize = size_of::<f64>();
     array.data().addr().is_multiple_of(SIZE)

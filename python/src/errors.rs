@@ -124,10 +124,10 @@ impl Refusal {
         }
     }
 
-    /// What the caller should do. The texts of the library end with the remedy. What follows the last colon contains
-    /// it, in some texts after more about the cause.
+    /// What the caller should do. A text of the library ends with the remedy. Returns the part of the text after its
+    /// last colon, which in some texts begins with a part of the cause.
     fn remedy(&self) -> String {
-        // The text about wrong wiring has a remedy for what was found.
+        // The text about wrong wiring has a remedy for the wrong connection that was found.
         if let Some((_, fault)) = self.fault()
             && fault != FaultKind::WrongWiring
         {

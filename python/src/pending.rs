@@ -1,4 +1,5 @@
-//! Hands that are opening or closing. The end of the interpreter waits for them, so that no motor stays wound up.
+//! Hands that are opening or closing. The end of the interpreter waits for them, so that no motor keeps pulling its
+//! tendon.
 
 use crate::fork;
 use parking_lot::{Condvar, Mutex, MutexGuard};

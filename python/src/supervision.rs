@@ -33,7 +33,7 @@ impl Hand {
     /// Makes a faulted finger a spring again. The finger holds its present pose at its initial stiffness. The cause of
     /// the fault must be removed first. Does nothing if the finger is not faulted.
     fn recover(&self, py: Python<'_>, finger: i32) -> PyResult<()> {
-        // After a stop this waits until the servo has carried it out.
+        // After a stop, this call waits until the servo has carried out the stop.
         let recovering = self.slow(py, |hand| Recovering::begin(hand, finger))?;
         let (recovering, reconnected) = in_thread(py, move || {
             let reconnected = recovering.reconnect();

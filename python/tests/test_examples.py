@@ -43,7 +43,7 @@ def test_the_spring_is_measured_and_plotted(tmp_path):
     ("example", "header", "first"), [("five_calls.py", "Sun2Xp.h", "joints "), ("c_interface.py", "sun2xp.h", "tip ")]
 )
 def test_cffi_reads_the_headers(example, header, first, tmp_path):
-    # tests/installed names the library. Without it, as in a checkout without a build, there is nothing to load.
+    # tests/installed sets this variable to the path of the library. In a checkout without a build there is no library.
     library = os.environ.get("SUN2XP_LIBRARY")
     if library is None:
         pytest.skip("SUN2XP_LIBRARY does not name the shared library")

@@ -35,7 +35,7 @@ def test_control_c_ends_the_tool(tmp_path):
 
 
 def test_a_black_box_has_the_last_cycles(hand):
-    # The black box of a stopped finger keeps the time before the stop. The finger no longer moves.
+    # The finger is at its goal and at rest before the stop, at which its black box ends.
     hand.send_position(1, [0.1, 0.6, 0.9])
     hand.wait(1, timeout=30)
     events = hand.events()

@@ -50,8 +50,8 @@ def paths(message: Any, prefix: str, fingers: Sequence[int], now: float, *, wait
         prefix: the prefix of the names of joints.
         fingers: the fingers that the hand has.
         now: the time of the ROS clock, s. A trajectory without a stamp begins now.
-        waited: whether the trajectory has waited for its stamp. A timer is always a little late, but it must not make a
-            pose to take at once a pose of the past.
+        waited: whether the trajectory has waited for its stamp. A timer is always a little late. A pose that is to be
+            taken at the stamp must not count as past because of this delay.
     """
     columns = _columns(message.joint_names, prefix, fingers)
     positions = [list(point.positions) for point in message.points]

@@ -45,7 +45,7 @@ struct Arguments {
     /// Without TLS.
     #[arg(long)]
     plain: bool,
-    /// The role of a client. The benchmark starts itself with it.
+    /// The role of a client or of the other server. The benchmark starts itself with this option.
     #[arg(long, hide = true)]
     role: Option<String>,
     #[arg(long, hide = true)]

@@ -1,6 +1,6 @@
 //! Who may send and receive what, as the access control of zenoh. Everything that is not listed is denied. A subject is
-//! the common name of a certificate, so there is access control only with TLS. Key expressions are compared by
-//! inclusion, so an expression with a wildcard is denied too.
+//! the common name of a certificate, so there is access control only with TLS. A rule allows a key expression only if
+//! it allows every key that matches the expression. So a client reaches no further keys with a wildcard.
 
 use crate::json::{string, strings};
 use crate::settings::Permission;
@@ -114,7 +114,7 @@ impl Scope {
     }
 }
 
-/// Returns what this client may do; none if it is not listed.
+/// Returns what this client may do at the server of a hand; none if it is not listed, or listed as a hand.
 #[must_use]
 pub fn permission(clients: &BTreeMap<ClientName, Permission>, client: &ClientName) -> Option<Permission> {
     clients.get(client).copied().filter(|&permission| permission != Permission::Hand)

@@ -18,8 +18,8 @@ use zenoh::key_expr::KeyExpr;
 use zenoh::query::Query;
 use zenoh::{Session, Wait};
 
-/// Capacity of the queue of Answers to Requests. When it is full, further Answers are dropped, and their clients ask
-/// again.
+/// Capacity of the queue of Answers to Requests. When it is full, further Answers are dropped. Their queries end
+/// without an answer.
 const WAITING: usize = 256;
 
 /// Capacity of the queue of the other queries, which have some hundred bytes each.
@@ -113,7 +113,7 @@ impl Answers {
 /// Sends what is in the queue until the server ends.
 pub fn send(shared: &Shared, session: &Session, queue: &Receiver<Outgoing>) {
     while !shared.ending.load(Ordering::Acquire) {
-        // A client that has gone needs no answer, and the session is closed only when the server ends.
+        // A failure to send needs no reaction: either the client has gone, or the server ends.
         match queue.recv_timeout(INTERVAL) {
             Ok(Outgoing::Reply(query, key, bytes, place)) => {
                 let _ = query.reply(key, bytes).wait();

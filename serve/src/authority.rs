@@ -99,7 +99,7 @@ fn check_certificate(text: &str, pair: &KeyPair) -> Result<(), String> {
     if !found.is_ca() {
         return Err(format!("is not the certificate of an authority: {remedy}"));
     }
-    // Certificates name their authority by its name and its key.
+    // A certificate identifies its authority by the name and the key of the authority.
     if common_name(&found) != Some(NAME) {
         return Err(format!("is not an authority that this command made (common name `{NAME}`): {remedy}"));
     }

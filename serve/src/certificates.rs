@@ -31,7 +31,8 @@ const CLOCK_DIFFERENCE: Duration = Duration::days(1);
 /// The certificates to make.
 #[derive(Clone, Debug, Default)]
 pub struct Wanted {
-    /// Names of servers, hands and routers. Clients must reach them by this name, or by one of `addresses`.
+    /// Names of servers, hands and routers. Clients must reach each of them by its name, by one of `addresses`, or at
+    /// loopback.
     pub servers: Vec<ClientName>,
     /// Other names and addresses by which clients reach the servers.
     pub addresses: Vec<String>,

@@ -150,8 +150,8 @@ impl Desk {
         self.ownership.other_owner(client, take_over).is_none()
     }
 
-    /// Makes a client the owner at `now`, ns, with this epoch. Paths of the previous owner end. The time limit for the
-    /// owner's silence begins with [`Desk::begin`].
+    /// Makes a client the owner at `now`, ns, with this epoch, and returns the number of the epoch. Paths of the
+    /// previous owner end. The time limit for the new owner's silence begins with [`Desk::begin`].
     ///
     /// # Errors
     /// Returns the name of the other owner. Then nothing has changed.
@@ -211,7 +211,7 @@ impl Desk {
         Ok(())
     }
 
-    /// Returns how often each finger was stopped so far. The end of an ownership stops every finger.
+    /// Returns how often each finger was stopped so far. The stops at the end of an ownership count too.
     #[must_use]
     pub fn stops(&self) -> Stops {
         self.stops

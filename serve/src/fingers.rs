@@ -1,6 +1,6 @@
-//! Sends what the owner wants to the fingers of the hand: new parts of Targets, the rest of the way to a destination
-//! that is far ahead of a finger, and, when the owner is heard again, the set points of fingers that were caught
-//! (see [`crate::silence`]).
+//! Sends to the fingers of the hand what the owner wants of them: new parts of Targets, the rest of the way to a
+//! destination that is far ahead of a finger, and, when the owner is heard again, the set points of fingers that were
+//! caught (see [`crate::silence`]).
 
 mod leading;
 mod preparing;
@@ -96,8 +96,9 @@ impl Fingers {
     /// owner repeats them.
     ///
     /// # Errors
-    /// Returns why a finger refuses its part. Then no part is applied, and the validity is not renewed. If a finger
-    /// stops during the call, it does not begin its path, and the other parts are applied.
+    /// Returns why a finger refuses its part. Then no part is applied, and the validity is not renewed. There is one
+    /// exception: if a finger stops or is caught during the call, only its path does not begin. The other parts are
+    /// applied, and the validity is renewed.
     pub fn apply(&mut self, parts: &[Part], silence: &Silence, now: u64) -> Result<(), HandError> {
         let valid = silence.of_commanded();
         let new = parts.iter().filter(|part| {

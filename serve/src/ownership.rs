@@ -1,4 +1,4 @@
-//! Who owns the hand: at most one client, whose epoch fences every earlier owner.
+//! Who owns the hand: at most one client. Messages with the epoch of an earlier owner are refused.
 
 use sun2xp_remote_protocol::ClientName;
 

@@ -125,7 +125,7 @@ impl Publishing {
     }
 
     fn publish_event(&mut self, event: &Event) {
-        // Clients detect Events that the queue has lost by gaps in the numbers.
+        // Gaps in the numbers show clients that the queue has lost Events.
         self.sent_events += 1;
         let Some(finger) = Finger::new(event.finger.get()) else { return };
         let sent = Message {

@@ -17,9 +17,10 @@ pub const LARGEST_OF_HAND: u16 = 4_096;
 /// Largest message that a router receives, bytes. The States of hands pass through the router.
 pub const LARGEST_OF_ROUTER: u16 = u16::MAX;
 
-/// Longest time for which a client that does not read can hold up a message, us. Then zenoh closes the link of that
-/// client. Other clients wait as long, and the default of zenoh is 5 s. This value is shorter than the default of
-/// catch_ms, so that the fingers of the other clients are not caught (see [`crate::silence`]).
+/// Longest time for which a client that does not read can hold up a message, us. The other clients wait during this
+/// time. Then zenoh closes the link of the client that does not read. The default of zenoh is 5 s. This value is
+/// shorter than the default of catch_ms, so that the fingers are not caught (see [`crate::silence`]) while their owner
+/// waits.
 const LONGEST_WAIT: &str = "50000";
 
 /// Opens a session for these settings, with this access control if there is TLS. It receives messages of at most

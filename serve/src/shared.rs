@@ -17,7 +17,7 @@ pub struct Shared {
     pub settings: Settings,
     /// The keys of the hand.
     pub keys: HandKeys,
-    /// The desk. No thread holds it while it sends or waits.
+    /// The desk. No thread keeps it locked while the thread sends over the network or waits.
     pub desk: Mutex<Desk>,
     /// Whether a request that takes long is in progress.
     pub busy: AtomicBool,

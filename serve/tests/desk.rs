@@ -133,7 +133,7 @@ fn a_caught_finger_waits_while_an_acquire_recovers_another_one() {
     rig.acquire("alice");
     rig.wait_until("set point", &[joints(2, 1, FAR)], |rig| rig.report(2).set_point_number > 0);
     rig.wait_in_silence("catch", |rig| rig.report(2).expired);
-    // The desk calls `begin` when the fingers have recovered.
+    // The server calls `Desk::begin` only when the fingers have recovered.
     rig.acquire_only("bob");
     let cycles = rig.report(2).losses.cycles;
     rig.wait_in_silence("cycles", |rig| rig.report(2).losses.cycles > cycles + 600);

@@ -72,8 +72,8 @@ fn a_sheathed_hand() {
     is_caught(NamedHand::Sheathed, 0.03);
 }
 
-/// The gauges and moment arms of this hand are wrong by as much as a force of 1 N at the tip. The default Kx of 3 N/cm
-/// gives way by 3 mm, and the soft Kx of 1 N/cm of the catch by 1 cm.
+/// The errors of the gauges and the moment arms of this hand act like a force of 1 N at the tip. This force moves the
+/// tip by 3 mm with the default Kx of 3 N/cm, and by 1 cm with the soft Kx of 1 N/cm of a catch.
 #[test]
 fn a_cheap_hand() {
     follows(NamedHand::Cheap, 0.12);

@@ -57,7 +57,8 @@ impl Descriptor {
         // If no high number is free, the low one stays in use.
         // SAFETY: the call has just created the descriptor, and no other code knows it.
         let file = if high < 0 { low } else { unsafe { OwnedFd::from_raw_fd(high) } };
-        // The file gets its mark last: before that, an earlier owner of the number does not take it for its own.
+        // The file is marked after the generation has changed. An earlier `Descriptor` with this number therefore never
+        // finds both the mark and its own generation.
         let generation = next_generation(file.as_raw_fd());
         // SAFETY: the descriptor is open, and the command takes an integer.
         check(unsafe { libc::fcntl(file.as_raw_fd(), F_SETSIG, MARK) })?;

@@ -189,8 +189,8 @@ impl<T: Transport> Link<T> {
         }
     }
 
-    /// Returns the next Reply or the next answer to a TactileRequest. Otherwise like
-    /// [`receive_within`](Self::receive_within).
+    /// Does the same as [`receive_within`](Self::receive_within), but also returns the answers to TactileRequests and
+    /// to a relayed request.
     pub fn next_arrival(&mut self, allowance: &mut Allowance) -> Result<Option<Arrival>, LinkError> {
         while let Some(message) = self.next_message(allowance)? {
             let Message { address, sequence, frame } = message;

@@ -19,8 +19,8 @@ const MICRO_PER_CENTI: f64 = 1e4;
 /// The terms in physical units. [`Terms::configure`] converts them to a [`Configure`] with the board's [`Identity`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terms {
-    /// Silence after which the board enters its end state, ms. A board whose shortest time is longer, up to 20 ms, gets
-    /// its shortest time.
+    /// Silence after which the board enters its end state, ms. If the board's shortest time is longer than this and at
+    /// most 20 ms, the board gets its shortest time.
     pub watchdog_ms: u16,
     /// What the board does when commands stop.
     pub end_state: EndState,

@@ -49,8 +49,8 @@ pub struct Identified {
     /// `tendon.stiffness`, N/cm.
     pub tendon_stiffness: Vector4<f64>,
     /// `tendon.stiffness_tolerance`. The stretch per newton depends on the tension. The tolerance is the largest
-    /// relative difference from the stretch per newton that `tendon_stiffness` gives. It includes the uncertainty of
-    /// the measurement.
+    /// relative difference between this stretch and the constant one that `tendon_stiffness` gives. It includes the
+    /// uncertainty of the measurement.
     pub stiffness_tolerance: f64,
     /// Part of the motors' travel that the identified elasticity does not explain: rms residual, cm.
     pub travel_residual: f64,
@@ -119,8 +119,8 @@ impl IdentifiedArms {
 }
 
 impl Findings {
-    /// Writes the results whose fields name a key into a finger's configuration. The viscous friction of the joints is
-    /// not written.
+    /// Writes into a finger's configuration every result whose documentation names a configuration key. The viscous
+    /// friction of the joints is not written.
     pub fn apply(&self, finger: &mut ConfiguredFinger) {
         match self {
             Self::Signs(signs) => {

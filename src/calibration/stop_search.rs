@@ -5,7 +5,7 @@ use super::joint_guide::JointGuide;
 use super::obstacle::Obstacle;
 use std::f64::consts::PI;
 
-/// A joint at full torque counts as still if it has moved by less than this angle, rad.
+/// A joint at full torque counts as still while it stays within this angle of one position, rad.
 const STILL: f64 = 0.004;
 /// A joint is at its stop when it has been still for this time, s.
 const DWELL: f64 = 0.25;

@@ -144,7 +144,7 @@ fn slow(
     result
 }
 
-/// Runs `call` without cancellation. It must not panic, and its result must need no destructor.
+/// Runs `call` without cancellation. `call` must not panic, and its result must need no destructor.
 ///
 /// This function is inlined into the exported function. No value in it has a destructor, because a thread with
 /// asynchronous cancellation may be unwound from this function before and after the call.

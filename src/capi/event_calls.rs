@@ -205,7 +205,8 @@ pub extern "C" fn sun2xp_event_descriptor(hand: *mut sun2xp_hand) -> c_int {
     if result == 0 { descriptor.load(Ordering::Relaxed) } else { result }
 }
 
-/// Takes the next event. Returns 1, 0 if there is none, or a negative number if the call is refused.
+/// Takes the next event. Returns 1 if there was an event, 0 if there was none, or a negative number if the call is
+/// refused.
 ///
 /// # Safety
 /// `event` is null, or points to as many bytes as its first member gives.

@@ -172,8 +172,8 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 ///
 /// The ratio changes without a jump in torque and stays until another ratio is sent. It becomes 1 again when
 /// the finger becomes a spring after a fault or a calibration, when a set point expires, and when a reflex
-/// with the reaction SUN2XP_THEN_SOFTEN fires. A reflex with SUN2XP_THEN_DAMP replaces it. A finger with much
-/// less or much more damping does not come to rest. The range therefore depends on the controller
+/// with the reaction SUN2XP_THEN_SOFTEN fires. A reflex with SUN2XP_THEN_DAMP replaces it. A finger whose
+/// ratio is much below or much above 1 does not come to rest. The permitted range depends on the controller
 /// (finger.controller.scheme), the rate and the largest eigenvalue k of the stiffness, N/cm:
 ///
 ///                                     1000 Hz and above    below 1000 Hz

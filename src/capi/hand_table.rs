@@ -174,8 +174,8 @@ fn close_at_exit() {
     hand_events::end(LONGEST_WAIT_AT_EXIT, TABLE.iter().map(|place| &place.events));
 }
 
-/// The hands end without being dropped: a signal handler may have called exit in the middle of malloc, and then free
-/// would never return.
+/// Runs `call` on every open hand. The hands are not dropped: a signal handler may have called exit in the middle of
+/// malloc, and then free would wait forever for the lock of malloc.
 fn each_at_exit(call: impl Fn(&OpenedHand)) {
     for place in &TABLE {
         if let Some(_closing) = try_for(LONGEST_WAIT_AT_EXIT, || place.lifecycle.try_lock())

@@ -2,7 +2,7 @@
 //!
 //! A handle is a pointer by its type only. Its value contains a tag, the number of the hand among those that the
 //! process has opened, and the place of the hand in the table. The number has 40 bits (16 on 32-bit machines), and
-//! repeats after that many hands. Nothing dereferences a handle, so a null, foreign or closed handle is refused.
+//! repeats after 2^40 (2^16) hands. Nothing dereferences a handle, so a null, foreign or closed handle is refused.
 
 use std::ptr::without_provenance_mut;
 

@@ -66,7 +66,8 @@ pub extern "C" fn sun2xp_set_log(callback: sun2xp_log, user: *mut c_void) -> c_i
 /// Passes a message to the callback. Returns false if there is no callback, or if the callback is being replaced. Drops
 /// a message that the callback itself causes, and returns true.
 fn pass_on(severity: Severity, message: &str) -> bool {
-    // A callback that writes is a cancellation point. It must not end the thread inside a call of the library.
+    // A callback that writes is a cancellation point. A cancellation must not end the thread inside a call of the
+    // library.
     let _whole = NoCancellation::begin();
     // This must not wait: in a forked child, nothing releases a lock that another thread of the parent held. While
     // sun2xp_set_log waits for the previous callback, the message is printed instead.

@@ -15,8 +15,8 @@ use std::ffi::c_int;
 /// Result of sun2xp_object. Vectors are in the palm's frame.
 ///
 /// The member time stops while the machine is too busy for the simulation. The member rotation is the unit
-/// matrix at the start. The member force has no errors of gauges, and is zero for a finger that does not
-/// touch the object.
+/// matrix at the start. The member force comes from the simulation and not from the gauges. It is zero for a
+/// finger that does not touch the object.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_object {
@@ -40,7 +40,7 @@ pub struct sun2xp_object {
 
 /// sun2xp_object - read pose and motion of the object in the simulated hand
 ///
-///   object   result, some milliseconds old at most; set object->size before the call
+///   object   result, at most some milliseconds old; set object->size before the call
 ///
 /// All simulated fingers touch one object if hand.simulated_object is configured: a ball or a box with
 /// mass and friction. It can lie on a table. hand.gravity also acts on the object.

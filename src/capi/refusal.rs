@@ -111,7 +111,7 @@ impl Display for Wanted {
     }
 }
 
-/// Refusals of one kind are printed once. The number and errno of a remote refusal are those of another machine.
+/// Only the first refusal of each kind is printed. The last element is the number and errno of [`Refusal::Remote`].
 pub(super) type Kind = (Discriminant<Refusal>, Option<hand::ErrorKind>, Option<(c_int, c_int)>);
 
 impl Refusal {

@@ -18,7 +18,7 @@ use std::time::Duration;
 /// Why a hand on another machine refuses a call.
 #[derive(Debug)]
 pub enum RemoteRefusal {
-    /// A reason that a hand of this machine has too.
+    /// A reason for which a hand of this machine refuses calls too.
     Hand(HandError),
     /// Another reason.
     Other {
@@ -71,16 +71,16 @@ pub trait RemoteHand: Send + Sync {
     /// The result of sun2xp_fault.
     fn fault(&self, finger: c_int) -> Result<sun2xp_fault, RemoteRefusal>;
 
-    /// Stops a finger, or all fingers with 0.
+    /// Stops a finger. The number 0 stands for all fingers.
     fn stop(&self, finger: c_int) -> Result<(), RemoteRefusal>;
 
-    /// Makes a finger, or all fingers with 0, springs again. Takes long.
+    /// Makes a faulted finger a spring again. The number 0 stands for all fingers. Takes long.
     fn recover(&self, finger: c_int) -> Result<(), RemoteRefusal>;
 
     /// Calibrates a finger. Takes long.
     fn calibrate(&self, finger: c_int, task: Task) -> Result<(), RemoteRefusal>;
 
-    /// Waits until a finger, or all fingers with 0, have arrived or settled.
+    /// Waits until a finger has arrived or settled. The number 0 stands for all fingers.
     fn wait(&self, finger: c_int, until: Until, limit: Duration) -> Result<(), RemoteRefusal>;
 
     /// Takes the next event, if there is one.

@@ -12,7 +12,7 @@ use std::ffi::c_int;
 use std::fmt::{self, Display, Formatter};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Upper bound of the number of kinds of refusals.
+/// Number of kinds of refusals for which memory is reserved.
 const KINDS: usize = 64;
 
 static PRINT: AtomicBool = AtomicBool::new(true);
@@ -66,6 +66,6 @@ fn is_first_of_its_kind(kind: Kind) -> bool {
 /// Sets whether refusals are printed, as configured for the hand that is being opened.
 pub(super) fn set_printing(on: bool) {
     PRINT.store(on, Ordering::Relaxed);
-    // The memory is reserved here, so that no refusal allocates.
+    // The memory is reserved here, so that the first KINDS kinds of refusals allocate nothing.
     PRINTED.lock().reserve(KINDS);
 }

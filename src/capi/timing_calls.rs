@@ -30,7 +30,7 @@ pub const SUN2XP_STAGE_READ: c_int = 3;
 /// Decoding the bytes to the finger's reply, including all checks.
 pub const SUN2XP_STAGE_DECODE: c_int = 4;
 
-/// Computing the command and the report.
+/// Computing the command, and the state that planners read.
 pub const SUN2XP_STAGE_COMPUTE: c_int = 5;
 
 /// From the scheduled start of a cycle to the end of its computation.

@@ -112,7 +112,7 @@ enum Doing {
 }
 
 impl Controller {
-    /// Returns the state before the first cycle of a finger at rest. Its first command pulls with the measured
+    /// Returns the state before the first cycle of a finger at rest. The commanded pulls start at the measured
     /// tensions.
     pub fn start(&self, feedback: &Feedback) -> State {
         let measured = self.sensors.measured(feedback);

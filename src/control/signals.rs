@@ -131,7 +131,8 @@ impl MotorCommand {
 pub struct Report {
     /// Measured joint angles, corrected for tendon stretch, rad.
     pub joints: Vector3<f64>,
-    /// Measured joint rates, rad/s. With state feedback, these are the rates predicted for the next sample.
+    /// Measured joint rates, rad/s. With state feedback, these are the rates predicted for shortly before the next
+    /// sample.
     pub joint_rates: Vector3<f64>,
     /// Measured tensions, N.
     pub tensions: Vector4<f64>,

@@ -56,8 +56,8 @@ pub(super) struct StateFeedback {
     pulleys: Option<PulleyFeedForward>,
     /// R, m.
     r: Matrix3x4<f64>,
-    /// R^T (R R^T)^-1, 1/m. Its transpose converts the travel of the tendons to joint angles. It converts a stretch
-    /// that is common to all tendons to zero.
+    /// R^T (R R^T)^-1, 1/m. Its transpose converts the travel of the tendons to joint angles. The transpose converts a
+    /// stretch along the null vector of R to zero.
     pseudo_inverse: Matrix4x3<f64>,
     /// Unit vector of the tensions that cause no joint torque.
     common: Vector4<f64>,
@@ -123,7 +123,7 @@ pub(super) struct StateFeedbackState {
     tension_dither: TensionDitherState,
     /// Estimated joint angles at the newest sample, rad.
     pub joints: Vector3<f64>,
-    /// Estimated joint rates, predicted for the next sample, rad/s.
+    /// Estimated joint rates, predicted for `sample_offset` relative to the next sample, rad/s.
     pub joint_rates: Vector3<f64>,
 }
 

@@ -98,8 +98,8 @@ impl BlackBox {
 
     /// Stores the source of the next controller. The caller must do this before it collects a record that names the
     /// controller. `taken` is [`FingerReport::controller`](crate::finger::FingerReport::controller), read before the
-    /// last [`BlackBox::collect`]. Controllers older than `taken` that no record names are removed. A newer controller
-    /// replaced them before the servo used them.
+    /// last [`BlackBox::collect`]. Controllers older than `taken` that no record names are removed: either the servo
+    /// never used them, or the records of their cycles are no longer kept.
     pub fn announce(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>, taken: u32) {
         let controls = self.records.iter().filter_map(|record| record.control.as_ref());
         let named: BTreeSet<u32> = controls.flat_map(|control| [control.controller, control.previous]).collect();

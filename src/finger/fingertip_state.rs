@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Matrix3x4, Vector3};
 /// Limit of observability, cm per rad. If a joint motion of 1 rad moves the fingertip in a direction by less than this,
 /// the force in that direction cannot be found from the joint torques: a torque error of 0.1 N cm would cause a force
 /// error of a third of a newton. The joints do not feel a force in such a direction. The default finger has such a
-/// direction within 9 degrees of the straight pose.
+/// direction while joint 2 is within 8.4 degrees of the straight pose.
 const FELT: f64 = 0.3;
 
 /// The state of a fingertip, in the finger's frame.

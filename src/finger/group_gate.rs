@@ -10,7 +10,7 @@ use crate::realtime::{LockedMemory, Pages, SharedPages};
 /// Number of groups whose state the gate remembers. It is larger than the number of groups that can wait in a finger.
 const REMEMBERED: usize = 64;
 
-/// Bits of a state that hold the number of the group's period plus 1, or [`POSTED`].
+/// Number of low bits of a state. They hold the number of the group's period plus 1, or [`POSTED`].
 const PERIOD_BITS: u32 = 40;
 
 /// The group is posted, and no servo has decided its period yet.

@@ -179,9 +179,9 @@ impl Mailbox {
         Ok(())
     }
 
-    /// Like [`Mailbox::send`], for a change that may refuse the set point that it starts from. The change is made in a
-    /// copy, which takes longer. `replaced` is the part that changes, and `valid` is the time for which the set point
-    /// is valid.
+    /// Like [`Mailbox::send`], for a change that may fail. The change is made in a copy of the set point, which takes
+    /// longer than a change in place. `replaced` is the part that changes, and `valid` is the time for which the set
+    /// point is valid.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. The inner result is the refusal of `change`. Nothing is sent in

@@ -24,6 +24,7 @@ pub enum Order {
 pub struct CalibrationRun {
     /// The routine.
     pub calibration: Calibration,
-    /// The data that the servo computes with. It is made for [`Calibration::controlled`].
+    /// The data that the servo computes with, constructed from the configuration that [`Calibration::controlled`]
+    /// returns.
     pub adjustable: Adjustable,
 }

@@ -139,7 +139,7 @@ impl Recording {
     /// # Errors
     /// Returns the error that the system reports.
     pub fn write(&self, output: impl Write) -> io::Result<()> {
-        // A reference, so that the code is compiled once for all kinds of outputs.
+        // A trait object, so that the code is compiled once for all kinds of outputs.
         let output: &mut dyn Write = &mut { output };
         let mut output = BufWriter::new(output);
         let header = Header {

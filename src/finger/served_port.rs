@@ -113,8 +113,8 @@ impl<T: Transport> ServedPort<T> {
         handover.relay.answers.push(*answer).is_ok()
     }
 
-    /// Sends all commands of the port back to back, so that replies overlap with the commands after them. A relayed
-    /// request follows them.
+    /// Sends all commands of the port back to back, so that the first replies overlap with the later commands. A
+    /// relayed request follows the commands.
     pub(super) fn send(&mut self) {
         let mut commands = [OutgoingCommand::default(); FINGERS];
         let mut count = 0;

@@ -48,7 +48,7 @@ pub struct FingerServo {
     feedback: Feedback,
     /// Whether the controller must restart from the feedback.
     restart: bool,
-    /// Beginning of the cycle before the last fault, ns.
+    /// The value of `report.last` when the last fault occurred, ns.
     faulted_at: u64,
     command: MotorCommand,
     mailbox: ServoEnd,
@@ -230,7 +230,7 @@ impl FingerServo {
             self.black_box.record(CycleRecord { timing, ..record });
         }
         self.mailbox.publish(self.report);
-        // A planner that has read an event of a cycle therefore finds the report of this cycle.
+        // The events come after the report, so that a planner that has read an event finds the report of its cycle.
         self.events.publish(self.report.next);
         self.note_events();
         // The timing comes after the report, so that a reader never counts more timings than cycles. The ring is full

@@ -43,14 +43,14 @@ impl Hand {
     /// in torque. Other keys keep their values. `controller.law` applies to later set points.
     ///
     /// A configured `stiffness.bound` was found for one controller. If `keys` changes `controller.scheme` but does not
-    /// contain `stiffness.bound`, the smaller of the configured bound and the default bound is used. If a path changes
-    /// Kx when the bound is lowered, the Kx of the end of the path takes effect at once.
+    /// contain `stiffness.bound`, the smaller of the configured bound and the default bound is used. If the bound is
+    /// lowered while a path changes Kx, the Kx of the end of the path takes effect at once.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a key cannot be
     /// read, cannot change while the hand is open, or results in a configuration that cannot be used. Returns an error
-    /// if the set point that was sent last is outside the new limits, unless commands are clamped: a set point that is
-    /// clamped keeps its validity. After an error nothing is changed.
+    /// if the set point that was sent last is outside the new limits, unless commands are clamped. Clamping a set point
+    /// does not change the time for which it is valid. After an error nothing is changed.
     pub fn adjust(&self, finger: i32, keys: &str) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;

@@ -104,7 +104,7 @@ pub(super) struct DampingAdmission {
     pub finger: FingerNumber,
     /// The damping that the finger's controller admits.
     pub admissible: AdmissibleDamping,
-    /// Converts a rotational stiffness, cm: the length of the last link.
+    /// Length of the last link, cm, with which a rotational stiffness is converted to N/cm.
     pub lever: f64,
     /// Refuse or clamp.
     pub out_of_range: OutOfRange,
@@ -119,7 +119,7 @@ impl DampingAdmission {
         let finger = self.finger;
         let contact = Contact::general(&set_point.stiffness, &Matrix6::identity());
         let contact = contact.map_err(|source| SetPointError::Contact { finger, source })?;
-        // The eigenvalue of a sum is at most the sum of the eigenvalues.
+        // The largest eigenvalue of a sum is at most the sum of the largest eigenvalues.
         let of_joints = set_point.joint_spring.map_or(0.0, |spring| spring.equivalent(self.lever));
         let stiffness = contact.largest_eigenvalue(self.lever) + of_joints;
         let (least, most) = self.admissible.range(stiffness);

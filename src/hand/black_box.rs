@@ -16,7 +16,8 @@ impl Hand {
         self.dispatcher.recording(finger)?.ok_or(HandError::NoAnswer(finger))
     }
 
-    /// One cycle of the last two seconds of finger 1, 2 or 3, or the newest cycle.
+    /// The record of a cycle of finger 1, 2 or 3, or of its newest cycle if `cycle` is `None`. The black box holds the
+    /// cycles of the last two seconds.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the cycle is not in the black box.
@@ -25,9 +26,9 @@ impl Hand {
         self.dispatcher.record(finger, cycle)?.ok_or(HandError::NoRecord { finger, cycle: cycle.unwrap_or_default() })
     }
 
-    /// Appends the records of the cycles of finger 1, 2 or 3 after `cycle` to `records`, in their order. Cycles that
-    /// are older than two seconds are missing, and a faulted finger has no new ones. A call costs little if `cycle` is
-    /// one of the last cycles.
+    /// Appends to `records` the records of all cycles of finger 1, 2 or 3 that are later than `cycle`, in their order.
+    /// Cycles that are older than two seconds are missing, and a faulted finger has no new cycles. A call costs little
+    /// if `cycle` is one of the last cycles.
     ///
     /// # Errors
     /// Returns an error if there is no such finger.
@@ -40,8 +41,8 @@ impl Hand {
     /// only if the writing succeeds.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger, if the file cannot be written, or if the path leads to something
-    /// other than a regular file.
+    /// Returns an error if there is no such finger, if it has no cycle yet, if the file cannot be written, or if the
+    /// path leads to something other than a regular file.
     pub fn write_black_box(&self, finger: i32, path: &Path) -> Result<(), HandError> {
         save_recording(&self.recording(finger)?, path)
     }

@@ -12,7 +12,8 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Time in which a board must answer at one port, ns. A board answers within 50 ms, and a Hello may be lost.
+/// Time in which a board must answer at one port, ns. A board answers a Hello within 50 ms. The time permits three
+/// attempts, because a Hello may be lost.
 const ANSWER: u64 = 160_000_000;
 
 /// Time for which the ports are searched again if a board is missing. Some boards restart when their port is opened.
@@ -141,8 +142,8 @@ fn ask(path: &Path, rates: &[u32]) -> Result<Vec<FoundFinger>, LinkError> {
 }
 
 /// The serial devices that processes have open, as far as this user can see them. Such a port is not opened, even if it
-/// is not locked: settings and bytes would disturb its user. Pseudo-terminals are not among them, because the board
-/// behind a pseudo-terminal may hold both ends.
+/// is not locked: settings and bytes would disturb the process that uses it. Pseudo-terminals are left out, because the
+/// process that simulates a board may itself have both ends of its pseudo-terminal open.
 fn used_terminals() -> BTreeSet<PathBuf> {
     let entries = |folder: PathBuf| std::fs::read_dir(folder).into_iter().flatten().flatten();
     let descriptors = entries("/proc".into()).flat_map(|process| entries(process.path().join("fd")));

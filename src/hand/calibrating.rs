@@ -69,8 +69,8 @@ impl Drop for Claim {
 
 impl Calibrating {
     /// Begins a calibration. With [`Task::Identify`] the joints move between their stops, and the finger presses
-    /// against its lower stops. With [`Task::Zero`] its tendons are slack for a second. The whole range of its joints
-    /// must be free. Set points are ignored until the calibration is done.
+    /// against its lower stops. With [`Task::Zero`] its tendons are slack for about a second. The whole range of its
+    /// joints must be free. Set points are ignored until the calibration is done.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if the finger is faulted or busy, or if the routine cannot work
@@ -259,7 +259,7 @@ impl Hand {
         Some(ToStore { file: self.file.clone()?, found })
     }
 
-    /// Keeps the results that a later call stores, if there are any.
+    /// Keeps results for [`Hand::store_calibration`], if there are any.
     fn note(&self, found: Found) {
         if found.values().is_empty() {
             return;

@@ -21,13 +21,13 @@ pub(super) use values::to_document;
 pub(crate) use with_io::FingersWithIo;
 pub use wrong::Wrong;
 
-/// Largest configuration file, bytes: more than sixty times the size of docs/sun2xp.toml, which contains every key.
+/// Largest configuration file, bytes: more than thirty times the size of docs/sun2xp.toml, which contains every key.
 pub(super) const LARGEST: u64 = 1 << 20;
 
 /// A configuration and its source.
 #[derive(Clone, Debug)]
 pub struct Configured {
-    /// The hand.
+    /// The configuration of the hand.
     pub configuration: Configuration,
     /// The file; `None` if no file was found, or if the configuration does not come from a file.
     pub file: Option<PathBuf>,
@@ -74,7 +74,7 @@ fn invalid_text(text: &str, wrong: &Wrong) -> ConfigurationError {
     ConfigurationError::Invalid { file, line: wrong.line(text), reason: wrong.to_string() }
 }
 
-/// Reads and checks the text of a configuration file. The ports of `with_io` are ignored.
+/// Reads and checks the text of a configuration file. Ports and boards of the fingers in `with_io` are ignored.
 pub(super) fn parse(text: &str, with_io: FingersWithIo) -> Result<Configuration, Wrong> {
     with_io.parse(text).map(|(configuration, _)| configuration)
 }
@@ -96,7 +96,7 @@ impl Configured {
         Self::from_text_with_io(text, FingersWithIo::default())
     }
 
-    /// Does the same as [`find_configuration`].
+    /// Does the same as [`find_configuration`], but ignores ports and boards of the fingers in `with_io`.
     pub(crate) fn find_with_io(with_io: FingersWithIo) -> Result<Self, ConfigurationError> {
         match place::locate()? {
             Some(path) => Self::read_with_io(&path, with_io),
@@ -104,7 +104,7 @@ impl Configured {
         }
     }
 
-    /// Does the same as [`Configured::read`].
+    /// Does the same as [`Configured::read`], but ignores ports and boards of the fingers in `with_io`.
     pub(crate) fn read_with_io(path: &Path, with_io: FingersWithIo) -> Result<Self, ConfigurationError> {
         let file = path.to_path_buf();
         let text = read_regular_file(path, LARGEST)
@@ -115,7 +115,7 @@ impl Configured {
         }
     }
 
-    /// Does the same as [`Configured::from_text`].
+    /// Does the same as [`Configured::from_text`], but ignores ports and boards of the fingers in `with_io`.
     pub(crate) fn from_text_with_io(text: &str, with_io: FingersWithIo) -> Result<Self, ConfigurationError> {
         let (configuration, said) = with_io.parse(text).map_err(|wrong| invalid_text(text, &wrong))?;
         Ok(Self { configuration, file: None, said: Said { ports: [true; FINGERS], ..said } })

@@ -60,7 +60,7 @@ impl FingerTip {
             force: state.force.into(),
             felt: state.felt,
             tensions: report.cycle.tensions.into(),
-            // Symmetric, so its rows are its columns.
+            // The matrix is symmetric, so its rows are its columns.
             stiffness: state.stiffness.into(),
             contact: (-report.cycle.contact.force).into(),
             touching: report.cycle.contact.touching,

@@ -37,7 +37,7 @@ const HELD_BY_BOUND: &[&str] = &[
 /// Number of significant digits that are stored and compared. No calibration routine is accurate to so many digits.
 const DIGITS: usize = 6;
 
-/// The only key in these lists that is not in the finger's table.
+/// The only key in [`HELD_BY_BOUND`] that is not in the finger's table.
 const RATE: &str = "hand.rate";
 
 /// The results of one run, or of several calibrations in a row, for one finger. When they are stored, only the keys
@@ -236,7 +236,7 @@ fn collect(key: &str, item: &Item, leaves: &mut BTreeMap<String, String>) {
     }
 }
 
-/// Returns the text of a value whose numbers are rounded.
+/// Returns the text of a value, with its real numbers rounded.
 fn shown(value: &Value) -> String {
     match value {
         Value::Float(number) => rounded(*number.value()).to_string(),

@@ -8,10 +8,10 @@ use crate::model::{FingerNumber, Fingers, Section, ShownPath, UnusableConfigurat
 use std::path::Path;
 
 /// Largest ratio of a gauge's calibrated scale to the step of the tensions, or the reverse. The hardware gives
-/// tensions in N, so a calibration changes its scale by some per cent.
+/// tensions in N, so a calibration changes the scale of a gauge by only some per cent.
 const LARGEST_RATIO: f64 = 2.0;
 
-/// Largest distance of a gauge's calibrated zero from zero tension, counts.
+/// Largest distance of a gauge's calibrated zero from [`ZERO_COUNT`], counts.
 const LARGEST_ZERO: f64 = 8000.0;
 
 /// The hardware of a finger, and what the library knows about it. The hardware is asked only once, so that every part
@@ -65,7 +65,7 @@ impl Hardware {
         path: &Path,
     ) -> Result<Link<Connection>, HandError> {
         let provided = self.0[finger.index()].take();
-        // The step of the tensions was checked before.
+        // `prepare` has checked the step of the tensions, so `IoBoard::new` does not refuse it.
         if let Some(board) =
             provided.and_then(|Provided { io, properties }| IoBoard::new(configuration, finger, io, properties))
         {

@@ -21,8 +21,8 @@ pub struct PathPose {
     /// tip moves along a straight line.
     pub pose: Pose,
     /// Kx in the finger's frame, N/cm: `rows[row][column]`. Kx reaches this value at the time of the pose. It changes
-    /// linearly from the last pose with a Kx, or from the beginning of the path. Without it the pose does not affect
-    /// Kx.
+    /// linearly from the previous pose with a Kx, or from the beginning of the path if there is none. With `None`, the
+    /// pose does not affect Kx.
     pub stiffness: Option<[[f64; 3]; 3]>,
 }
 

@@ -219,8 +219,8 @@ impl KnownBoard {
             // error of the program.
             let _ = link.stop(self.address, 0);
         } else {
-            // A board that never reports valid zeros has lost them exactly if it has lost its terms. It gets new terms
-            // below, so the finding is kept for the next attempt.
+            // A board that never reports valid zeros has lost its counts exactly if it has lost its terms. It gets new
+            // terms below, so `restarted` keeps the finding for the next attempt.
             let deadline = link.transport().now() + ANSWER;
             let status = link.confirmed_stop(self.address, deadline).map_err(|error| self.failed(error))?;
             self.restarted |= !status.has(Status::CONFIGURED);

@@ -81,7 +81,7 @@ fn reconnect(ports: &[Arc<RepairablePort>], stopped: &Receiver<()>) {
                 && repair.take_link()
                 && !repair.checked
             {
-                // The error is reported to the caller that recovers the finger.
+                // The error is discarded. A call that recovers the finger tries again, and reports its own error.
                 let _ = repair.reopen();
             }
         }

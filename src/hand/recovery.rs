@@ -30,7 +30,8 @@ const STALL_LIMIT: Duration = Duration::from_secs(5);
 pub struct Recovering {
     /// `None` if the finger is not faulted. Then there is nothing to do.
     task: Option<Task>,
-    /// Time of the first poll. The servo must take the finger from then on, because `reconnect` may have taken long.
+    /// Time of the first poll. The time limit for the servo to take the finger counts from here, because `reconnect`
+    /// may have taken long.
     polled: OnceLock<Instant>,
 }
 
@@ -84,7 +85,8 @@ impl Recovering {
             task.recoveries[place] = report.recoveries;
             task.beside_others |= !faulted;
         }
-        // The faulted fingers of the port have counted their faults. A finger that faults later stops this one again.
+        // The faulted fingers of the port have counted their faults. If the fingers stop together, a finger that faults
+        // later stops this one again.
         let faults = hand.recovery.alarm.faults();
         task.stops.iter_mut().for_each(|stops| stops.faults = faults);
         Ok(Self { task: Some(task), polled: OnceLock::new() })

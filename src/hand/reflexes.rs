@@ -19,20 +19,22 @@ const WIDEST: f64 = std::f64::consts::PI;
 const MOST_DAMPED: f64 = 10.0;
 
 impl Hand {
-    /// Installs a reflex of finger 1, 2 or 3, and returns its number. It acts whenever the finger is a spring, until it
-    /// is removed or the hand is closed. A finger has at most 16 reflexes.
+    /// Installs a reflex of finger 1, 2 or 3, and returns its number. The reflex acts whenever the finger is a spring,
+    /// until it is removed or the hand is closed. A finger has at most 16 reflexes.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger, if the finger has 16 reflexes, if the rule names a joint that does
-    /// not exist, or another finger that is not opened or is the finger itself, or if a value of the rule is outside
-    /// its range: times of 0 to 3600 s, forces and tensions of 0 to 1000 N, angles of -pi to pi, damping ratios of 0 to
-    /// 10. A direction must be finite. Returns the errors of [`Hand::send_position`] for the pose of
-    /// [`Reaction::Retract`], and those of [`Hand::send_stiffness`] for the Kx of [`Reaction::Soften`].
+    /// Returns an error if there is no such finger, or if the finger already has 16 reflexes. Returns an error if the
+    /// rule names a joint that does not exist, or if its other finger is not opened or is the finger itself. Returns an
+    /// error if a value of the rule is outside its range: times of 0 to 3600 s, forces and tensions of 0 to 1000 N,
+    /// angles of -pi to pi, damping ratios of 0 to 10. A direction must be finite. Returns the errors of
+    /// [`Hand::send_position`] for the pose of [`Reaction::Retract`], and those of [`Hand::send_stiffness`] for the Kx
+    /// of [`Reaction::Soften`].
     pub fn install_reflex(&self, finger: i32, reflex: Reflex) -> Result<u32, HandError> {
         self.install_reflex_with(finger, reflex, reflex.priority.into())
     }
 
-    /// As [`Self::install_reflex`], but with this priority, which may be outside its range of 0 to 255 in a C program.
+    /// Does the same as [`Self::install_reflex`], but with this priority. A C program may pass a priority outside the
+    /// range of 0 to 255, which is refused.
     pub(crate) fn install_reflex_with(&self, finger: i32, reflex: Reflex, priority: i32) -> Result<u32, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;

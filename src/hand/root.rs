@@ -60,7 +60,8 @@ pub struct Hand {
 
 impl Hand {
     /// Opens the hand that the configuration file describes, or the simulated hand if there is no file. If fingers are
-    /// simulated because no file names their ports, one line on standard error names them.
+    /// simulated because no file names their ports, one line reports this to the program's log callback, or on standard
+    /// error if there is no callback.
     ///
     /// # Errors
     /// Returns the errors of [`Hand::open`]. Returns an error if the configuration file cannot be read or used.

@@ -40,9 +40,9 @@ impl Hand {
         })
     }
 
-    /// Renews the validity of what was sent last to finger 1, 2 or 3, without a new set point. The times count from the
-    /// next cycle, even if a path has not ended. A finger whose set point has already expired continues to hold
-    /// its pose, and only the time until its end state begins anew.
+    /// Renews the validity of what was sent last to finger 1, 2 or 3, without a new set point. The times of `validity`
+    /// count from `validity.since`, or from the next cycle if it is none, even if a path has not ended. A finger whose
+    /// set point has already expired continues to hold its pose, and only the time until its end state begins anew.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted.
@@ -74,7 +74,8 @@ impl Hand {
     /// exact spring tau = J^T Kx (x_d - x), with the stiffness Kx that was sent last. Here tau are the joint torques, J
     /// is the Jacobian, x_d is the desired position of the tip, and x is its measured position. Of several joint
     /// solutions within the limits, the one nearest to the present pose is used. The position takes effect within a
-    /// cycle. The motion is straight in joint space, at the bounded joint speed.
+    /// cycle. The motion is straight in joint space. Its largest joint speed is `controller.set_point_speed`, or
+    /// `finger.motion.speed` if set points are interpolated.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a number is NaN or
@@ -92,9 +93,9 @@ impl Hand {
         })
     }
 
-    /// Sends a contact for finger 1, 2 or 3: the tip becomes the spring of that contact, without a jump in torque. It
-    /// replaces the last Kx, and a later Kx replaces it. Three joints turn the tip only by moving it, so a rotational
-    /// stiffness acts as an additional stiffness of the tip.
+    /// Sends a contact for finger 1, 2 or 3: the tip becomes the spring of that contact, without a jump in torque. The
+    /// contact replaces the last Kx, and a later Kx replaces the contact. Three joints turn the tip only by moving it,
+    /// so a rotational stiffness acts as an additional stiffness of the tip.
     /// [`FingerTip::stiffness`](super::FingerTip::stiffness) includes it.
     ///
     /// # Errors

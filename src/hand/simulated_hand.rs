@@ -52,13 +52,13 @@ impl SimulatedHand {
         Ok(hand)
     }
 
-    /// Returns the path of a finger's simulated port. `None`: the finger is not simulated.
+    /// Returns the path of a finger's simulated port, or `None` if the finger is not simulated.
     pub fn path(&self, finger: FingerNumber) -> Option<PathBuf> {
         let separate = self.separate[finger.index()].as_ref().map(SimulatedPort::path);
         separate.or_else(|| self.coupled.as_ref()?.path(finger))
     }
 
-    /// Calls `look` with a simulated finger. `None`: the finger is not simulated.
+    /// Calls `look` with a simulated finger. Returns `None` if the finger is not simulated.
     pub fn with_finger<R>(&self, finger: FingerNumber, look: impl FnOnce(&mut SimulatedFinger) -> R) -> Option<R> {
         match (&self.separate[finger.index()], &self.coupled) {
             // The board of a simulated finger has only this finger.
@@ -73,12 +73,12 @@ impl SimulatedHand {
         self.coupled.iter().for_each(|ports| ports.set_object_gravity(gravity.into()));
     }
 
-    /// Returns the state of the object. `None`: there is no object.
+    /// Returns the state of the object, or `None` if there is no object.
     pub fn object(&self) -> Option<ObjectState> {
         self.object_view().map(|view| view.state())
     }
 
-    /// Returns the view of the object's state. `None`: there is no object.
+    /// Returns the view of the object's state, or `None` if there is no object.
     pub fn object_view(&self) -> Option<ObjectView> {
         self.coupled.as_ref().map(|ports| ports.object().clone())
     }

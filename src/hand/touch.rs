@@ -30,8 +30,8 @@ impl Hand {
     }
 
     /// Tares the tactile elements of finger 1, 2 or 3: the newest count of each element becomes its zero. An element
-    /// without a valid reading keeps its zero. The zeros are in force until the hand is closed. To keep them, write
-    /// those of [`Hand::touch_zeros`] as `zero` into `[finger.touch]`. The call does not allocate.
+    /// without a valid reading keeps its zero. The zeros are in force until the hand is closed. To keep them, write the
+    /// result of [`Hand::touch_zeros`] as `zero` into `[finger.touch]`. The call does not allocate.
     ///
     /// # Errors
     /// Returns an error if there is no such finger.

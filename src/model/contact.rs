@@ -65,7 +65,8 @@ impl Contact {
 
     /// Constructs a soft finger, which transmits three forces and a moment about `normal`, a vector of any length. Row
     /// and column 3 of `stiffness` belong to the rotation about `normal`: N cm/rad on the diagonal, otherwise N/rad.
-    /// Three joints turn the tip only by moving it, so the rotational stiffness stiffens the tip in one direction.
+    /// Three joints cannot turn the tip without moving it, so the rotational stiffness also makes the tip stiffer
+    /// against motion in one direction.
     ///
     /// # Errors
     /// Returns an error if K or its translational block is not a spring, or if the normal is zero or not finite.

@@ -12,7 +12,7 @@ pub struct JointSines {
 }
 
 impl JointSines {
-    /// Computes them at joint angles, rad.
+    /// Computes the sines and cosines of joint angles, rad.
     #[inline]
     pub fn of(theta: &Vector3<f64>) -> Self {
         let [(s0, c0), (s1, c1), (s2, c2)] = [theta[0].sin_cos(), theta[1].sin_cos(), theta[2].sin_cos()];

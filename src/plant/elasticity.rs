@@ -1,7 +1,8 @@
 //! The elasticity of a tendon: tension against stretch, for a whole tendon and for a section of it.
 
 /// A spring t = k x, or one that hardens: its local stiffness is k (1 - h + c t), with c = 2 h / t_max. It is k (1 - h)
-/// without tension and k (1 + h) at t_max. A section that is the share s of a tendon has the tension t(x / s).
+/// without tension and k (1 + h) at t_max. A section with the share s of the tendon's compliance has the tension
+/// t(x / s) at its own stretch x.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Elasticity {
     /// k, N/m.

@@ -29,7 +29,7 @@ pub(super) struct ElasticTendons {
     grip: Vector4<f64>,
     /// Length that slipping has added to each tendon, m.
     slipped: Vector4<f64>,
-    /// Part of the elastic stretch that creep adds in the long run.
+    /// Length that creep adds in the long run, divided by the elastic stretch.
     creep: f64,
     /// Time constant of the creep, s.
     creep_time: f64,

@@ -17,8 +17,8 @@ const MOST: f64 = 5e-3;
 /// A change of the other clock by more than this number of periods beyond the largest drift is a jump of the clock.
 const JUMP: f64 = 2.0;
 
-/// Longest time from one reading to the next that tells how much the other clock has gained, s. It is shorter than half
-/// a turn of the counter. After a longer time the board may have restarted, and the count does not show it.
+/// Longest time between two readings from which the gain of the other clock is computed, s. It is shorter than half a
+/// turn of the counter. After a longer time the board may have restarted, and the count does not show the restart.
 const LONGEST_GAP: f64 = 0.03;
 
 /// Adjusts the period so that its length, measured with the other clock, is the nominal length. The other clock counts

@@ -35,7 +35,7 @@ impl PeriodicThread {
     }
 
     fn alone(&self) -> u64 {
-        // Costs that are far too high must not become small.
+        // The sums saturate, so that times that are far too long do not wrap to short ones.
         self.wake_up.saturating_add(self.before).saturating_add(self.waiting).saturating_add(self.after)
     }
 

@@ -4,11 +4,11 @@
 use std::ffi::c_void;
 use std::mem::MaybeUninit;
 
-/// Number of bytes that the C library takes from the stack of every thread before the thread runs. glibc puts the
-/// thread-local data of the program and of its libraries there, so large `__thread` arrays in a planner increase
-/// this number. glibc has the function `__pthread_get_minstack`, from which the number is computed. A C library without
-/// that function, such as musl, adds the thread-local data to the requested stack size. It takes nothing from the
-/// requested stack, so the number is 0.
+/// Upper bound of the number of bytes that the C library takes from the stack of every thread before the thread runs.
+/// glibc puts the thread-local data of the program and of its libraries there, so large `__thread` arrays in a planner
+/// increase this number. The bound is the result of glibc's function `__pthread_get_minstack`, which includes a minimum
+/// stack. A C library without that function, such as musl, adds the thread-local data to the requested stack size. Such
+/// a library takes nothing from the requested stack, so the number is 0.
 pub(super) fn taken_by_the_c_library() -> usize {
     // SAFETY: the name is a C string. The returned address is null if no library has a function with this name.
     let function = unsafe { libc::dlsym(libc::RTLD_DEFAULT, c"__pthread_get_minstack".as_ptr()) };

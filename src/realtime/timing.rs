@@ -26,7 +26,7 @@ pub enum CycleStage {
 }
 
 impl CycleStage {
-    /// Every stage: first the parts in order of time, then the totals.
+    /// Every stage: first the parts of a cycle in order of time, then the whole cycle and the age.
     pub const ALL: [CycleStage; 8] = [
         CycleStage::WakeUp,
         CycleStage::Write,

@@ -118,7 +118,7 @@ impl SimulatedBoard {
         self.advance(now);
         // The physics advances in whole steps, so its time may be a fraction of a step behind.
         let now = self.time.unwrap_or(now);
-        // One frame at a time: the answer to a frame reports the damage before it.
+        // The bytes are decoded one frame at a time, because an answer reports the damaged frames before its request.
         for mut piece in bytes.split_inclusive(|&byte| byte == DELIMITER) {
             let damaged = self.decoder.counters().damaged;
             let answer =

@@ -100,7 +100,7 @@ impl CoupledPorts {
         let ended = Arc::new(AtomicBool::new(false));
         let thread = {
             let (shared, ended, rate) = (shared.clone(), ended.clone(), hand.hand.rate);
-            // The refusals are ignored, because a simulation does not need real-time priority.
+            // A refused priority is ignored, because a simulation does not need real-time priority.
             spawn("sun2xp board", priority, move |_| run(&shared, rate, published, &ended))?
         };
         let object = ObjectView(Arc::new(Mutex::new(object)));

@@ -18,7 +18,7 @@ const RELEASED: f64 = 0.025;
 /// A change of the force by this much since the last event of the element causes a pressure event, N.
 const STEP: f64 = 0.1;
 
-/// Speed of the tip along the surface above which a contact slips, cm/s.
+/// A contact slips if the tip moves along the surface faster than this, cm/s.
 const SLIPPING: f64 = 0.5;
 
 /// Shortest time between two slip events of an element, ns.

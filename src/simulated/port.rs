@@ -60,7 +60,7 @@ impl SimulatedPort {
         let ended = Arc::new(AtomicBool::new(false));
         let thread = {
             let (shared, ended) = (shared.clone(), ended.clone());
-            // The refusals are ignored, because a simulation does not need real-time priority.
+            // A refused priority is ignored, because a simulation does not need real-time priority.
             spawn("sun2xp board", priority, move |_| run(&shared, pace, &ended))?
         };
         Ok(Self { shared, ended, thread: Some(thread), process: std::process::id() })

@@ -1,6 +1,6 @@
-//! Stability of a finger with its controller: the one-cycle map of core and plant, the largest stiffness for which the
-//! finger is stable, and the admittance of its tip. Tools and measurements use this module. No servo thread runs any of
-//! it.
+//! Stability of a finger with its controller: the one-cycle map of controller and plant, the largest stiffness for
+//! which the finger is stable, and the admittance of its tip. Tools and measurements use this module. No servo thread
+//! runs any of it.
 
 mod admittance;
 mod one_cycle_map;

@@ -26,10 +26,10 @@ const SLOW: f64 = 2e-5;
 /// Interval between two observations, s. It is long enough to separate the remaining eigenvalues.
 const STRIDE: f64 = 0.005;
 
-/// Ratio to its initial size at which a displacement counts as diverged.
+/// A displacement counts as diverged when it is this many times its initial size.
 const DIVERGED: f64 = 1e3;
 
-/// Fraction of its initial size below which a displacement contains no information, because the finger itself is not at
+/// A displacement below this fraction of its initial size contains no information, because the finger itself is not at
 /// rest to the last bit.
 const DECAYED: f64 = 1e-4;
 

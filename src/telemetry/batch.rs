@@ -5,11 +5,11 @@ use super::marks::MARKS;
 use super::memory_file::Mapping;
 use super::message::Outgoing;
 
-/// Size from which the messages are written as a block, bytes. A small block gives a slow reader more time until it is
-/// overwritten.
+/// Size from which the messages are written as a block, bytes. With larger blocks, a slow reader would have less time
+/// before the writer overwrites its next block.
 const BLOCK: usize = 64 * 1024;
 
-/// Largest message, bytes. The largest ones are keyframes and controllers, with less than 10 kB.
+/// Room for one message, bytes. The largest messages are keyframes and controllers, with less than 10 kB.
 const LARGEST_MESSAGE: usize = 32 * 1024;
 
 /// Messages that have been encoded and not written yet.

@@ -93,7 +93,7 @@ impl<M: AsRef<[AtomicU64]>> BlockWriter<M> {
             return false;
         }
         memory[RESERVED].store(end, Ordering::Relaxed);
-        // A reader that sees one of the new words also sees that its words may have changed.
+        // A reader that sees one of the new words also sees the new reserved position, and discards its copy.
         fence(Ordering::Release);
         let header = [bytes.len() as u64].into_iter().chain(marks);
         let (chunks, rest) = bytes.as_chunks::<WORD>();
@@ -160,7 +160,7 @@ impl<M: AsRef<[AtomicU64]>> BlockReader<M> {
     fn overtaken(&mut self) -> Found {
         self.position = self.memory.as_ref()[NEWEST].load(Ordering::Relaxed);
         // The writer has published all blocks before the newest one. The fence makes sure that the next load of the
-        // published position does not return an older value.
+        // published position does not return a position before the newest block.
         fence(Ordering::Acquire);
         Found::Overtaken
     }

@@ -42,8 +42,8 @@ impl Mapping {
 
 impl AsRef<[AtomicU64]> for Mapping {
     fn as_ref(&self) -> &[AtomicU64] {
-        // SAFETY: the mapping has this number of words. It cannot shrink, because the file is sealed. Other processes
-        // access the words only atomically, or, if they do not, the values are checked before they are used.
+        // SAFETY: the mapping has this number of words. It cannot shrink, because the file is sealed. This library
+        // accesses the words only atomically. Another program may not, so every value is checked before it is used.
         unsafe { std::slice::from_raw_parts(self.start.as_ptr(), self.words) }
     }
 }

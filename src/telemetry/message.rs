@@ -87,7 +87,7 @@ pub struct Status {
     /// Time from the scheduled beginning of a cycle to the end of its computation, microseconds, since open or the last
     /// reset.
     pub whole: Distribution,
-    /// The newest warning, if it was noted not long ago.
+    /// The newest warning, if it was noted within the last second.
     pub warning: Option<Fault>,
     /// Number of warnings since open. A warning that persists counts once.
     pub warnings: u64,

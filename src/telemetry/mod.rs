@@ -1,9 +1,9 @@
 //! Telemetry: another process of the same user reads what an open hand does, cycle by cycle. docs/telemetry.md
 //! describes the format and its guarantees.
 //!
-//! The thread that collects from the servos writes messages into a ring in a memory file. A reader gets the file over a
-//! socket, and reads the ring without the hand's help. The hand does not wait for a reader. The servos have no part in
-//! this.
+//! The thread that collects the servos' records writes messages into a ring in a memory file. A reader gets the file
+//! over a socket, and reads the ring without the hand's help. The hand does not wait for a reader. The servos do no
+//! work for telemetry.
 
 mod attach_error;
 mod batch;

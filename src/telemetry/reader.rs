@@ -41,7 +41,8 @@ pub struct Reader {
 /// What a call of [`Reader::read`] has received, besides the messages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Received {
-    /// Cycles of each finger that were lost since the last call. They are missing before the messages of this call.
+    /// Cycles of each finger that were lost since the last call. They are missing before or between the messages of
+    /// this call.
     pub lost: [u64; MARKS],
 }
 

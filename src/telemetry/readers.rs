@@ -48,7 +48,7 @@ impl Readers {
     /// Allocates nothing if there are none.
     pub fn serve(&mut self) -> Vec<Socket> {
         self.accept();
-        // A reader that sends anything else than its request does not keep to the protocol.
+        // A reader that sends anything after its request does not keep to the protocol.
         self.attached.retain(|socket| matches!(sent(socket), Sent::Nothing));
         let time = now();
         let mut requests = Vec::new();
@@ -59,8 +59,8 @@ impl Readers {
                 Sent::Nothing if time.saturating_sub(candidate.since) < REQUEST_TIME => place += 1,
                 Sent::Request => requests.push(self.candidates.swap_remove(place).socket),
                 Sent::Other => {
-                    let reason = "it has another version of the format: use the sun2xp program of the same version as \
-                                  the library of the hand";
+                    let reason = "the reader has another version of the format: use the sun2xp program of the same \
+                                  version as the library of the hand";
                     refuse(&candidate.socket, reason);
                     self.candidates.swap_remove(place);
                 }
@@ -82,7 +82,7 @@ impl Readers {
             if self.candidates.len() + self.attached.len() < MOST_READERS {
                 self.candidates.push(Candidate { socket, since: now() });
             } else {
-                refuse(&socket, "it has 16 readers already: end one of them");
+                refuse(&socket, "the hand has 16 readers already: end one of them");
             }
         }
     }

@@ -1,4 +1,4 @@
-//! A cycle of a finger in the terms of its user.
+//! A cycle of a finger, converted to the quantities that users read.
 
 use crate::finger::{Fault, Stage};
 use crate::model::FingerNumber;

@@ -58,7 +58,8 @@ impl View {
         Self { rate, fingers: FingerNumber::ALL.map(finger) }
     }
 
-    /// Takes note of a controller. Later cycles that name it are computed with its finger.
+    /// Takes note of a controller. Later cycles that name this controller are converted with the configuration for
+    /// which it was made.
     pub fn note_controller(&mut self, finger: FingerNumber, source: &ControllerSource) {
         let mechanics = Mechanics::new(&source.finger, self.rate);
         self.fingers[finger.index()].adjusted.insert(source.number, mechanics);

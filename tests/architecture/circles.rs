@@ -28,7 +28,7 @@ pub fn find(imports: &BTreeSet<Import>) -> Vec<String> {
     found
 }
 
-/// All files that an import leads to, directly or through other files.
+/// All files that the file `from` imports, directly or through other files.
 fn reach<'a>(from: &'a str, next: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> BTreeSet<&'a str> {
     let mut reached = BTreeSet::new();
     let mut open = vec![from];

@@ -1,5 +1,5 @@
-//! The rules of docs/architecture.md: imports run downward only, no circle hides behind a re-export, and files,
-//! functions and lines are short.
+//! The rules of docs/architecture.md: imports run downward only, no files import each other in a circle, not even
+//! through re-exports, and files, functions and lines are short.
 
 mod c_names;
 mod circles;

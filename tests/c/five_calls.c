@@ -1,5 +1,6 @@
-/* A planner whose own functions, types and numbers have names that a hand suggests. It uses only the five calls of 1990
-   and HandError. If the library called one of the planner's functions by mistake, the planner would abort. */
+/* A planner whose own functions, types and numbers have names that a library for a hand could use too. It calls only
+   the five calls of 1990 and HandError. If the library called one of the planner's functions by mistake, the planner
+   would abort. */
 #include "Sun2Xp.h"
 #include "check.h"
 

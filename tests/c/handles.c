@@ -25,7 +25,7 @@ static void take_message(int severity, const char *text, void *user)
     *(int *)user += 1;
     last_severity = severity;
     strncpy(last_message, text, sizeof last_message - 1);
-    /* The callback cannot replace itself, because that would wait for it. */
+    /* The callback cannot replace itself, because sun2xp_set_log would wait until the callback has returned. */
     if (sun2xp_set_log(NULL, NULL) != -SUN2XP_ERROR_BUSY)
         *(int *)user += 1000;
 }

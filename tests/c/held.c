@@ -66,7 +66,8 @@ int main(void)
     PAUSE_MS(200);
     thread = servo();
     CHECK(thread > 0 && pipe(to_child) == 0 && pipe(to_parent) == 0);
-    /* Needed where only descendants may be traced by default. The call fails where there is no such restriction. */
+    /* Lets the child trace this process on systems where a process can trace only its descendants. The call fails on
+       other systems. */
     prctl(PR_SET_PTRACER, -1L, 0, 0, 0);
     child = fork();
     CHECK(child >= 0);

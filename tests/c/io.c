@@ -121,7 +121,7 @@ static void refusals(const struct sun2xp_io *io)
     wrong[1].finger = 4;
     CHECK(sun2xp_open_io(NULL, 2, wrong, &hand) < 0 && errno == EINVAL);
     wrong[0].exchange = NULL;
-    /* The wrong finger of the second element comes before the missing function of the first. */
+    /* The wrong finger of the second element is reported before the missing function of the first. */
     CHECK(sun2xp_open_io(NULL, 2, wrong, &hand) < 0 && errno == EINVAL);
     CHECK(sun2xp_open_io(NULL, 1, wrong, &hand) < 0 && errno == EFAULT);
     CHECK(strstr(sun2xp_error_text(NULL), "io->exchange is a null pointer") != NULL);

@@ -1,5 +1,5 @@
-// late.cpp - sun2xp.hpp with a library that calls a callback after its end, and refuses to close a hand. This program
-// defines the calls of such a library itself.
+// late.cpp - sun2xp.hpp with a library that still calls a callback after its removal, and refuses to close a hand. This
+// program defines the calls of such a library itself.
 #include "sun2xp.hpp"
 #include "check.hpp"
 

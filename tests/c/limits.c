@@ -103,7 +103,7 @@ static void refuse_terminals(void)
         REFUSED(OpenHand(), ENOSPC, "kernel.pty.max");
         check_that_nothing_is_left();
     }
-    /* /dev/ptmx is missing, /dev/pts is not mounted, the planner may not open /dev/ptmx, or it is another device. */
+    /* /dev/ptmx is missing, /dev/pts is not mounted, opening /dev/ptmx is not permitted, or it is another device. */
     for (number = 0; number < 4; number++) {
         refused_terminal = 1;
         terminals = 0;

@@ -1,4 +1,4 @@
-/* A planner that packs its structs and has macros named like words of C. Its calls must be served all the same. */
+/* A planner that packs its structs and has macros named like keywords of C. Its calls must be served all the same. */
 #include <string.h>
 #include <unistd.h>
 #include "check.h"

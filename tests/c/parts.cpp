@@ -61,7 +61,7 @@ static void moves(sun2xp::hand &hand)
     CHECK(!hand.finger(1).wait(sun2xp::until::arrived, 0s));
 }
 
-// A callback that ends itself still has what it has captured.
+// A callback that removes itself keeps its captured variables until it returns.
 static void is_called_once(sun2xp::hand &hand)
 {
     auto captured = std::make_shared<int>(0);

@@ -78,7 +78,7 @@ int main(void)
         CHECK(tries < 500);
         PAUSE_MS(20);
     }
-    /* The finger has no time to arrive, and holds the pose that it has reached with 1 N/cm. */
+    /* The finger has no time to arrive. It holds the pose in which it is when the angles expire, with 1 N/cm. */
     CHECK(sun2xp_send_position_for(HAND, 1, Target, 0.05) == 0);
     for (tries = 0; ; tries++) {
         CHECK(sun2xp_tip(HAND, 1, &Fingertip) == 0);

@@ -1,4 +1,4 @@
-/* A planner that may not use SCHED_FIFO: its hand opens, runs, and gives a warning. */
+/* A planner without permission to use SCHED_FIFO: its hand opens, runs, and gives a warning. */
 #include <string.h>
 #include "Sun2Xp.h"
 #include "sun2xp.h"

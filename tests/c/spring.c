@@ -28,7 +28,7 @@ int main(void)
     CHECK(sun2xp_wait(HAND, 1, SUN2XP_WAIT_SETTLED, 20.0) == 0);
     CHECK(sun2xp_send_joint_stiffness(HAND, 1, K) == 0);
     CHECK(sun2xp_send_joint_torque(HAND, 1, Torque) == 0);
-    /* 6 N cm on a joint of 60 N cm/rad, against the friction of the joint. */
+    /* 6 N cm turn a joint of 60 N cm/rad by 0.1 rad, or by somewhat more or less because of the joint's friction. */
     moved = deflection(1, Pos);
     CHECK(moved > 0.06 && moved < 0.14);
     CHECK(sun2xp_send_joint_torque(HAND, 1, Zero) == 0);

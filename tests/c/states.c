@@ -1,5 +1,5 @@
-/* A finger that is recovering reports that state, not that it is calibrated. A hand that exit has closed reports
-   that it is closed. */
+/* A finger that is recovering reports the state "tensioning", and not "calibrating". A hand that exit has closed
+   reports that it is closed. */
 #include <unistd.h>
 #include "Sun2Xp.h"
 #include "sun2xp.h"

@@ -1,4 +1,4 @@
-/* A planner with a hand of another machine, which stub_remote.c stands for. */
+/* A planner with a hand on another machine. stub_remote.c takes the place of the library of remote hands. */
 #include <string.h>
 #include "Sun2Xp.h"
 #include "sun2xp.h"
@@ -12,7 +12,7 @@ int main(void)
 
     memset(&one, 0, sizeof one);
     CHECK(sun2xp_open_text("[remote]\nendpoint = \"tcp/127.0.0.1:9\"\n", &hand) == 0);
-    /* The emergency stop that was called while the library was being loaded. */
+    /* The hand has got the emergency stop that was called while the library was being loaded. */
     CHECK(sun2xp_position(hand, 1, seen) == 0 && seen[0] == 1);
     /* A group without commands does not need a set point, or memory for one. */
     CHECK(sun2xp_send_group(hand, 0, &one) == 0 && sun2xp_send_group(hand, 0, NULL) == 0);

@@ -82,8 +82,8 @@ static void fingertip(void)
     Tip->size = sizeof *Tip;
 }
 
-/* The tip at Wanted is 8.06 cm from the axis of joint 0, which alone turns it about y: 20 N cm/rad about y are
-   0.31 N/cm at this distance. */
+/* The tip at Wanted is 8.06 cm from the axis of joint 0. No other joint turns the tip about y, so 20 N cm/rad about y
+   are 0.31 N/cm at this distance. */
 static void soft_finger(void)
 {
     double Turned = 20.0 / 65.0;

@@ -63,7 +63,7 @@ impl Trial {
         Self { chance, truth, belief, gravity }
     }
 
-    /// Motors off, with a hand that holds the finger.
+    /// The motors are off, and a person holds the finger.
     fn limp(&self) -> Bench {
         let mut bench = Bench::in_gravity(&self.truth, &self.belief, self.gravity, 1000.0);
         bench.plant.hold(bench.plant.joints());

@@ -116,7 +116,7 @@ pub fn name_pauses() -> &'static PauseWatch {
 const BEFORE_A_FAILURE: Duration = Duration::from_secs(30);
 
 /// A failure reports the largest total of the pauses within a span of this length. A hand with the default watchdog
-/// survives no longer pause.
+/// does not survive a longer pause.
 const LONG: Duration = Duration::from_millis(15);
 
 /// The account of a thread.

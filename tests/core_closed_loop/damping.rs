@@ -1,4 +1,5 @@
-//! Damping ratios other than the controller's own: every admitted ratio must come to rest, and a refused one must not.
+//! Damping ratios other than the controller's own: with an admitted ratio the finger must come to rest, and with a
+//! refused ratio it must not.
 
 use super::rig::{Loop, finger_with, poses_of};
 use super::state_feedback::shifted;
@@ -74,7 +75,8 @@ fn state_feedback_rests_at_both_ends_of_the_range() {
     }
 }
 
-/// With friction, the controllers of the report's figures hunt by more than this at any damping, 1 included.
+/// The finger has no friction, because with friction the controllers of the report's figures hunt by more than 0.01 cm
+/// at any damping, 1 included.
 #[test]
 fn the_figures_rest_with_more_damping_without_friction() {
     for scheme in [Scheme::Figure9, Scheme::Figure10] {
@@ -89,7 +91,7 @@ fn the_figures_rest_with_more_damping_without_friction() {
     }
 }
 
-/// Pairs that were once admitted, although the finger never came to rest or broke a tendon.
+/// Pairs of a stiffness and a damping with which the finger never comes to rest, or breaks a tendon.
 #[test]
 fn refused_damping_would_not_rest() {
     let finger = finger(Scheme::StateFeedback, true);

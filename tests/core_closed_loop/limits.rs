@@ -71,7 +71,7 @@ fn a_warm_motor_is_limited_to_its_continuous_torque() {
     finger.motor.continuous_torque = [1.0; 4];
     finger.motor.thermal_time = 0.5;
     let mut servo = Loop::new(&finger, 1000.0);
-    // Sent to 172 degrees, where two tendons are slack. A servo would refuse this pose.
+    // The finger is sent to 172 degrees, where two tendons are slack. A servo would refuse this pose.
     servo.right_alarms = &[Symptom::OverheatedMotor, Symptom::BrokenTendon];
     let far = spring(Vector3::new(3.0, 0.3, 0.6), 6.0);
     let mut first = 0.0f64;

@@ -126,7 +126,7 @@ fn take_up(hand: &Hand, pose: &Vector3<f64>, seed: u64, found: &mut Found) {
         servo.run(3.0, &Activity::Turn(Vector4::zeros()));
     }
     if finger.simulation.gauge_bandwidth > 0.0 {
-        // The gauges still show the tensions before the motors were turned.
+        // The gauges still show the tensions that the tendons had before the motors were turned.
         servo.run(0.05, &Activity::Turn(Vector4::zeros()));
     }
     let mut servo = servo.restart();

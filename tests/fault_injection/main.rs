@@ -225,7 +225,8 @@ fn a_finger_in_motion_gives_no_false_alarm_on_a_line_that_loses_one_reply_in_twe
     }
 }
 
-/// A thread that does not run is not at fault. Predictions from before the pause must not be used after it.
+/// A short pause of the servo's thread must not fault the finger. Predictions from before the pause must not be used
+/// after it.
 #[test]
 fn a_servo_that_sometimes_pauses_for_twelve_milliseconds_keeps_its_finger() {
     for seed in 0..10 {

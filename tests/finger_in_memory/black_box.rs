@@ -43,7 +43,7 @@ fn a_fast_recovery_does_not_replace_the_records_of_a_fault() {
     }
 }
 
-/// The servo of a finger that is stopped sends no Command in that cycle, so it has no new measurement.
+/// In the cycle of a stop the servo sends no Command, so it has no new measurement.
 #[test]
 fn the_cycle_of_a_stop_has_no_feedback() {
     let mut bench = Bench::new();

@@ -142,7 +142,7 @@ fn a_calibration_that_gives_up_leaves_its_warning() {
         Adjustable { number: 1, ..Adjustable::new(&configuration, FingerNumber::ONE).expect("a controller") };
     let order = Order::Calibrate(CalibrationRun { calibration, adjustable });
     assert_eq!(bench.mailbox.order(order), Ok(Some(1)));
-    // Before that, the finger is a spring whose monitors would detect the fault.
+    // Until the routine takes over, the finger is a spring whose monitors would detect the fault.
     bench.until("taken over", |bench| bench.report().cycle.desired_tensions.min() < 0.0);
     bench.with_finger(|finger| finger.inject(&Defect::DeadGauge { gauge: 2, count: Some(2000) }));
     bench.warns(FaultKind::CalibrationFailed);
@@ -155,7 +155,7 @@ fn a_calibration_that_gives_up_leaves_its_warning() {
     );
 }
 
-/// Detected by the library's own count of torque and time. The board reports nothing.
+/// The library detects the overload from the torques that it commands. The board reports nothing.
 #[test]
 fn a_motor_above_its_continuous_torque_is_limited_and_then_stopped() {
     let mut bench = Bench::with(|configuration| {

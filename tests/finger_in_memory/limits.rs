@@ -77,7 +77,7 @@ fn disturb(bench: &mut Bench, random: &mut Random, rules: &mut Vec<u32>) -> bool
         1 => {
             let kx = spatial(&(Matrix3::identity() * random.between(0.0, 5.0)));
             let _ = bench.mailbox.try_send::<()>((Replaced::Stiffness, Validity::default()), |set_point| {
-                // The planner's admission would refuse another ratio.
+                // A ratio other than 1 is refused with some of these Kx if a planner sends it.
                 (set_point.stiffness, set_point.damping) = (kx, 1.0);
                 Ok(())
             });

@@ -74,7 +74,7 @@ fn a_slow_path_of_a_finger_in_motion_is_accepted() {
             let begin = pieces[0].at(0.0);
             assert!((begin.place - TARGET).amax() < 1e-12 && (begin.rates - motion.rates).amax() < 1e-9);
             assert!((plan.end() - Vector3::from(angles)).amax() < 1e-3);
-            // The finger stays between both places, but for the braking.
+            // Except while it brakes, the finger stays between both places.
             let [low, high] = [TARGET.inf(&angles.into()), TARGET.sup(&angles.into())];
             for piece in pieces {
                 for step in 0..=10 {

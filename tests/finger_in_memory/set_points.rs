@@ -56,7 +56,7 @@ fn set_points_sent_before_a_fault_are_discarded() {
     bench.opens();
     let found = bench.report().set_point.joints;
     assert!((found - far).amax() > 0.1, "the finger must be found far from the pose that was sent");
-    // The first call, before anything has read the finger's state.
+    // This is the first call. Nothing has read the finger's state before it.
     soften(&bench);
     holds(&mut bench, found);
 }
@@ -177,7 +177,8 @@ fn a_motion_that_begins_without_a_reply_has_not_arrived() {
     }
 }
 
-/// The gate of a hand does not remember a group for hours.
+/// The gate of a hand keeps only the low bits of group numbers. After 2^23 more groups it takes the group from before
+/// the fault for a group that is not posted yet.
 #[test]
 fn a_group_from_before_a_fault_does_not_hold_later_set_points() {
     let mut bench = Bench::new();

@@ -191,7 +191,7 @@ fn a_renewal_limits_a_path_and_a_later_set_point_ends_it() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
     send(&bench, &[joints(5.0, [0.3, 0.7, 1.2])]);
-    // The planner sends both before the servo takes one of them.
+    // The planner sends both before the servo takes either.
     bench.mailbox.keep_valid(validity(100, 1000)).expect("not faulted");
     bench.cycles(102);
     assert!(bench.report().expired, "the validity counts from the renewal, and not from the end of the path");

@@ -95,10 +95,10 @@ fn a_new_deadline_marks_the_first_exchange_of_a_cycle_even_if_finger_1_is_stoppe
         shared.exchanges.lock().clear();
         shared.wait_for_exchanges(60);
         let exchanges = shared.exchanges.lock();
-        // The first cycle began before the list was empty, and the last one may not be complete.
+        // The first cycle may have begun before the list was cleared, and the last one may not be complete.
         let mut cycles = exchanges.chunk_by(|one, next| one.1 == next.1).skip(1).collect::<Vec<_>>();
         cycles.pop();
-        assert!(cycles.is_sorted_by(|one, next| one[0].1 < next[0].1), "every cycle has a later deadline");
+        assert!(cycles.is_sorted_by(|one, next| one[0].1 < next[0].1), "the deadlines increase from cycle to cycle");
         for cycle in cycles {
             let order: Vec<usize> = cycle.iter().map(|&(place, _)| place).collect();
             assert_eq!(order, fingers);

@@ -16,8 +16,8 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::now;
 use sun2xp::simulated::{Pace, PacedTime, SimulatedBoard};
 
-/// Longest time by which a board that sends without end may delay a call. A busy machine needs most of this time.
-/// Before reads were bounded, a flood blocked a servo for longer.
+/// Longest time by which a board that sends without end may delay a call. A busy machine needs most of this time. If
+/// the servo read without a bound, a flood would block it for longer.
 const PROMPT: Duration = Duration::from_secs(1);
 
 /// A board with finger 2 that repeats one frame on request, and sends no answers meanwhile.

@@ -15,7 +15,7 @@ use sun2xp::board::protocol::Status;
 /// Two periods less than the watchdog's 18 ms: the servo stops a finger one period before its watchdog does.
 const TOLERATED_PAUSE: Duration = Duration::from_millis(16);
 
-/// Longest time to the motors' end state, ms, from the kill and from the last good reply.
+/// Longest time to the motors' end state, ms, from the kill and from the last command.
 const WITHIN: f64 = 20.0;
 
 struct Planner(Child);
@@ -51,7 +51,7 @@ impl Drop for Planner {
 }
 
 /// Kills the planner of three boards while all its fingers run. Returns for each finger the ms from its last command to
-/// its end state, and an upper bound of the ms since the end of the planner.
+/// its end state, and an upper bound of the ms from the end of the planner to this end state.
 fn kill_planner(
     mut planner: Planner,
     boards: &mut [Board; 3],

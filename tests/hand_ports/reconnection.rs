@@ -62,7 +62,8 @@ fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
     close(hand);
 }
 
-/// Such a board never reports valid zeros. A restart is visible only because the board has lost its terms.
+/// A board that does not keep its zeros never reports valid zeros. Its restart is visible only because it has lost its
+/// terms.
 #[test]
 fn a_finger_does_not_recover_if_a_board_that_does_not_keep_its_zeros_has_restarted() {
     let _turn = turn();
@@ -82,7 +83,7 @@ fn a_finger_does_not_recover_if_a_board_that_does_not_keep_its_zeros_has_restart
     // The first recovery gives the board its terms again. The neighbours run.
     refused();
     refused();
-    // The next one repairs the whole port.
+    // The next recovery repairs the whole port.
     stop_all();
     for finger in [1, 3] {
         assert_eq!(faults(&hand, finger), FaultKind::EmergencyStopCall);

@@ -1,4 +1,4 @@
-//! Stopped, unplugged, powered down: nothing resumes without a call, and everything resumes after one.
+//! Fingers that were stopped or whose boards failed: none resumes without a call, and each resumes after a call.
 
 use crate::rig::{START, TARGET, close, goes, on_boards, on_one_port, open, three_boards, turn, wait_until};
 use std::fs::read_dir;
@@ -179,7 +179,7 @@ fn two_threads_that_recover_fingers_of_one_port_both_succeed() {
     let (_board, hand) = one_port();
     stop_all();
     (1..=3).for_each(|finger| assert_ne!(faults(&hand, finger), FaultKind::Companion));
-    // Both recoveries have begun before one of them has restored the port.
+    // Both recoveries have begun before either has restored the port.
     let recovering = [1, 2].map(|finger| Recovering::begin(&hand, finger).expect("begun"));
     for recovering in &recovering {
         recovering.reconnect().unwrap_or_else(|error| panic!("{error}"));

@@ -30,7 +30,7 @@ fn stopped_fingers_of_one_port_recover_one_by_one_while_the_others_move() {
     goes(&hand, 1, TARGET);
     assert_eq!([1, 2, 3].map(|finger| hand.report(finger).expect("a report").recoveries), [2, 0, 1]);
     let now = hand.losses(2).expect("losses");
-    assert!(now.damaged_frames == lost.damaged_frames, "the relayed frames damage no other: {now:?}");
+    assert!(now.damaged_frames == lost.damaged_frames, "the frames of a recovery damage no other frame: {now:?}");
     assert_eq!(hand.stop(4).expect_err("no such finger").errno(), libc::EINVAL);
     close(hand);
 }

@@ -1,7 +1,8 @@
 //! Random shutdowns: a hand is closed, ended or left by exit in every stage, by any thread, also by several at once.
 //!
 //! Each case runs in a process of its own, because a case can end with exit, and because the process of a deadlock can
-//! be killed. A run prints its seed. `SUN2XP_TEST_SEED` repeats a run, and with `SUN2XP_TEST_CASE` only one case of it.
+//! be killed. A run prints its seed. Set `SUN2XP_TEST_SEED` to repeat a run, and also `SUN2XP_TEST_CASE` to repeat only
+//! one case of it.
 
 mod case;
 mod planners;

@@ -124,7 +124,7 @@ fn an_identified_hand_has_no_fault() {
 const SLACKENED: [[f64; 3]; 4] = [[-9.4, 6.6, 41.8], [-9.9, 1.8, 53.1], [-15.5, -4.0, 60.0], [-12.0, 3.0, 50.0]];
 
 /// The stiffness tolerance is small, as after an identification. So only the tolerance for friction can explain the
-/// difference.
+/// difference between gauges and encoders.
 #[test]
 fn a_tendon_that_hangs_for_a_moment_on_an_identified_hand_is_no_fault() {
     for pose in SLACKENED {

@@ -39,7 +39,7 @@ fn samples_have_the_values_that_planners_get() {
     let mut view = View::new(&reader.description().configuration);
     hand.send_stiffness(2, [[2.0, 0.1, 0.0], [0.1, 3.0, 0.0], [0.0, 0.0, 2.5]]).expect("sent");
     hand.push_simulated(2, [0.3, 0.5, -0.2]).expect("pushed");
-    // A cycle is compared with what the same cycle of the black box and the same report give.
+    // A sample is compared with what the calls return for the same cycle.
     let (report, tip, palm, torques) = loop {
         let before = hand.report(2).expect("report");
         let (tip, palm) = (hand.fingertip(2).expect("tip"), hand.palm_pose(2).expect("pose"));
@@ -60,7 +60,8 @@ fn samples_have_the_values_that_planners_get() {
     assert_eq!(sample.tensions, tip.tensions);
     assert_eq!(sample.tip_force, tip.force);
     assert_eq!((sample.contact_force, sample.touching, sample.slide), (tip.contact, tip.touching, tip.slide));
-    // Planners get the columns. They differ from the rows by rounding.
+    // The call returns the columns of the matrix, and the sample has the rows. The matrix is symmetric except for
+    // rounding.
     assert!((Matrix3::from(sample.stiffness) - Matrix3::from(tip.stiffness)).amax() < 1e-12);
     let rotation = Matrix3::from_fn(|row, column| palm.rotation[row][column]);
     let close = |one: Vector3<f64>, other: Vector3<f64>| (one - other).amax() < 1e-12;
@@ -192,7 +193,7 @@ fn events_status_and_object_arrive() {
     let view = &mut View::new(&second.description().configuration);
     let sample = view.sample(FingerNumber::ONE, &status.last.expect("the last cycle"));
     assert_eq!(sample.fault().map(|fault| fault.kind), Some(FaultKind::FingerStopCall));
-    // The cycles in which a finger is faulted are not lost ones.
+    // The cycles in which a finger is faulted do not count as lost.
     assert_eq!((first.lost(), second.lost()), ([0; 3], [0; 3]));
 }
 

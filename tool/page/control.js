@@ -9,7 +9,7 @@ const REAL_STEP = 0.045;
 const TIP_STEP_CM = 0.08;
 const AXES = ["x", "y", "z"];
 const MESSAGE_MS = 6000;
-/// A stop is answered within a few milliseconds.
+/// Time after which the panel warns that a stop has no answer. The server answers within a few milliseconds.
 const STOP_ANSWER_MS = 500;
 /// The answer to a stop.
 const STOPPED = "all fingers are stopped";
@@ -245,7 +245,7 @@ export class Control {
     else setTimeout(() => this.stopping && this.warn(), STOP_ANSWER_MS);
   }
 
-  /// Sends a stop that has no answer again, as soon as the page knows that it may stop this hand.
+  /// Repeats an unanswered stop as soon as the page knows that it may stop this hand.
   connected(hand) {
     if (this.stopping && hand.control) this.order("stop");
     this.stopping &&= hand.control;

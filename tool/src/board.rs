@@ -168,7 +168,7 @@ struct Session<'a> {
 }
 
 impl Session<'_> {
-    /// Executes the orders of standard input until `quit`. Does not end with standard input.
+    /// Executes the orders of standard input until `quit`. At the end of standard input, the function does not return.
     fn take_orders(&self) -> Result<(), Failure> {
         let (mut input, mut line) = (io::stdin().lock(), Vec::new());
         while input.read_until(b'\n', &mut line).is_ok_and(|length| length > 0) {

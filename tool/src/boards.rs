@@ -18,7 +18,8 @@ pub struct Arguments {
     /// The configuration file whose `hand.search_ports` and `finger.baud` are used. Without it, the defaults are used.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// Search these ports instead. A * in the last part of the path stands for any text. May be repeated.
+    /// Search these ports instead of `hand.search_ports`. A * in the last part of the path stands for any text. May be
+    /// repeated.
     #[arg(long = "port", value_name = "PATH")]
     ports: Vec<String>,
     /// Try this bit rate, bit/s. May be repeated. The default is finger.baud.

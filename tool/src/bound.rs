@@ -133,7 +133,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let numbers = Fingers::of(&arguments.fingers).and_then(|fingers| fingers.in_hand(&configuration.hand));
     let numbers = numbers.map_err(|error| wrong_usage(error.to_string()))?.numbers();
     let numbers = numbers.map(FingerNumber::try_from).collect::<Result<Vec<_>, _>>()?;
-    // Equal fingers have equal bounds. Each is searched once.
+    // Equal fingers have equal bounds, so only the first of them is searched.
     let first_like = |number: FingerNumber| {
         let finger = &configuration.fingers[number.index()];
         numbers.iter().copied().find(|other| alike(finger, &configuration.fingers[other.index()])).unwrap_or(number)

@@ -19,8 +19,8 @@ use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
 /// Finds signs, zeros, friction and stiffness of the fingers, and writes them into the configuration file.
 ///
 /// Without --signs, --zero and --identify the tool does all three, in this order. The motors are off at the beginning.
-/// With --zero and --identify it zeroes the finger again at the end, because the zeros depend on the stretch of the
-/// tendons and on their moment arms.
+/// After an identification that followed a zeroing, the tool zeroes the finger again, because the zeros depend on the
+/// stretch of the tendons and on their moment arms.
 ///
 /// Signs: every motor turns a little in both directions.
 ///

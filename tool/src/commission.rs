@@ -42,7 +42,7 @@ use sun2xp::model::{FingerNumber, ShownPath};
 use terminal::Terminal;
 pub use vitals::Vitals;
 
-/// Number of times that `sun2xp health` repeats a failed step without a question, if it runs with `--yes`.
+/// Number of times that `sun2xp health --yes` repeats a failed step or reading without a question.
 const RETRIES: u32 = 3;
 
 /// Leads through the bring-up of a finger, and writes what it finds into the configuration file.
@@ -74,8 +74,8 @@ pub struct Arguments {
     /// Do every step again.
     #[arg(long, conflicts_with = "steps")]
     again: bool,
-    /// The masses of the weights for the gauges, kg, in rising order. The weight of the heaviest must not
-    /// exceed `finger.tendon.maximum`.
+    /// The masses of the weights for the gauges, kg. The tool asks for them in rising order. The weight of the heaviest
+    /// must not exceed `finger.tendon.maximum`.
     #[arg(long, value_name = "KG", value_delimiter = ',', default_values_t = [0.5, 1.0], value_parser = mass)]
     weights: Vec<f64>,
     /// Do not wait for Enter: a jig does what the tool asks for.

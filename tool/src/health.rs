@@ -14,7 +14,8 @@ use sun2xp::model::FingerNumber;
 /// Measures a finger as `sun2xp commission` does, and compares the results with the results of commissioning: zeros,
 /// pretension, stiffness, friction. Names what to tension, replace or lubricate. Changes no file.
 ///
-/// The finger moves through its whole workspace, which must be free. It takes two to three minutes.
+/// The finger moves through its whole workspace, which must be free. The measurements take two to
+/// three minutes.
 ///
 /// Exit status: 0 if nothing has changed beyond its limit, 1 if something has, 2 for wrong usage.
 #[derive(clap::Args)]

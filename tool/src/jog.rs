@@ -38,7 +38,7 @@ pub struct Arguments {
     /// Folder for snapshots.
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     snapshots: PathBuf,
-    /// Show the hand on a web page instead, and print the address of the page.
+    /// Show the hand on a web page instead of in the terminal, and print the address of the page.
     #[arg(long)]
     web: bool,
     /// Let the page move the hand. Whoever has the printed address may then move it.

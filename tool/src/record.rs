@@ -136,7 +136,7 @@ fn convert(black_box: &Path, arguments: &Arguments, limits: Limits) -> Result<Ex
     let description: Description = recording.description().clone();
     let output = arguments.output.clone().unwrap_or_else(|| black_box.with_extension("mcap"));
     let mut recording = recording.peekable();
-    // The first entry has the time of the first cycle. A black box without cycles has no entry with a time.
+    // The first entry has the time of the first cycle. A black box without cycles begins at 0.
     let begin = recording.peek().and_then(|entry| entry.as_ref().ok()).map_or(0, |entry| entry.time);
     let begin = begin.saturating_add_signed(description.clock_offset.saturating_neg());
     let mut files = Files::begin(Some(output), &description, limits, begin)?;

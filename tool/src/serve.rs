@@ -1,5 +1,5 @@
-//! `sun2xp serve`: offers the hand to planners on other machines. The program `sun2xp-serve` does it, so that the tool
-//! needs no network library.
+//! `sun2xp serve`: offers the hand to planners on other machines. The separate program `sun2xp-serve` does the work, so
+//! that the tool does not contain the network library Zenoh.
 
 use crate::failure::{ExitStatus, Failure};
 use std::ffi::OsString;

@@ -9,7 +9,7 @@ pub fn is_virtual(root: &Path) -> bool {
         let mut flags = text.lines().filter(|line| line.starts_with("flags"));
         flags.any(|line| line.split_whitespace().any(|flag| flag == "hypervisor"))
     };
-    // Intel and AMD processors show their guests this flag. Other guests have one of the two folders.
+    // On Intel and AMD processors, a guest has this flag. On other processors, a guest has one of the two paths.
     read_to_string(root.join("proc/cpuinfo")).is_ok_and(has_flag)
         || ["sys/hypervisor/type", "proc/device-tree/hypervisor"].iter().any(|path| root.join(path).exists())
 }

@@ -16,9 +16,9 @@ fn command(program: &Path) -> Command {
         alone.args(&ALONE[1..]).arg(program);
         return alone;
     }
-    println!("This process may not make a network namespace. The nodes use the loopback interface of the machine.");
+    println!("This process cannot make a network namespace. The nodes use the loopback interface of the machine.");
     let mut beside = Command::new(program);
-    // The domains up to 101 use no ports of short-lived connections.
+    // ROS domains up to 101 use no ephemeral ports.
     beside.env("ROS_DOMAIN_ID", (1 + std::process::id() % 101).to_string());
     beside
 }

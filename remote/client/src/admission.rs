@@ -5,7 +5,7 @@ use crate::spring::{NotASpring, largest_eigenvalue};
 use sun2xp_remote_protocol::{FINGERS, Finger, FingerStatus, MOST_POSES, PathPose};
 use thiserror::Error;
 
-/// Smallest distance of the times of two poses, s.
+/// Smallest difference between the times of two consecutive poses, s.
 const LEAST_STEP: f64 = 1e-3;
 
 /// Longest path, s.
@@ -98,7 +98,7 @@ pub enum AdmissionError {
         /// Number of poses.
         count: usize,
     },
-    /// A time is not later than the one before.
+    /// A time is NaN, above the longest permitted time, or less than 1 ms later than the one before.
     #[error(
         "the time of pose {pose} of the path of finger {finger} is {time} s, and the time before it is {before} s: \
          times count from the beginning of the path. Each must be at least {LEAST_STEP} s later than the one before, \

@@ -54,7 +54,8 @@ fn session_configuration(configuration: &RemoteConfiguration) -> zenoh::Result<C
     Ok(config)
 }
 
-/// Zenoh's errors end with a place in its sources, which is of no use to a planner.
+/// Returns the text of an error. The location in Zenoh's sources at its end is left out, because a planner cannot use
+/// it.
 fn short(error: &zenoh::Error) -> String {
     let text = error.to_string();
     text.split(" at /").next().unwrap_or_default().trim_end_matches(['.', '!']).into()

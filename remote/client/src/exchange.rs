@@ -46,7 +46,7 @@ impl Exchange {
         self.outbox.refused(answer);
     }
 
-    /// Puts changes that were admitted into the mailbox.
+    /// Puts changes into the outbox. The caller has checked them.
     pub fn put(&mut self, changes: [Option<Change>; FINGERS], stamp: Option<u64>) {
         self.outbox.put(changes, stamp);
     }

@@ -18,10 +18,10 @@ use zenoh::qos::{CongestionControl, Priority};
 use zenoh::sample::Sample;
 use zenoh::{Session, Wait};
 
-/// The time in which a Status and the first records are received.
+/// Longest wait for the Status, and then for the first records.
 const FIRST: Duration = Duration::from_secs(3);
 
-/// The time in which a State follows the Answer to a request.
+/// Longest wait for a State after the Answer to a request.
 const NEXT_STATE: Duration = Duration::from_millis(200);
 
 /// What the callbacks, the sending thread and the planner share.
@@ -67,7 +67,7 @@ pub struct Link {
 }
 
 impl Link {
-    /// Connects, receives the Status, and subscribes. The hand is not owned yet.
+    /// Connects, subscribes, and waits for the Status and for a record of every finger. The hand is not owned yet.
     pub fn open(configuration: &RemoteConfiguration) -> Result<Self, RemoteError> {
         let client = configuration.checked_client()?;
         let (hand, endpoint) = (configuration.hand.clone(), configuration.endpoint.clone());

@@ -46,7 +46,7 @@ pub struct Outbox {
     refusal: Option<String>,
     /// Refusals of Targets up to this sequence number are not reported any more.
     reported: u64,
-    /// Whether no Targets are sent in this epoch for now.
+    /// Whether the Targets of this epoch are held back.
     held: bool,
 }
 
@@ -88,7 +88,8 @@ impl Outbox {
         }
     }
 
-    /// Holds the Targets of this epoch back, or sends them again. What is put meanwhile waits.
+    /// Holds the Targets of this epoch back if `held` is set, until a call in which it is not set. Changes that are put
+    /// meanwhile wait.
     pub fn hold(&mut self, held: bool) {
         self.held = held;
     }
@@ -138,7 +139,7 @@ impl Outbox {
         self.refusal.take()
     }
 
-    /// Puts changes into the mailbox. All of them take effect in the same cycle. `stamp` is the time stamp of their
+    /// Puts changes into the outbox. All of them take effect in the same cycle. `stamp` is the time stamp of their
     /// Target, if it is to be the same for several hands.
     pub fn put(&mut self, changes: [Option<Change>; FINGERS], stamp: Option<u64>) {
         for (slot, change) in self.slots.iter_mut().zip(changes) {

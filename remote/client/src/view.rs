@@ -17,7 +17,7 @@ pub struct RemoteStatistics {
     pub malformed: u64,
     /// Targets that were sent.
     pub targets: u64,
-    /// Set points that the hand has refused.
+    /// Targets that the hand has refused.
     pub refused: u64,
 }
 

@@ -14,14 +14,16 @@ pub struct Answer {
     pub code: Code,
     /// `catch_ms` of the server, ms: the longest validity that it gives to a Target. At least 1.
     pub catch_ms: u32,
-    /// For acquire: the new epoch. Otherwise: the epoch of the Request or Target.
+    /// For an acquire that is done: the new epoch. Otherwise: the epoch of the Request or Target. It is 0 if an
+    /// acquire is refused, if the Request is malformed, and if its sender is not permitted.
     pub epoch: u64,
     /// Time, ns, server's clock: a value for [`Target::seen`](crate::Target::seen).
     pub time: u64,
-    /// For the refusal of a Target: its sequence number. For acquire: the rising number of the new epoch, which States
-    /// then show as [`State::owner`](crate::State::owner) (`epoch` is its random value). Otherwise 0.
+    /// For the refusal of a Target: its sequence number. For an acquire that is done: the number of the new epoch,
+    /// which is higher than the number of every earlier epoch. States show it as [`State::owner`](crate::State::owner).
+    /// Otherwise 0.
     pub number: u64,
-    /// The cause and the remedy; empty if it is done.
+    /// The cause and the remedy; empty if the code is [`Code::Done`].
     pub text: String,
 }
 
@@ -29,7 +31,7 @@ impl Answer {
     /// Decodes a payload.
     ///
     /// # Errors
-    /// Returns the field that the protocol does not allow, and the reason.
+    /// Returns what is wrong: the type, the version, the length, or the value of a field.
     pub fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
         let bytes = Bytes::of_message(payload, KIND, FIXED)?;
         let length = usize::from(bytes.u16(32));
@@ -63,7 +65,7 @@ impl Answer {
     /// Encodes the Answer.
     ///
     /// # Errors
-    /// Returns the field that the protocol does not allow, and the reason.
+    /// Returns the field whose value the protocol does not allow, and the reason.
     pub fn encode(&self) -> Result<Vec<u8>, FieldError> {
         self.check()?;
         let mut to = Written::message(KIND, FIXED + self.text.len());

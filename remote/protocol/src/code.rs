@@ -24,7 +24,7 @@ pub enum Code {
     Stopped = 7,
     /// The hand is closed, or the server ends.
     Closed = 8,
-    /// Such a request is in progress already.
+    /// A recovery or calibration is in progress already.
     InProgress = 9,
 }
 

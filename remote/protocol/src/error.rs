@@ -9,7 +9,7 @@ pub enum DecodeError {
     /// The payload has no type and no version.
     #[error("{0} bytes are too few for a message: every message begins with its type and its version")]
     Short(usize),
-    /// The payload is another message.
+    /// The payload is a message of another type.
     #[error("the type is {found}, and not {} of {expected}", *expected as u8)]
     Kind {
         /// The message that the receiver expects.
@@ -87,7 +87,7 @@ pub enum Reason {
     /// The bytes of a value that is not given are not zero.
     #[error("must be zero, because it is not given")]
     NotZero,
-    /// Bits without a meaning are set.
+    /// Bits are set that have no meaning, or that this message must not have.
     #[error("has the value {0:#x}, with bits that have no meaning or that this message must not have")]
     Bits(u8),
     /// A text is not UTF-8.

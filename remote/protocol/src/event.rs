@@ -31,7 +31,7 @@ impl Event {
     /// Decodes a payload.
     ///
     /// # Errors
-    /// Returns the field that the protocol does not allow, and the reason.
+    /// Returns what is wrong: the type, the version, the length, or the value of a field.
     pub fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
         let bytes = Bytes::of_message(payload, KIND, LENGTH)?;
         bytes.has_length(KIND, LENGTH)?;
@@ -56,7 +56,7 @@ impl Event {
     /// Encodes the Event.
     ///
     /// # Errors
-    /// Returns the field that the protocol does not allow, and the reason.
+    /// Returns the field whose value the protocol does not allow, and the reason.
     pub fn encode(&self) -> Result<Vec<u8>, FieldError> {
         self.check()?;
         let mut to = Written::message(KIND, LENGTH);

@@ -8,7 +8,7 @@ pub const MOST_POSES: usize = 32;
 /// A pose of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPose {
-    /// Time since the server has applied the path, s.
+    /// Time after the server has applied the path, s. It is above 0.
     pub time: f64,
     /// Angles of joints 0, 1 and 2 at this time, rad.
     pub joints: [f64; 3],
@@ -19,7 +19,7 @@ impl PathPose {
     pub(crate) const LENGTH: usize = 32;
 }
 
-/// Checks the number of poses, and that their times rise from 0.
+/// Checks the number of poses, and that their times are above 0 and rise.
 pub(crate) fn check(poses: &[PathPose]) -> Result<(), FieldError> {
     within("number of poses", poses.len() as u64, 1, MOST_POSES as u64)?;
     let mut before = 0.0;

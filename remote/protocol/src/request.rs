@@ -28,7 +28,7 @@ impl Request {
     /// Decodes a payload.
     ///
     /// # Errors
-    /// Returns the field that the protocol does not allow, and the reason.
+    /// Returns what is wrong: the type, the version, the length, or the value of a field.
     pub fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
         let bytes = Bytes::of_message(payload, KIND, LENGTH)?;
         bytes.has_length(KIND, LENGTH)?;
@@ -76,7 +76,7 @@ impl Request {
     /// Encodes the Request.
     ///
     /// # Errors
-    /// Returns the field that the protocol does not allow, and the reason.
+    /// Returns the field whose value the protocol does not allow, and the reason.
     pub fn encode(&self) -> Result<Vec<u8>, FieldError> {
         self.check()?;
         let mut to = Written::message(KIND, LENGTH);

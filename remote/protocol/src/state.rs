@@ -29,7 +29,7 @@ impl State {
     /// Decodes a payload.
     ///
     /// # Errors
-    /// Returns the field that docs/remote-protocol.md does not allow, and the reason.
+    /// Returns what is wrong: the type, the version, the length, or the value of a field.
     pub fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
         let bytes = Bytes::of_message(payload, KIND, FIXED)?;
         let count = usize::from(bytes.u16(2));
@@ -62,7 +62,7 @@ impl State {
     /// Encodes the State.
     ///
     /// # Errors
-    /// Returns the field that docs/remote-protocol.md does not allow, and the reason.
+    /// Returns the field whose value the protocol does not allow, and the reason.
     pub fn encode(&self) -> Result<Vec<u8>, FieldError> {
         self.check_order()?;
         for (number, record) in self.records.iter().enumerate() {

@@ -58,7 +58,7 @@ impl Status {
     /// Decodes a payload.
     ///
     /// # Errors
-    /// Returns the field that the protocol does not allow, and the reason.
+    /// Returns what is wrong: the type, the version, the length, or the value of a field.
     pub fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
         let bytes = Bytes::of_message(payload, KIND, NAME + 1)?;
         let name = usize::from(bytes.u8(NAME));
@@ -126,7 +126,7 @@ impl Status {
     /// Encodes the Status.
     ///
     /// # Errors
-    /// Returns the field that the protocol does not allow, and the reason.
+    /// Returns the field whose value the protocol does not allow, and the reason.
     pub fn encode(&self) -> Result<Vec<u8>, FieldError> {
         self.check()?;
         let name = self.owner.as_ref().map_or("", ClientName::as_str);

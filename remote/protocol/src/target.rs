@@ -35,7 +35,7 @@ impl Target {
     /// Decodes a payload.
     ///
     /// # Errors
-    /// Returns the field that the protocol does not allow, and the reason.
+    /// Returns what is wrong: the type, the version, the length, or the value of a field.
     pub fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
         let bytes = Bytes::of_message(payload, KIND, FIXED)?;
         let count = usize::from(bytes.u8(2));
@@ -83,7 +83,7 @@ impl Target {
     /// Encodes the Target.
     ///
     /// # Errors
-    /// Returns the field that the protocol does not allow, and the reason.
+    /// Returns the field whose value the protocol does not allow, and the reason.
     pub fn encode(&self) -> Result<Vec<u8>, FieldError> {
         self.check_order()?;
         for (number, part) in self.parts.iter().enumerate() {

@@ -83,7 +83,7 @@ pub fn remote(endpoint: &str, folder: Option<&str>) -> RemoteHand {
     RemoteHand::open(&configuration(endpoint, "alice", folder)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The set point with this number, rad. Every number has its own.
+/// The set point with this number, rad. The set points repeat after 100 000 numbers.
 pub fn pose_of(number: u32) -> [f64; 3] {
     [0.1, 0.5, 0.9 + 1e-6 * f64::from(number % 100_000)]
 }

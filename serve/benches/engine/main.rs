@@ -1,10 +1,10 @@
 //! Compares the engine of the remote hand, Zenoh, with plain TCP and with TCP and rustls, on loopback.
 //!
-//!     cargo bench --bench engine -- latency [--repeats 5] [--seconds 5] [--period-us 1000]
-//!     cargo bench --bench engine -- throughput [--repeats 5] [--messages 200000]
+//!     cargo bench -p sun2xp-serve --bench engine -- latency [--repeats 5] [--seconds 5] [--period-us 1000]
+//!     cargo bench -p sun2xp-serve --bench engine -- throughput [--repeats 5] [--messages 200000]
 //!
-//! The server of each engine is a process of its own. The engines are measured alternately. Without a name, both are
-//! measured.
+//! The server of each engine is a process of its own. The engines are measured alternately. Without `latency` or
+//! `throughput`, both are measured.
 
 mod certificates;
 mod echo;
@@ -21,7 +21,7 @@ use std::error::Error;
 
 type Failure = Box<dyn Error + Send + Sync>;
 
-/// Length of a message, bytes: somewhat longer than a target.
+/// Length of a message, bytes: somewhat longer than a Target with one part, which has 152 bytes.
 const LENGTH: usize = 200;
 
 #[derive(Parser)]

@@ -1,5 +1,5 @@
-//! Messages of one length over a stream: plain TCP, and TCP with rustls. There are no threads: the
-//! caller itself waits on the socket. No other use of a stream is faster.
+//! Messages of one length over a stream: plain TCP, and TCP with rustls. The caller itself waits on the socket, so no
+//! time is lost between threads.
 
 use crate::certificates::Files;
 use crate::link::{ABSORB, ANSWER, Link, Sending};

@@ -34,7 +34,8 @@ use std::time::{Duration, Instant};
 /// Time in which the connections of the first planners end.
 const LEASE: Duration = Duration::from_secs(20);
 
-/// Longest time in which the connections of all lost clients end. TCP waits for some of them.
+/// Longest time in which the connections of all lost clients end. After a cut of the line, TCP retransmits for a long
+/// time before it gives a connection up.
 const LAST: Duration = Duration::from_secs(120);
 
 /// Arguments of the benchmark.

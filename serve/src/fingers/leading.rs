@@ -8,7 +8,7 @@ use sun2xp::finger::FingerReport;
 use sun2xp::motion::Pose;
 use sun2xp::nalgebra::Vector3;
 
-/// A set point that moves by less than this, rad, is not sent.
+/// A set point on the way to a destination is not sent if it would move the one in force by less than this, rad.
 const SMALLEST_STEP: f64 = 1e-4;
 
 /// A place to which a set point may be sent.

@@ -13,7 +13,7 @@ use sun2xp_remote_protocol::{Part, Place};
 pub(super) struct Prepared {
     pub finger: usize,
     pub goal: Goal,
-    /// None if there is only a path.
+    /// None if the part gives nothing but a path, or nothing at all.
     pub command: Option<FingerCommand>,
     pub path: Vec<PathPose>,
 }
@@ -27,7 +27,7 @@ impl Fingers {
         match report.stage {
             Stage::Running => {}
             Stage::Faulted(fault) => return Err(HandError::Faulted { finger: known, fault }),
-            // The servo would discard the part: it was prepared before the finger begins to follow set points.
+            // The servo discards a part that was prepared before the finger begins to follow set points.
             _ => return Err(HandError::Busy(known)),
         }
         let mut path = Vec::new();

@@ -29,7 +29,7 @@ const WINDOW: u64 = 20_000_000;
 /// What the board saw of finger 1.
 #[derive(Debug, Default)]
 struct Seen {
-    /// The set points while it followed the planner, one for each cycle, rad.
+    /// The set points of joint 1 while the finger followed the planner, one for each cycle, rad.
     set_points: Vec<f64>,
     /// Largest velocity over a window before the end state, rad/s, and the joint angles in the window with their times.
     velocity: f64,

@@ -31,7 +31,7 @@ pub enum Motion {
     Watch,
 }
 
-/// The middle of the swing and its amplitude, rad, and its angular velocity, rad/s.
+/// The middle of the swing and its amplitude, rad, and its angular frequency, rad/s.
 const MIDDLE: [f64; 3] = [0.0, 0.6, 0.9];
 const AMPLITUDE: f64 = 0.15;
 const ANGULAR_VELOCITY: f64 = 3.0;

@@ -62,8 +62,8 @@ pub struct IoProperties {
     /// Whether the hardware has the end state *hold*.
     pub holds: bool,
     /// Whether the hardware is a simulation that advances by one period in every exchange, however long the exchange
-    /// takes. The servo then waits for it: after an exchange that failed, the servo repeats the same command later, and
-    /// the finger faults only after five seconds.
+    /// takes. The servo then waits for the simulation: after an exchange that failed, the servo repeats the same
+    /// command later, and the finger faults only if no exchange succeeds for five seconds.
     pub in_step: bool,
 }
 

@@ -41,8 +41,8 @@ impl<T: Transport> Link<T> {
         self.identify(address, deadline)
     }
 
-    /// Agrees on `terms` with the finger with this address and identity. The motors stay off. A hold ends. Retries
-    /// until `deadline` (ns on the transport's clock).
+    /// Agrees on `terms` with the finger with this address and identity. The motors stay off. A hold in progress ends.
+    /// Retries until `deadline` (ns on the transport's clock).
     ///
     /// Do not call this in the servo's cycle, because it discards Replies of other fingers on the port.
     pub fn agree(
@@ -58,7 +58,7 @@ impl<T: Transport> Link<T> {
 
     /// Asks every finger at the port for its identity, and returns the fingers that answer, by their addresses. Sends
     /// only Hello, which changes nothing on a board. Waits until `deadline` (ns on the transport's clock) for the first
-    /// answer, and then 100 ms for each other finger of the board.
+    /// answer, and then at most 100 ms for each other finger of the board.
     ///
     /// # Errors
     /// Returns an error if the port fails, if no finger answers, or if the first finger refuses or has another protocol

@@ -6,7 +6,7 @@ use crate::board::protocol::MAX_WIRE;
 /// periods allow for the delay of a USB bridge.
 const ANSWER_PERIODS: u8 = 20;
 
-/// The request of the next period, and the time left for the answer to the last one.
+/// The request of the next period, and the time left for the answer to the previous request.
 #[derive(Debug)]
 pub(super) struct RelayedRequest {
     bytes: [u8; 1 + MAX_WIRE],

@@ -26,7 +26,7 @@ impl Status {
     pub const DRIVER_FAULT: Status = Status(1 << 8);
     /// An encoder or gauge cannot be read, or could not be read at some time since the last Configure.
     pub const SENSOR_FAULT: Status = Status(1 << 9);
-    /// At least one torque of this Command exceeded a limit and was clipped to it.
+    /// At least one torque of the answered Command exceeded a limit and was clipped to it. Set only in a Reply.
     pub const TORQUE_CLIPPED: Status = Status(1 << 10);
     /// At least one damaged frame has arrived since the last Reply of this finger.
     pub const DAMAGED_INPUT: Status = Status(1 << 11);

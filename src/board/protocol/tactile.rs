@@ -33,7 +33,7 @@ pub struct TactileEvent {
     pub change: TactileChange,
     /// The element of the finger's sensors. The board defines their order.
     pub element: u16,
-    /// The element's current raw count.
+    /// Raw count of the element.
     pub count: u16,
     /// The board's clock at the event, us, modulo 2^32.
     pub noticed_at: u32,

@@ -45,7 +45,8 @@ pub(super) struct TendonStiffness {
 pub(super) struct StiffnessFound {
     /// Mean stiffness in the range of tensions in which the controller works, N/cm.
     pub stiffness: Vector4<f64>,
-    /// Largest relative difference from the stretch per newton that `stiffness` gives.
+    /// Largest relative difference between the stretch per newton, which depends on the tension, and the constant one
+    /// that `stiffness` gives.
     pub tolerance: f64,
     /// Part of the travel that the model does not explain, cm rms.
     pub residual: f64,

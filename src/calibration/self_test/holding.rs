@@ -23,8 +23,8 @@ const READING: f64 = 0.04;
 const RAISED: f64 = 2.0;
 /// Time of that rise, s.
 const RAISING: f64 = 0.12;
-/// Pull of a pulse, in t_min. After a pulse the links vibrate until their friction stops them. After a weaker pulse
-/// they stop sooner.
+/// Pull of a pulse, in t_min. After a pulse the links vibrate until their friction stops them. The stronger the pulse,
+/// the longer they vibrate.
 const PULSE: f64 = 2.0;
 /// Duration of a pulse, s.
 pub(super) const LENGTH: f64 = 0.006;

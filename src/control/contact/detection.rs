@@ -4,7 +4,8 @@ use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Time constant with which the recent motion is forgotten, s. It exceeds the delay of the residual.
+/// Time constant with which the recent motion is forgotten, s. It exceeds the delay of the residual with the default
+/// `contact.bandwidth`.
 const CALMING: f64 = 0.1;
 
 /// Duration of the first average of the error, s, unless the learning time is shorter. No contact is reported before
@@ -14,7 +15,7 @@ const FIRST: f64 = 0.2;
 /// Joint rate at which the error of the torques is learned half as fast as at rest, rad/s. A motion adds errors of its
 /// own: the friction of its direction, and the inertia of links with wrong masses. If these errors were learned, a
 /// contact right after the motion would preserve them, because nothing is learned during a contact. So a finger learns
-/// fully at rest and during the first average. Afterwards, it learns only slow drifts in motion.
+/// fully at rest and during the first average. After the first average, a moving finger learns only slow drifts.
 const SLOW: f64 = 0.1;
 
 /// The constant part of the detection.

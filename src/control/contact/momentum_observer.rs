@@ -70,8 +70,8 @@ impl MomentumObserver {
         }
     }
 
-    /// Returns the state of a finger at rest at these joint angles, rad, with these tensions, N. Only the torque of
-    /// gravity `weight`, N cm, acts on the finger.
+    /// Returns the state of a finger at rest at these joint angles, rad. Only these tensions, N, and the torque of
+    /// gravity `weight`, N cm, act on the finger.
     pub fn start(&self, joints: &Vector3<f64>, tensions: &Vector4<f64>, weight: &Vector3<f64>) -> MomentumState {
         let (joints, tensions, weight) = (*joints, *tensions, *weight);
         MomentumState { joints, tensions, filtered: tensions, weight, ..MomentumState::default() }

@@ -71,7 +71,7 @@ impl Controller {
         let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
         };
-        // In the first cycle after another scheme, the report has the joints of the motors.
+        // In the first cycle after another scheme, the joint angles in the report are not those of state feedback.
         if elastic.joints != state.report.joints {
             pose = JointSines::of(&elastic.joints);
         }

@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(slips(&mut state, [0.0, 2.0, 1.05], true, 1), 1);
         assert_eq!(slips(&mut state, [0.0, 2.0, 1.05], true, 49), 0);
         assert_eq!(slips(&mut state, [0.0, 2.0, 1.05], true, 100), 2);
-        // A finger that presses harder carries more.
+        // A larger force along the normal permits a larger force along the surface.
         assert_eq!(slips(&mut state, [0.0, 4.0, 1.9], true, 100), 0);
         // A new contact has a new normal.
         assert_eq!(slips(&mut state, [0.0; 3], true, 1), 0);

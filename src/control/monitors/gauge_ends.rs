@@ -18,7 +18,8 @@ impl GaugeEnds {
     /// count of the gauges.
     #[inline]
     pub fn at_highest(&self, gauge: usize, count: u16, full_scale: u16) -> bool {
-        // The count of a falling gauge at this end is 0, and the subtraction makes it larger than every full scale.
+        // The count of a falling gauge at this end is 0. The subtraction turns it into 65535, which no full scale
+        // exceeds.
         count.wrapping_sub(u16::from(self.falling[gauge])) >= full_scale
     }
 

@@ -35,8 +35,8 @@ const RISING: f64 = 0.3;
 const FALLING: f64 = 0.01;
 
 /// Change of the terms from one estimation to the next, N. The finger counts as moving if the change is larger than
-/// this. The noise is learned only while the finger moves: at rest the friction of the tendons does not change, which
-/// says nothing about its magnitude.
+/// this. The noise is learned only while the finger moves: at rest the friction of the tendons does not change, so its
+/// magnitude cannot be determined.
 const MOVING: f64 = 0.1;
 
 /// Number of estimations in motion before the learned noise counts. In this time most tendons slide in both directions.

@@ -14,8 +14,9 @@ const SLOW: f64 = 1000.0;
 /// The limits are straight lines inside the range in which the default finger was stable, with a margin of about a
 /// tenth. Two tests determined that range: the one-cycle map at poses anywhere within the joint limits, and the closed
 /// loop after steps of 5 mm and after pushes. They covered 500 to 4000 Hz and 0.3 to 6 N/cm, with and without friction.
-/// The upper limit of state feedback from 1000 Hz up is lower: it also holds for the named hands and for fingers whose
-/// links, tendons or amplifiers differ from the configuration (`cargo bench --bench stiffness -- --truths --damping`).
+/// From 1000 Hz up, the upper limit of state feedback is lower than these tests require, so that it also holds for the
+/// named hands (`simulation.hand`) and for fingers whose links, tendons or amplifiers differ from the configuration
+/// (`cargo bench --bench stiffness -- --truths --damping`).
 /// With too little damping the servo loses control of the finger. With too much damping the finger oscillates because
 /// of the delay of one cycle. The schemes of the report's figures have little damping besides this damper, so they
 /// admit no ratio below 1. A ratio of 1 is always admitted: it is the damping that the controller computes, and a

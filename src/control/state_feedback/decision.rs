@@ -26,7 +26,7 @@ pub(in crate::control) struct Decision {
     pub torque_scale: f64,
 }
 
-/// The motion of all tendons and joints at the next sample, SI units.
+/// The motion of all tendons and joints, predicted for `sample_offset` relative to the next sample, SI units.
 struct FingerMotion {
     tensions: Vector4<f64>,
     motor_speeds: Vector4<f64>,
@@ -44,10 +44,10 @@ struct Shake {
 }
 
 impl StateFeedback {
-    /// Returns the pulls that act from the next sample on. They make the fingertip the spring `spring`, and they make
-    /// the joints the spring `joint_spring`. The anchor of both springs has the motion `motion`. If `begins` is true,
-    /// the springs start without deflection. `pose` has the sines of the joint angles in `state`. `gravity` is the
-    /// compensation, with the gravity that planners have set, m/s^2.
+    /// Returns the pulls that act from the next sample on. They give the fingertip the spring `spring`, and the joints
+    /// the spring `joint_spring`. The anchor of both springs has the motion `motion`. If `begins` is true, the springs
+    /// start without deflection. `pose` has the sines of the joint angles in `state`. `gravity` is the compensation,
+    /// with the gravity that planners have set, m/s^2.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,

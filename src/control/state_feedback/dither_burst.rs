@@ -13,14 +13,15 @@ use serde::{Deserialize, Serialize};
 const FAST: f64 = 0.4;
 /// Rate of the reference, rad/s, below which a fast motion has ended.
 const SLOW: f64 = 0.2;
-/// Largest torque of the spring with which a burst begins, as a fraction of the joint torques of the pretension without
-/// regard to their signs. Pulleys with this friction hold the finger against such a torque. A larger torque means that
-/// the finger touches something. At walls, bursts of fingers with rotors of half the inertia caused motions of 2 mm.
+/// Largest torque of the spring with which a burst begins. It is a fraction of the sum of the magnitudes of the torques
+/// that the four tendons exert on the joint at the pretension. Pulleys whose friction is this fraction of the tension
+/// hold the finger against such a torque. A larger torque means that the finger touches something. At walls, bursts of
+/// fingers with rotors of half the inertia caused motions of 2 mm.
 const HELD: f64 = 0.1;
 
 /// Time constant with which the envelope rises, s. With 0.005 s, fingers with static friction overshoot by 7 %.
 const RISING: f64 = 0.01;
-/// Envelope from which it counts as risen.
+/// Value from which the envelope counts as risen.
 const RISEN: f64 = 0.8;
 /// Time for which the envelope stays risen, s. With less, the slowest steps of "worn" fingers settle later. With more,
 /// most steps settle later.
@@ -50,8 +51,8 @@ pub(super) struct DitherBurstState {
 }
 
 impl DitherBurst {
-    /// `torques` are the joint torques of the pretension without regard to their signs, N cm. `rate` is the rate of the
-    /// servo, Hz.
+    /// `torques` has, for each joint, the sum of the magnitudes of the torques of the four tendons at the pretension,
+    /// N cm. `rate` is the rate of the servo, Hz.
     pub fn new(torques: &Vector3<f64>, rate: f64) -> Self {
         Self {
             held: torques * HELD,
@@ -62,8 +63,8 @@ impl DitherBurst {
     }
 
     /// Returns the envelope. `rates` are the joint rates of the reference, rad/s. `sprung` is the joint torque of the
-    /// spring, N cm. `slack` is whether a tendon is almost slack. The burst then ends, because the tensions must
-    /// recover first.
+    /// spring, N cm. `slack` is true if a tendon is almost slack. In this case the burst ends, because the tensions
+    /// must recover first.
     pub fn advance(
         &self,
         state: &mut DitherBurstState,

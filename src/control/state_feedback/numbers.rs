@@ -1,5 +1,5 @@
-//! The parameters of state feedback ([`Numbers`]). One procedure computes them from the configuration. No parameter is
-//! tuned by hand for a single finger.
+//! The parameters of state feedback ([`Numbers`]). One procedure computes them from the configuration, so that no
+//! finger needs parameters that are tuned by hand.
 //!
 //! The masses follow from the configured rotor inertias. The gains of the observers follow from the size of a count of
 //! the encoders and of the gauges, and from a bandwidth. The other numbers are tuned. Most of them are dimensionless,
@@ -148,7 +148,7 @@ struct TunedNumbers {
     damped_inertia: f64,
     /// Time constant of each stage of the reference filter, s.
     reference_time: f64,
-    /// At 1000 Hz, with 0.35 "worn" fingers settle sooner, and "cheap" fingers later.
+    /// At 1000 Hz, a value of 0.35 instead of 0.3 makes "worn" fingers settle sooner, and "cheap" fingers later.
     dither_burst: f64,
 }
 

@@ -19,8 +19,8 @@ use nalgebra::Vector4;
 /// Time for which the gauges are read before the motors move, s.
 const TARING: f64 = 0.1;
 
-/// Winding speed at the start, m/s of tendon. A lower speed gives a taut tendon more time to push the finger before it
-/// is detected above the noise. A higher one gives it more tension before its motor reverses.
+/// Winding speed at the start, m/s of tendon. At a lower speed, a taut tendon pushes the finger for longer before its
+/// tension rises above the noise. At a higher speed, its tension is larger when its motor reverses.
 const SPEED: f64 = 0.0018;
 /// Acceleration of the winding, m/s^2. Because of it, slack of 20 mm is taken up in 7 s.
 const ACCELERATION: f64 = 0.0003;
@@ -216,8 +216,8 @@ impl SlackTakeUp {
                 slack.targets.travel[motor] = travel - GAP;
                 slack.targets.integral[motor] = 0.0;
             } else {
-                // Only the inertia of the finger lets the tension of a taut tendon rise above strong noise. A faster
-                // winding uses this inertia.
+                // A free finger yields to a taut tendon. Only the inertia of the finger makes the tension rise above
+                // strong noise, and it makes the tension rise higher if the motor winds faster.
                 let noise = (gauge.noise / (QUIET * self.minimum)).max(1.0);
                 let speed = (SPEED + ACCELERATION * slack.seconds) * noise;
                 slack.targets.speed[motor] = speed;

@@ -90,9 +90,9 @@ impl BoundedDistribution<'_> {
     /// Returns the smallest tensions, in the sense of eq. 20, for the joint torque tau, N cm.
     ///
     /// For each tendon j there is a tau_g that puts it at t_min. Tendon i then has the tension s (A_i - A_j q_i/q_j) +
-    /// t_min q_i/q_j, where A = Q tau and s is the scale. Eq. 20 selects the largest of these tau_g. It gives tendon i
-    /// the largest of these tensions, so each of them must be at most t_max. These conditions, one for each pair i, j,
-    /// bound s.
+    /// t_min q_i/q_j, where A = Q tau and s is the scale. Eq. 20 selects the largest of these tau_g. This tau_g gives
+    /// tendon i the largest of these tensions, so each of them must be at most t_max. These conditions, one for each
+    /// pair i, j, bound s.
     #[inline]
     pub fn distribute(&self, torques: &Vector3<f64>) -> DistributedTensions {
         let Self { of, maximum } = self;

@@ -43,7 +43,7 @@ pub struct EventReader {
 struct Log {
     /// Number of events that readers can see.
     published: AtomicU64,
-    /// No later event has an earlier time than this, ns.
+    /// All events that are published later have this time or a later one, ns.
     horizon: AtomicU64,
     places: Pages<[Place]>,
 }
@@ -114,8 +114,8 @@ impl EventWriter {
         place.sequence.store(self.written, Ordering::Release);
     }
 
-    /// Publishes the events of this cycle. No later event may have an earlier time than `horizon`, ns. Returns whether
-    /// there were any events.
+    /// Publishes the events of this cycle. All events that are published later must have the time `horizon`, ns, or a
+    /// later one. Returns whether there were any events.
     pub fn publish(&mut self, horizon: u64) -> bool {
         let any = self.written != self.published;
         if any {
@@ -167,9 +167,9 @@ impl EventReader {
         self.lost
     }
 
-    /// Returns the horizon, ns: no event that is published later has an earlier time. So call this function first, and
-    /// then [`EventReader::take`] until it returns none. All events that this reader takes afterwards have the time of
-    /// the horizon or a later one.
+    /// Returns the horizon, ns: all events that are published later have this time or a later one. So call this
+    /// function first, and then [`EventReader::take`] until it returns none. All events that this reader takes
+    /// afterwards have the time of the horizon or a later one.
     pub fn horizon(&self) -> u64 {
         self.log.horizon.load(Ordering::Acquire)
     }

@@ -1,4 +1,5 @@
-//! The table of all kinds of events. The constants of the C header and `docs/events.md` are compared with it.
+//! The table of all kinds of events. The constants of the C header and the table in `docs/events.md` are generated from
+//! it.
 //!
 //! Numbers are permanent: a new kind gets the next free number.
 

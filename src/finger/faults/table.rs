@@ -1,4 +1,5 @@
-//! The table of all faults. The texts, the constants of the C header and `docs/faults.md` are generated from it.
+//! The table of all faults. The texts, the constants of the C header and the table in `docs/faults.md` are generated
+//! from it.
 //!
 //! Numbers are permanent: a new fault gets the next free number, and a fault that is no longer detected keeps its
 //! number.

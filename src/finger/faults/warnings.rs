@@ -94,7 +94,7 @@ mod tests {
         let new: Vec<bool> = (0..100).map(|cycle| warnings.note(&mut recent, Some(given[cycle % 2]), 3)).collect();
         assert_eq!((warnings.given(), new.iter().filter(|&&new| new).count()), (2, 2));
         assert_eq!(warnings.newest(), Some(given[1]));
-        // More warnings than places are forgotten, the oldest first.
+        // If there are more warnings than places, the oldest warning is forgotten first.
         for motor in 0..5 {
             let part = Part::Motor(motor);
             assert!(warnings.note(&mut recent, Some(Fault { part, ..given[0] }), 3));

@@ -33,7 +33,7 @@ impl Reflexes {
     pub fn install(&self, reflex: Reflex) -> Option<u32> {
         let installed = &mut *self.0.lock();
         let place = installed.rules.0.iter_mut().find(|place| place.is_none())?;
-        // Zero is no number of a rule.
+        // No rule has the number 0.
         installed.last = installed.last.wrapping_add(1).max(1);
         *place = Some((installed.last, reflex));
         installed.to_servo.write(installed.rules);

@@ -6,7 +6,7 @@ use crate::model::configuration::ConfiguredFinger;
 use crate::model::{Contact, Links, direction};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
-/// A spring that presses with less than this force has no direction in which it presses, N.
+/// Force below which a spring counts as pressing in no direction, N.
 const NO_DIRECTION: f64 = 0.05;
 
 /// A stiffness at the bound that was sent as `float` may be beyond the bound by this fraction.
@@ -88,8 +88,8 @@ impl ReactionLimits {
     /// Returns the joint angles of the set point (the anchor of the spring), rad, that increase the force of the tip by
     /// `by`, N, to at most `most`, N. The force of the spring is F = Kx (x_d - x), with the tip positions x_d at the
     /// anchor and x at the measured joint angles. The anchor of the tip moves by Kx^-1 dF, with dF along `along`, or
-    /// along F if `along` is zero. Returns none if the spring does not press in this direction, or if Kx has no
-    /// inverse.
+    /// along F if `along` is zero. Returns none if the spring does not press in this direction, or if Kx or the
+    /// Jacobian at the anchor has no inverse.
     fn grip(
         &self,
         along: &Vector3<f64>,

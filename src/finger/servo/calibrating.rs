@@ -28,9 +28,9 @@ impl FingerServo {
     }
 
     /// Runs one step of the calibration, if there is one and a reply has arrived, and sets the finger's activity.
-    /// Returns the data that the servo used before, if this cycle is computed with other data. This is so at the first
-    /// activity of the calibration. It is also so if the calibration ends without an activity, and planners have
-    /// replaced the data meanwhile.
+    /// Returns the data that the servo used before, if this cycle is computed with other data. The data changes at the
+    /// first activity of the calibration. It also changes if the calibration ends without an activity, and planners
+    /// have replaced the data meanwhile.
     pub(super) fn calibrate(&mut self) -> Option<Adjustable> {
         let Calibrating { run, before } = self.calibration.as_mut()?;
         if !self.answered {

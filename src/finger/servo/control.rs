@@ -134,7 +134,8 @@ impl FingerServo {
         }
     }
 
-    /// Begins the path of a set point, continues it, or ends the path before. `held` is the set point in force.
+    /// Begins the path of a set point or continues it. If the set point has no path, ends the previous path. `held` is
+    /// the set point in force.
     fn take_path(&mut self, sent: &SentSetPoint, held: &SetPoint) {
         let motion = &mut self.motion;
         match &sent.path {
@@ -144,8 +145,8 @@ impl FingerServo {
                 motion.path = Following {
                     number: taken.number,
                     follower: Some(Follower::new(held.stiffness)),
-                    // Only the set point of a later path tells whether that path changes the stiffness. The set point
-                    // can switch the change of the stiffness off, but not on, so the change is on until then.
+                    // Only the set point of a later path tells whether that path changes the stiffness. When that set
+                    // point arrives, it can switch the change off but not on, so the change is on at first.
                     stiffness: path.stiffness || taken.number != path.number,
                     begins: true,
                 };

@@ -46,9 +46,10 @@ impl FingerServo {
         self.touch.waiting()
     }
 
-    /// Takes the answer to a TactileRequest. Returns whether the answer was awaited. Events that happened before the
-    /// finger was a spring are not reported, because they may be older than this hand. The answer is ignored if the
-    /// finger has faulted in this period: a board that was reset counts its events from 1 again.
+    /// Takes the answer to a TactileRequest. Returns whether the answer was awaited. Events that arrive before the
+    /// finger is a spring for the first time are not reported, because they may have happened before the hand was
+    /// opened. The answer is ignored if the finger has faulted in this period: a board that was reset counts its events
+    /// from 1 again.
     pub fn take_touch(&mut self, sequence: u8, event: &TactileEvent) -> bool {
         let awaited = self.touch.awaits(sequence);
         if awaited && !self.under_control() {

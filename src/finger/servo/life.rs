@@ -12,8 +12,8 @@ use nalgebra::Vector4;
 /// 0.55 rad beyond its limits, and returned.
 const BLOW_MARGIN: f64 = 0.3;
 
-/// Fraction of the scheduled cycles that must have run while a finger opened. If fewer have run, an opening that times
-/// out is blamed on the machine, and otherwise on a tendon.
+/// Fraction of the scheduled cycles. If fewer have run in an opening that times out, the fault names the machine as the
+/// cause, and otherwise a tendon.
 const MOST_CYCLES: f64 = 0.75;
 
 impl FingerServo {

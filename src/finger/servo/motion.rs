@@ -92,8 +92,9 @@ impl FingerServo {
         }
     }
 
-    /// Ends the change of the stiffness along a path, because the bound of Kx was lowered. The Kx of the path's end
-    /// takes effect at once. It was checked against the new bound. The values on the way to it were not.
+    /// Ends the change of the stiffness along a path, because the bound of Kx was lowered. The Kx of the path's end,
+    /// reduced to the new bound, takes effect at once. The values before the end were checked only against the previous
+    /// bound.
     pub(super) fn end_stiffness_of_path(&mut self) {
         if self.motion.path.follower.is_some()
             && std::mem::take(&mut self.motion.path.stiffness)

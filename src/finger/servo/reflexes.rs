@@ -61,8 +61,8 @@ impl FingerServo {
     }
 
     /// Begins a spring phase that continues with the set point in force. The numbers of set points that were sent in
-    /// the phase before are given again, so a renewal of one of them must not renew its successor. A set point of a
-    /// phase that ended because its set point expired is not accepted any more.
+    /// the previous phase are assigned again, so a renewal of one of them must not renew the new set point with the
+    /// same number. A set point of a phase that ended because its set point expired is not accepted any more.
     fn begin_phase(&mut self) {
         self.report.springs += 1;
         self.report.expired_phase = None;

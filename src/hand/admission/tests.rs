@@ -55,7 +55,7 @@ fn springs_of_any_rank_are_admitted_and_others_refused() {
     assert!(matches!(refuse.kx(diagonal(1.0, -0.1, 0.0)), Err(SetPointError::Negative { .. })));
     assert!(matches!(refuse.kx(diagonal(-1.0, 0.0, 0.0)), Err(SetPointError::Negative { .. })));
     assert!(matches!(refuse.kx(diagonal(f64::NAN, 0.0, 0.0)), Err(SetPointError::NotFinite { .. })));
-    // An eigenvalue within rounding of zero counts as zero.
+    // A negative eigenvalue counts as zero if its magnitude is at most a thousandth of the largest eigenvalue.
     let kx = refuse.kx(diagonal(1.0, -0.0005, 0.0)).expect("admissible");
     assert!(kx.symmetric_eigenvalues().min() > -1e-12);
 }
@@ -231,7 +231,7 @@ fn joint_springs_are_admitted_up_to_the_bound_and_torques_up_to_the_tensions() {
     for rows in [diagonal(0.0, 0.0, 0.0), diagonal(50.0, 0.0, 10.0), [[60.0, 5.0, 0.0], [5.0, 60.0, 0.0], [0.0; 3]]] {
         assert!(refuse.k_theta(rows).is_ok(), "{rows:?}");
     }
-    // 6 N/cm at a lever of 4 cm.
+    // 96 N cm/rad at a lever of 4 cm correspond to 6 N/cm.
     assert!(refuse.k_theta(diagonal(96.0, 96.0, 96.0)).is_ok());
     assert!(matches!(refuse.k_theta(diagonal(0.0, 1e300, 0.0)), Err(SetPointError::TooStiffJoints { .. })));
     for stiff in [96.1, 1e6] {

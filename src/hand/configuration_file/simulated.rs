@@ -13,7 +13,7 @@ impl Configured {
     /// # Errors
     /// Returns [`ConfigurationError::Invalid`] if there is no such name or rate, or if the text is wrong.
     pub fn simulated(name: &str, rate: f64, text: &str) -> Result<Self, ConfigurationError> {
-        // The errors of these two lines name the key.
+        // Name and rate are checked as a text of their own, so that an error names their key.
         parse_configuration(&format!("hand.rate = {rate:?}\n[finger.simulation]\nhand = {name:?}\n"))?;
         let simulate = |_: FingerNumber, finger: &mut ConfiguredFinger| {
             finger.simulate();

@@ -29,7 +29,7 @@ impl Wrong {
         Self(Box::new(Details { path: String::new(), span, reason }))
     }
 
-    /// A syntax error. The parser's messages contain no part of the text.
+    /// A syntax error. The parser's messages contain no part of the text, so they need no `Shown`.
     pub fn in_syntax(error: TomlError) -> Self {
         match error.span() {
             None => Self::at(None, "a key has 80 parts or more, which no key of a configuration has".into()),

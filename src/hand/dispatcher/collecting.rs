@@ -30,7 +30,7 @@ pub(super) fn collect(
     stopped: &Receiver<()>,
 ) {
     if folder.is_some() {
-        // A finger may recover before the thread has looked at its fault.
+        // A finger may recover before this thread has seen its fault, so the records after a fault must wait.
         fingers.iter().for_each(|collected| collected.lock().black_box.wait_at_faults());
     }
     let mut ended = false;

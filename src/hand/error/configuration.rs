@@ -130,7 +130,7 @@ impl ConfigurationError {
 }
 
 /// The remedy of a file that may not be written. The system's reports of other failures, such as a full disk, tell what
-/// to change, and [`update_file`](crate::files::update_file) adds the remedies of its own.
+/// to change. [`update_file`](crate::files::update_file) adds the remedies to its own errors.
 fn permission(source: &std::io::Error) -> &'static str {
     match source.kind() {
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {

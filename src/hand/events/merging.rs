@@ -41,7 +41,7 @@ impl MergedEvents {
     pub fn next(&mut self, now: u64) -> Next {
         for finger in &mut self.fingers {
             if finger.next.is_none() {
-                // The horizon is read first. An event that is published after this has a later time.
+                // The horizon is read first, so no event that is published after this is earlier than the horizon.
                 finger.horizon = finger.reader.horizon();
                 finger.next = finger.reader.take();
             }
@@ -61,7 +61,7 @@ impl MergedEvents {
         self.fingers.iter().map(|finger| finger.reader.lost()).sum()
     }
 
-    /// Skips all events that are older than `time`, ns.
+    /// Skips all events before `time`, ns.
     pub fn skip_until(&mut self, time: u64) {
         for finger in &mut self.fingers {
             while finger.next.is_none_or(|event| event.time < time) {

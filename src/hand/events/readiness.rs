@@ -1,5 +1,5 @@
 //! A descriptor that is readable while a queue has events. An ordinary thread of the library makes it readable, so that
-//! the servos need no further system call.
+//! the servos make no system call for the descriptor.
 #![allow(unsafe_code, reason = "an eventfd")]
 
 use super::queue_state::QueueState;

@@ -16,7 +16,7 @@ use nalgebra::{Matrix6, Vector3};
 /// Shortest time from one pose to the next, s.
 const LEAST_STEP: f64 = 1e-3;
 
-/// Time in which a finger in motion comes to rest before a path that could not continue its motion, s.
+/// Time in which a finger in motion brakes to rest if a path that continues its motion is refused, s.
 const BRAKING: f64 = 0.15;
 
 /// Longest path, s.
@@ -29,8 +29,8 @@ const MARGIN: f64 = 1.001;
 /// attempt changes its shape.
 const ATTEMPTS: usize = 30;
 
-/// Computes the path that finger `number` of a hand with this configuration would follow, and checks it. It is
-/// for tools that have no open hand.
+/// Computes the path that finger `number` of a hand with this configuration would follow, and checks it. This function
+/// is for tools that have no open hand.
 ///
 /// # Errors
 /// Returns the reason why the finger would refuse the path.
@@ -92,8 +92,9 @@ impl Admission {
         if [start.rates, start.accelerations, start.jerk].iter().all(|derivative| derivative.amax() == 0.0) {
             return None;
         }
-        // The path begins with zero acceleration and jerk. After a step of the set point, the set point filter can give
-        // large ones, but they end by themselves. The servo filters the difference.
+        // The path begins with zero acceleration and jerk. After a step of the set point, the filter of the set point
+        // can give a large acceleration and jerk, which end by themselves. The servo filters the difference between its
+        // reference and the path.
         let start = Start { accelerations: Vector3::zeros(), jerk: Vector3::zeros(), ..start };
         // A constant deceleration to rest within BRAKING ends at this place.
         let place = start.place + start.rates * (BRAKING / 2.0);

@@ -33,7 +33,7 @@ pub enum Law {
     Exact,
 }
 
-/// `[finger.controller]`. Values that are not configured follow from the rate.
+/// `[finger.controller]`. Values that are absent get defaults for the scheme and the rate.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredController {

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct ConfiguredFriction {
     /// Coulomb friction of each motor, N cm of commanded torque.
     pub motor_coulomb: [f64; 4],
-    /// Conduit friction: the fraction of the tension torque that is added to `motor_coulomb`.
+    /// Conduit friction: this fraction of the tendon's torque on its motor (tension times `geometry.motor_radius`) is
+    /// added to `motor_coulomb`.
     pub conduit: [f64; 4],
     /// Pulley friction of each tendon, between gauge and joint: the largest difference between the tensions on the two
     /// sides, as a fraction of the smaller one. The gauges do not measure this friction.

@@ -63,8 +63,8 @@ use serde::{Deserialize, Serialize};
 /// Distance of a mechanical stop beyond the soft limit if no stop is configured, degrees.
 const STOP_MARGIN: f64 = 3.0;
 
-/// A key whose value cannot be used, and the reason. The key is relative to the finger's table, with dots:
-/// `tendon.maximum`.
+/// A key whose value cannot be used, and the reason. The key is relative to its section, with dots: `tendon.maximum` in
+/// `[finger]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unusable {
     /// Dotted path of the key.

@@ -41,7 +41,7 @@ fn worn() -> ConfiguredSimulation {
         tendon_stiffness: [285.0, 255.0, 262.0, 278.0],
         creep: 0.05,
         creep_time: 60.0,
-        // Tendons 0 and 3 do not reach joint 2.
+        // Tendons 1 and 4 do not reach joint 2, so their ratios in the last row do not matter.
         moment_arm_ratio: [[1.02, 0.98, 1.01, 0.99], [0.98, 1.01, 0.99, 1.02], [1.0, 0.99, 1.02, 1.0]],
         gauge_gain_ratio: [1.02, 0.98, 0.99, 1.01],
         gauge_offset: [0.3, 0.1, 0.2, 0.0],

@@ -31,15 +31,16 @@ pub struct ConfiguredSimulation {
     pub motor_viscous_friction: [f64; 4],
     /// Coulomb friction of each motor, N m.
     pub motor_coulomb_friction: [f64; 4],
-    /// Friction of each motor shaft: the fraction of the tension torque that is added to the motor's Coulomb friction.
+    /// Friction of each motor shaft: this fraction of the tendon's torque on the motor is added to the motor's Coulomb
+    /// friction.
     pub shaft_friction: f64,
     /// Friction of each conduit, between motor and gauge: the largest difference between the tensions on its two
     /// sides, as a fraction of the smaller one.
     pub conduit_friction: f64,
     /// Friction of the pulleys of each tendon, between gauge and joint, as a fraction of the tension.
     pub pulley_friction: f64,
-    /// Static friction of motors and joints, divided by their Coulomb friction. It falls to the Coulomb friction as
-    /// the speed rises (Stribeck curve).
+    /// Static friction of motors and joints, divided by their Coulomb friction. As the speed rises, the friction falls
+    /// to the Coulomb friction (Stribeck curve).
     pub stiction_ratio: f64,
     /// Hardening h of the tendons, 0 to 0.9. The local stiffness is (1 - h) `tendon_stiffness` without tension, and
     /// rises in proportion to the tension to (1 + h) `tendon_stiffness` at `tendon.maximum`.

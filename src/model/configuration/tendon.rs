@@ -14,7 +14,7 @@ pub struct ConfiguredTendon {
     /// do not measure.
     pub stiffness: [f64; 4],
     /// Relative uncertainty of `stiffness`. A part of the disagreement between gauges and encoders is attributed to
-    /// errors of `stiffness`. The uncertainty limits this part. Identification sets it.
+    /// errors of `stiffness`. The uncertainty limits this part. Identification sets `stiffness_tolerance`.
     pub stiffness_tolerance: f64,
 }
 

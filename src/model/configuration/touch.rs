@@ -9,7 +9,7 @@ pub const MOST_ELEMENTS: usize = 64;
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredTouch {
-    /// The elements, in the order in which the board counts them. At most [`MOST_ELEMENTS`].
+    /// The elements, at most [`MOST_ELEMENTS`], in the order in which the board counts them.
     pub elements: Vec<TouchElement>,
 }
 

@@ -1,4 +1,4 @@
-//! Checks that the oscillation of a rotor on its tendon is slow enough for the simulation.
+//! Checks that the oscillation of a rotor on its tendon is slow enough for a simulation with the controller's model.
 
 use super::ranges::unusable;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
@@ -7,8 +7,8 @@ use crate::model::configuration::{ConfiguredFinger, Unusable};
 const STEP: f64 = 1e-4;
 
 impl ConfiguredFinger {
-    /// Checks the angular frequency of each rotor on its tendon: its product with the step of the simulation must not
-    /// exceed 1. The simulation diverges above 2.
+    /// Checks the angular frequency of each rotor on its tendon, from `motor.inertia` and `tendon.stiffness`: its
+    /// product with the step of the simulation must not exceed 1. A simulation with these values diverges above 2.
     pub(super) fn check_rotors(&self) -> Result<(), Unusable> {
         for motor in 0..4 {
             // N/m and m.

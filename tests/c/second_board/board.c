@@ -74,7 +74,7 @@ static void hello(struct board *board, const struct frame *request)
     put8(&answer, VERSION);
     put16(&answer, 1u << board->address);
     put16(&answer, KIND);
-    /* Two boards may differ in nothing but their addresses. The process number makes their unique numbers differ. */
+    /* The process number makes the unique numbers of two boards with the same address differ. */
     put32(&answer, 0x5EC02D);
     put32(&answer, (uint32_t)getpid());
     put32(&answer, board->address);

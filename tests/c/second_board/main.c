@@ -72,7 +72,7 @@ static int run(unsigned address)
             return fail("poll");
 
         /* Limits how far the finger moves before the host's next Command, and in one wake-up of the board. A real
-           finger does not wait. On a busy machine, however, both are delayed by more than any control loop
+           finger does not wait. On a busy machine, however, Commands and wake-ups are later than any control loop
            tolerates. */
         int64_t now = nanoseconds();
         int64_t motion = now - then < MOTION_MOST ? now - then : MOTION_MOST;

@@ -85,8 +85,9 @@ impl Desk<'_> {
         }
     }
 
-    /// Does one step until it passes, or until the person gives up. `failed` is called each time that the step does not
-    /// pass or stops with an error. It is not called if the step stops because nobody answers or the person leaves.
+    /// Does one step until it passes, or until the person gives up. `failed` is called each time that the step stops
+    /// with an error or ends without passing. If the step stops because nobody answers or the person leaves, `failed`
+    /// is not called.
     pub fn complete(
         &mut self,
         step: Step,

@@ -22,9 +22,10 @@ const SCALE: f64 = 0.05;
 /// A zero that differs by more than this is reported, N.
 const ZERO: f64 = 5.0;
 
-/// A mean count that is nearer than this to an end of the converter's range is at this end, counts.
+/// A mean count below this is at the lower end of the converter's range, counts.
 const AT_END: f64 = 0.5;
-/// A gauge at the upper end of the range has less noise than this, counts rms.
+/// A gauge is at the upper end of the converter's range if its mean count is nearer than this to the end, counts, and
+/// its noise is smaller than this, counts rms.
 const QUIET: f64 = 0.01;
 /// The usual resolutions of converters, bits.
 const BITS: std::ops::RangeInclusive<u32> = 8..=16;

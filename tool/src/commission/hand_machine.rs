@@ -53,7 +53,7 @@ impl HandMachine {
         let found = with_progress(hand, finger, task, "turning the motors");
         let calibrated = hand.calibrated(finger)?;
         let found = found.map_err(refused)?;
-        // The port of the open hand is the one at which its board was found.
+        // `calibrated` has the port at which the board was found. The configuration keeps its own port.
         let configured = &mut self.configuration.fingers[self.finger.index()];
         *configured = ConfiguredFinger { port: configured.port.clone(), ..calibrated };
         Ok(found)

@@ -90,7 +90,7 @@ pub enum Answer {
     Cannot,
 }
 
-/// Why a commissioning ends although no step and no part of the system has failed at that moment.
+/// How a commissioning ends because of the person, and not because of an error.
 #[derive(Debug)]
 pub enum NoAnswer {
     /// The person leaves.

@@ -14,10 +14,11 @@ pub const REAL_JOINT_STEP: f64 = 0.0524;
 /// Largest motion of a fingertip in one command to a real finger, cm.
 pub const REAL_TIP_STEP: f64 = 0.3;
 
-/// Angles of an open finger, degrees: the tips are some 9 cm apart.
+/// Angles of an open finger, degrees: in the default hand, the tips of fingers 1 and 2 are 9.2 cm from that of finger 3
+/// along y of the palm.
 const OPEN_DEGREES: [f64; 3] = [0.0, -25.0, 40.0];
 
-/// Angles of a closed finger, degrees: the tips meet in the middle of the palm.
+/// Angles of a closed finger, degrees: in the default hand, all tips are at y = 0 of the palm.
 const CLOSED_DEGREES: [f64; 3] = [0.0, 5.0, 45.0];
 
 /// A command. In JSON its name is in the key `command`: `{"command": "push", "finger": 1, "force": [0, 0, -1]}`.

@@ -15,7 +15,7 @@ pub struct Stopper {
 impl Stopper {
     /// Stops all fingers at once, and drops the commands that are still waiting.
     pub fn stop(&self) {
-        // The number rises first. In the reverse order, a recovery that begins between the two statements would answer
+        // The number rises first. In the reverse order, a recovery that begins between the two statements would cancel
         // the stop and move the finger again.
         self.stops.fetch_add(1, Ordering::SeqCst);
         sun2xp::stop_all();

@@ -65,7 +65,7 @@ pub fn draw(frame: &mut Frame, view: &View, palette: &Palette) {
 }
 
 fn draw_hand(frame: &mut Frame, area: Rect, view: &View, palette: &Palette, hand: &HandState, time: u64) {
-    // Faults come first: their texts are never cut off.
+    // Faults get their height first. Their texts scroll if they do not fit.
     let faults = faults::lines(palette, hand, area.width.into());
     let least = if area.height > 12 { 5 } else { 0 };
     let fault_height = (faults.len() as u16).min(area.height - least);

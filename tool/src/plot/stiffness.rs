@@ -89,7 +89,7 @@ impl Plot for Stiffness {
         };
         let legend = [
             (Sign::Line(SENT), "stiffness as it was sent".into()),
-            (Sign::Line(IN_FORCE), format!("in force, scale {scale:.2}")),
+            (Sign::Line(IN_FORCE), format!("stiffness in force, scale {scale:.2}")),
             (Sign::Line(FORCE), "force of the tip at the end".into()),
             (Sign::Line(FORCES), "before".into()),
         ];
@@ -102,8 +102,8 @@ impl Plot for Stiffness {
 }
 
 /// The outline, in the plane of two axes, of the forces K u for all deflections u of 1 cm. The forces form an
-/// ellipsoid, and its projection onto the plane is an ellipse. If A is the two rows of K, the ellipse has the matrix
-/// A A^T.
+/// ellipsoid, and its projection onto the plane is an ellipse. If the matrix A consists of the rows of K for these two
+/// axes, the ellipse has the matrix A A^T.
 fn ellipse(stiffness: &Matrix3<f64>, i: usize, j: usize) -> Vec<[f64; 2]> {
     let (one, other) = (stiffness.row(i), stiffness.row(j));
     let (a, b, c) = (one.dot(&one), one.dot(&other), other.dot(&other));

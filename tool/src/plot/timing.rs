@@ -9,7 +9,7 @@ use super::{Plot, Selection};
 use crate::failure::Failure;
 use crate::trace::Item;
 
-/// The curves of the fingers. Each finger also has another width, so that equal curves do not hide each other.
+/// The curves of the fingers. Each finger also has its own width, so that equal curves do not hide each other.
 const CURVES: [Stroke; 3] = [Stroke::solid(BLUE, 3.0), Stroke::solid(VERMILION, 2.0), Stroke::solid(GREEN, 1.2)];
 
 const PERIOD: Stroke = Stroke { dashes: Some("2 3"), ..Stroke::solid(SOFT_INK, 1.4) };

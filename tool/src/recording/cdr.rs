@@ -15,7 +15,8 @@ const HEADER: [u8; 4] = [0, 1, 0, 0];
 pub fn encode(sample: &Sample, bytes: &mut Vec<u8>) {
     bytes.clear();
     bytes.extend_from_slice(&HEADER);
-    // All numbers have eight bytes, and the fields begin at a multiple of eight, so no field needs to be aligned.
+    // The fields begin at a multiple of eight. Numbers of eight bytes come first, and the four single bytes after them
+    // align the length of the string. So no field needs padding.
     for number in [sample.cycle, sample.began] {
         bytes.extend_from_slice(&number.to_le_bytes());
     }

@@ -22,7 +22,7 @@ const LARGEST_RECORD: usize = 64 << 20;
 const MOST_CHANNELS: usize = 1000;
 
 /// An open recording. It is an iterator over the entries, in the order in which they were recorded. The cycles of a
-/// finger are in their order. It needs little memory, however long the recording is.
+/// finger are in their order. Reading an MCAP file takes little memory, however long the file is.
 pub struct Recording {
     path: PathBuf,
     source: Source,
@@ -103,8 +103,8 @@ impl Recording {
         &self.description
     }
 
-    /// Returns whether the recorder has finished the file. The result is false until the last entry has been read, and
-    /// stays false if the recorder was killed.
+    /// Returns whether the recorder has finished the file. For an MCAP file, the result is false until the last entry
+    /// has been read, and stays false if the recorder was killed. For a black box, the result is always true.
     pub fn is_complete(&self) -> bool {
         self.complete
     }

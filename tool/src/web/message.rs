@@ -49,7 +49,7 @@ pub enum ToPage<'a> {
     Events { events: [EventMessage; 1] },
 }
 
-/// A hand. The page starts again with this message.
+/// A hand. The page starts again with this message, unless it already shows the hand with this identity.
 #[derive(Debug, Serialize)]
 pub struct HandMessage<'a> {
     /// Identifies the hand. It stays the same while the page is disconnected and connects again.

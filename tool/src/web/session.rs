@@ -28,7 +28,7 @@ const PING: Duration = Duration::from_secs(5);
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Request {
-    /// The page has shown a batch.
+    /// The page has received a batch.
     Received(Received),
     /// The page moves the hand.
     Command(Command),
@@ -41,7 +41,7 @@ struct Received {
     received: u64,
 }
 
-/// A page. It ends when the page leaves, breaks a rule or takes no more messages.
+/// The session of a page. It ends when the page leaves, breaks a rule or takes no more messages.
 pub struct Session {
     socket: WebSocket,
     hub: Arc<Hub>,

@@ -126,7 +126,7 @@ impl Outcomes {
     }
 }
 
-/// Replaces every number, and every value that contains numbers, by every value of [`INSTEAD`].
+/// Replaces every value, one at a time, by every value of [`INSTEAD`].
 fn alter_values(lines: &mut Lines, every: usize, outcomes: &mut Outcomes) {
     let mut turn = 0;
     for place in lines.places() {

@@ -1,7 +1,7 @@
 //! A damaged recording.
 
 /// Flips a bit in the middle of the chunk that is in the middle of a recording. Some bits between the chunks, and some
-/// bits of the headers of chunks, would not do: they have no checksum, because no reader needs them.
+/// bits of the headers of chunks, have no checksum, so a reader would not detect their change.
 pub fn damaged(file: &[u8]) -> Vec<u8> {
     let mut damaged = file.to_vec();
     // A record begins with its kind and its length.

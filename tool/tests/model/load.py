@@ -1,5 +1,6 @@
-"""Loads a model into MuJoCo. The standard input has poses and rates of the nine joints, in rad and rad/s, as JSON. Prints
-for each the positions of the three fingertips, m, the inertia matrix, kg m^2, and the torques of gravity and motion, N m."""
+"""Loads a model into MuJoCo. The standard input has poses and rates of the nine joints, in rad and rad/s, as JSON.
+Prints for each pose the positions of the three fingertips, m, the inertia matrix, kg m^2, and the torques of gravity
+and motion, N m."""
 
 import json
 import sys

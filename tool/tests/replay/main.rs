@@ -137,7 +137,7 @@ fn a_recording_without_an_end_is_replayed_and_a_damaged_one_is_refused() {
     let (status, told) = replayed_with(file.path(), &[]);
     assert!(status == Some(0) && told.contains("has no end"), "{told}");
 
-    // The check of the chunk finds one bit, and the last good cycle is named.
+    // The checksum of the chunk detects one altered bit, and the message names the last good cycle.
     std::fs::write(file.path(), damaged(&whole)).expect("written");
     let (status, told) = replayed_with(file.path(), &[]);
     assert!(status == Some(1) && told.contains("after cycle ") && told.lines().count() == 1, "{told}");

@@ -25,7 +25,7 @@ const DRAWN: &str = "return performance.getEntriesByName('the hand is drawn')[0]
 /// Time after which the first picture of the hand must be there, ms.
 const FIRST_PICTURE: f64 = 1000.0;
 
-/// Pictures a second.
+/// Least permitted number of pictures a second.
 const RATE: f64 = 30.0;
 
 /// Counts the pictures of three seconds, after one second for the page to settle. Returns their rate.

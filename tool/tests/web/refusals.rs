@@ -159,7 +159,7 @@ fn connections_that_never_complete_their_header_leave_room_for_pages() {
         });
         let page = panic::catch_unwind(|| Socket::open(program.address(), "/stream", &[]).is_ok());
         done.store(true, Ordering::Relaxed);
-        assert!(page.is_ok_and(|opened| opened), "a page opens while others dribble");
+        assert!(page.is_ok_and(|opened| opened), "a page opens while other connections are slow");
     });
 }
 

@@ -33,8 +33,8 @@ _CONDITIONS = {"applied": 0, "arrived": _messages.ARRIVED, "settled": _messages.
 class RemoteHand(Reading):
     """A hand that `sun2xp serve` offers, from `sun2xp.remote.open` or `Network.open`.
 
-    The calls have the names of `sun2xp.Hand`. Calls that send something return at once: a thread sends a target every
-    20 ms, and each new set point without delay. If the server refuses a set point, the next call that sends to this
+    The calls have the names of `sun2xp.Hand`. Calls that send something do so without delay and return at once. A
+    thread repeats the newest target every 20 ms. If the server refuses a set point, the next call that sends to this
     finger or waits for it raises Refused with the reason. The fingers keep the set points that they had.
 
     If this process ends, is stopped or loses the line, the server holds the fingers after 0.1 s and brings them to
@@ -215,7 +215,7 @@ class RemoteHand(Reading):
         self._request("stop", finger or 0)
 
     def zero(self, finger: int) -> None:
-        """Zeros gauges and encoders of a finger. Its joints may move between their stops. It takes up to ten minutes.
+        """Zeros gauges and encoders of a finger. Its joints may move between their stops. Waits up to ten minutes.
 
         Raises:
             Error: the calibration failed. The previous one is in force.
@@ -239,8 +239,8 @@ class RemoteHand(Reading):
             raise Fault(text, number=ErrorNumber.FAULTED, finger=finger, fault=number, remedy="hand.recover(finger)")
 
     def _stopped(self, finger: int) -> Tuple[int, int]:
-        """Returns the finger that an Answer means, and the number of its fault. 0 for the finger: the first finger that
-        has stopped. A number that is not known is 0."""
+        """Returns the finger that an Answer concerns, and the number of its fault, or 0 if the fault is not known. If
+        `finger` is 0, the Answer concerns the first finger that has stopped."""
         try:
             fingers = self._ask_status().fingers
         except NoAnswer:

@@ -179,7 +179,8 @@ class Sender:
                 owner.publish(sent)
 
     def leave(self) -> None:
-        """Ends all Targets in a child of `os.fork`, which has no thread. The thread may have had the lock."""
+        """Ends all Targets in a child of `os.fork`. The child does not have the thread, which may have held the lock at
+        the fork."""
         self.lock, self._thread = threading.RLock(), None
         for owner in self._owners:
             owner.end()

@@ -12,7 +12,7 @@ from .._types import Array, SetPoint
 from ._messages import JOINTS, MOST_POSES, NO_PLACE, PATH, TIP, Part
 from ._types import FingerStatus
 
-#: A limit that is sent as `float32` may be rounded beyond the limit. The hand takes it.
+#: Largest excess over a limit that counts as rounding to `float32`, relative to the limit. The hand accepts it too.
 _ROUNDING = float(numpy.finfo(numpy.float32).eps)
 
 #: The asymmetry of Kx that counts as rounding, relative to its largest entry. The hand has the same tolerance.
@@ -24,8 +24,8 @@ def group(set_points: Sequence[SetPoint], fingers: Dict[int, FingerStatus]) -> L
 
     Raises:
         Refused: no set point, a set point that changes nothing, a wrong shape, a number that is not finite, a joint
-            angle outside its limits, a Kx that is not symmetric or above the finger's bound, both a position and a tip
-            for one finger, or two set points for one finger.
+            angle outside its limits, an asymmetric Kx, a Kx above the finger's bound, both a position and a tip for one
+            finger, or two set points for one finger.
     """
     numbers = [set_point.finger for set_point in set_points]
     if not numbers or len(set(numbers)) < len(numbers):
@@ -56,7 +56,8 @@ def path(
     """Returns the Part that sends a path. Its command number is not set.
 
     Raises:
-        Refused: a wrong shape, times that are not above 0 or do not rise, or joint angles outside their limits.
+        Refused: a wrong shape or number of poses, a time of 0 or less, times that do not rise, or joint angles outside
+            their limits.
     """
     instants = _array("times", times, (None,))
     count = len(instants)

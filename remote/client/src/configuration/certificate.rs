@@ -16,7 +16,7 @@ pub fn client_of(tls: &RemoteTls, given: Option<&ClientName>) -> Result<ClientNa
     let key = read(&tls.key, "remote.tls.key")?;
     let begins = String::from_utf8_lossy(&key);
     if !begins.contains("PRIVATE KEY-----") {
-        return Err(wrong(&tls.key, "remote.tls.key is not a private key in PEM: name the file NAME.key".into()));
+        return Err(wrong(&tls.key, "remote.tls.key is not a private key in PEM: give the path of a .key file".into()));
     }
     match given {
         Some(given) if *given != name => Err(wrong(
@@ -38,7 +38,7 @@ fn with_certificate<T>(
 ) -> Result<T, RemoteError> {
     let bytes = read(path, key)?;
     let parsed: Result<(_, Pem), _> = parse_x509_pem(&bytes);
-    let not_one = || wrong(path, format!("{key} is not a certificate in PEM: name the file NAME.pem"));
+    let not_one = || wrong(path, format!("{key} is not a certificate in PEM: give the path of a .pem file"));
     let (_, pem) = parsed.map_err(|_| not_one())?;
     let certificate = pem.parse_x509().map_err(|_| not_one())?;
     let validity = certificate.validity();

@@ -38,7 +38,8 @@ impl Exchange {
         Ok(record)
     }
 
-    /// What a finger has done since the newest command. Refuses as [`Exchange::admit`] does.
+    /// What a finger has done since the newest command. Refuses if no command could be sent to the finger now, or if
+    /// its newest record is too old.
     pub fn progress(&mut self, number: i32, now: u64) -> Result<RemoteProgress, RemoteError> {
         let finger = self.finger(number)?;
         self.refuse_unless_ready(now, [finger])?;

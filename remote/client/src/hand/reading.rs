@@ -45,7 +45,8 @@ impl RemoteHand {
     /// The newest cycle of finger 1, 2 or 3, whether the finger has stopped or not.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger, or if the cycle is older than `stale_ms`.
+    /// Returns an error if there is no such finger, or if the cycle is older than `stale_ms`. For a finger that has
+    /// stopped, the age of the newest State counts.
     pub fn record(&self, finger: i32) -> Result<Record, RemoteError> {
         self.link.shared.lock().record(finger, now()).copied()
     }

@@ -46,9 +46,9 @@ impl RemoteHand {
         self.send_group(&[FingerCommand::new(finger).damping(ratio)])
     }
 
-    /// Sends a path to finger 1, 2 or 3: 1 to 32 poses with rising times, s, from the moment in which the hand takes
-    /// the path. The hand checks the path as a whole; a later call reports a refusal. A Kx or damping that is sent
-    /// right after a path waits until the hand has confirmed the path.
+    /// Sends a path to finger 1, 2 or 3: 1 to 32 poses with rising times, s. The times count from the moment at which
+    /// the hand takes the path. The hand checks the path as a whole; a later call reports a refusal. A Kx or damping
+    /// that is sent right after a path waits until the hand has confirmed the path.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if the finger is not running, if the number of poses, a time or an

@@ -7,14 +7,15 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 use sun2xp_remote_protocol::{Action, Answer, Code, Finger, Request};
 
-/// The time in which the server answers most requests. Recovering takes up the slack of tendons.
+/// Longest wait for the Answer to most requests. A recovery can take seconds, because it takes up
+/// the slack of tendons.
 const ANSWER: Duration = Duration::from_secs(30);
 
-/// The time in which the server answers a release or a stop. A planner that closes the hand must not wait longer if the
-/// line is cut.
+/// Longest wait for the Answer to a release or a stop. A planner that closes the hand must not wait longer if the line
+/// is cut.
 const QUICK_ANSWER: Duration = Duration::from_secs(3);
 
-/// The time in which a calibration ends. The protocol says ten minutes.
+/// Longest wait for the end of a calibration. By the protocol, it takes up to ten minutes.
 const CALIBRATION: Duration = Duration::from_secs(610);
 
 /// Attempts of a get that reaches nobody, and the pause between them. Just after a client has connected, Zenoh may not
@@ -59,7 +60,7 @@ impl Link {
         }
     }
 
-    /// The error for an Answer that this client does not own the hand.
+    /// The error for an Answer that says that this client does not own the hand.
     fn not_owner(&self, answer: Answer) -> RemoteError {
         match self.shared.lock().outbox.ownership() {
             Err(loss) => RemoteError::NotOwner { hand: self.configuration.hand.clone(), loss },

@@ -26,7 +26,7 @@ pub struct FakeHand {
     pub events: Vec<Event>,
     /// Number of Requests that get no answer, as if they had reached nobody.
     pub unanswered: usize,
-    /// The time after which such a Request ends.
+    /// The time after which a Request without an answer ends.
     pub unanswered_after: Duration,
     /// Number of gets of the Status that get no reply.
     pub unanswered_status: usize,

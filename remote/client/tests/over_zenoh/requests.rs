@@ -1,4 +1,4 @@
-//! Requests whose answers are lost, and what they leave as it is.
+//! Requests whose answers are lost, and an acquire that recovers no finger.
 
 use crate::server::{FakeServer, configuration, free_port, until};
 use std::time::Duration;

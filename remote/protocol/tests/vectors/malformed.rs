@@ -7,7 +7,7 @@ use crate::examples::{
 use crate::json::{hex, object, text};
 use sun2xp_remote_protocol::{Action, Code, Place, Status};
 
-/// The offset at which the parts of a Target, the records of a State and the records of a Status begin.
+/// The offsets at which the parts of a Target, the records of a State and the records of a Status begin.
 const PART: usize = 40;
 const RECORD: usize = 32;
 const FINGER: usize = 112;

@@ -228,7 +228,7 @@ impl World {
         }
     }
 
-    /// True joint angles minus the controller's, rad.
+    /// Largest difference between the true joint angles and those of the controller, rad.
     pub fn joint_error(&self) -> f64 {
         (self.plant.joints() - self.report.joints).amax()
     }

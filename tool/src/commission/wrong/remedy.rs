@@ -11,8 +11,8 @@ impl Wrong {
         match self {
             Self::EmergencyStop => "Release it, and reset the safety relay".into(),
             Self::EmergencyStopUnseen => {
-                "The contact of the stop is not wired to the board, or its input is inverted. Without it the library \
-                 does not know that the motors have no power"
+                "The contact of the stop is not wired to the board, or its input is inverted. Without this signal \
+                 the library does not know that the motors have no power"
                     .into()
             }
             Self::Supply => "Switch the supply on, and check the wire of its DC-OK output".into(),
@@ -113,7 +113,7 @@ impl Wrong {
             }
             Self::TendonTension(tendon, _) => format!("Look for friction in the path of tendon {tendon}"),
             Self::SpringStiffness(..) => "Do the step tendons again, and push along one direction only".into(),
-            Self::SpringReturn(_) => "That is friction. docs/tuning.md says how to live with it".into(),
+            Self::SpringReturn(_) => "The cause is friction. docs/tuning.md says how to compensate for it".into(),
             Self::InitialLowered(..) => {
                 "stiffness.initial is lowered to the bound. sun2xp bound shows the bound of each plant, and what \
                  limits it"

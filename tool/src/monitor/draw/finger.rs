@@ -159,7 +159,7 @@ fn scales(palette: &Palette, sample: &Sample, width: usize) -> Line<'static> {
     ])
 }
 
-/// The force at the tip in the last 20 s.
+/// The recent force at the tip. Each column shows 0.1 s, and the history has at most 20 s.
 fn history(palette: &Palette, finger: &FingerState, width: usize) -> Line<'static> {
     let room = width.saturating_sub(12);
     let recent: Vec<f64> = finger.force_history.iter().rev().take(room).rev().map(|&(_, force)| force).collect();

@@ -82,13 +82,14 @@ fn touch_takes_the_time_that_the_line_has_left() {
     // At 1100 Hz no time is left, so the servo sends no requests, and touch makes no cycle later.
     assert_eq!(touches(&hand, &[FingerNumber::TWO], &Sensor::default(), 1100.0), 0);
     assert_eq!(Fastest::of(&hand, &COSTS, &Sensor::default()).rate, Some(1454));
-    // 16 more bytes take 160 us. They leave no time for a request at 1000 Hz, and are 80 % of a period at 1126.8 Hz.
+    // 16 more bytes take 160 us. They leave no time for a request at 1000 Hz. The exchange then takes 710 us, which is
+    // 80 % of a period at 1126.8 Hz.
     let sensor = Sensor { bytes: 16, compute: 0.0 };
     assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &sensor)[1].limit, None);
     assert_eq!(Fastest::of(&hand, &COSTS, &sensor).rate, Some(1126));
 }
 
-/// Such costs exceed the range of the nanoseconds, and must not become short times.
+/// Times that exceed the range of the nanoseconds must not become short times.
 #[test]
 fn endless_costs_have_no_schedule() {
     let hand = Configuration::default();
