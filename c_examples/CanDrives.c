@@ -81,7 +81,10 @@ int main(int count, char **arguments)
     int numbers[4], identifier, finger;
 
     if (count != 2 || can_open(&bus, arguments[1], 0) != 0) {
-        perror(count == 2 ? arguments[1] : "usage: CanDrives INTERFACE | FOLDER");
+        if (count == 2)
+            perror(arguments[1]);
+        else
+            fprintf(stderr, "usage: CanDrives INTERFACE | FOLDER\n");
         return 1;
     }
     for (finger = 0; finger < 3; finger++)

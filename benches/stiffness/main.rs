@@ -69,7 +69,7 @@ struct Arguments {
     #[arg(long)]
     identified: bool,
     /// With --truths: number of seeds.
-    #[arg(long, default_value_t = 8)]
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..))]
     seeds: u64,
     /// With --truths: instead of the table, measures whether each finger comes to rest at both ends of the range of
     /// damping ratios that SendDamping admits.

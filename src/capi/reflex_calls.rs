@@ -151,7 +151,7 @@ pub unsafe extern "C" fn sun2xp_install_reflex(
     let status = guarded("sun2xp_install_reflex", hand, || {
         // SAFETY: by the contract in the manual, `reflex` is null or points to as many bytes as its first member gives.
         let rule = unsafe { SizedStruct::new(reflex, "reflex") }?;
-        hand_table::with(hand, |hand| -> Result<(), Refusal> {
+        hand_table::command(hand, |hand| -> Result<(), Refusal> {
             rule.check()?;
             // SAFETY: the size is right, as checked above, and there is a first struct.
             let rule = unsafe { rule.load(0) };

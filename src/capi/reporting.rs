@@ -13,7 +13,7 @@ use std::fmt::{self, Display, Formatter};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Number of kinds of refusals for which memory is reserved.
-const KINDS: usize = 64;
+const KINDS: usize = 128;
 
 static PRINT: AtomicBool = AtomicBool::new(true);
 static PRINTED: Mutex<Vec<Kind>> = Mutex::new(Vec::new());

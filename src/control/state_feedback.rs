@@ -10,8 +10,10 @@ pub(super) mod decision;
 mod dither;
 mod dither_burst;
 mod friction_feed_forward;
+mod matrix_exponential;
 mod numbers;
 mod observer;
+mod periodic_disturbance;
 mod pulley_feed_forward;
 mod reference;
 mod tension_dither;
@@ -26,6 +28,7 @@ use crate::control::state_feedback::damping_design::DampingDesign;
 use crate::control::state_feedback::dither::{Dither, DitherState};
 use crate::control::state_feedback::friction_feed_forward::FrictionFeedForward;
 use crate::control::state_feedback::observer::{TendonEstimate, TendonMotion, TendonObserver};
+use crate::control::state_feedback::periodic_disturbance::{PeriodicDisturbance, PeriodicDisturbanceState};
 use crate::control::state_feedback::pulley_feed_forward::PulleyFeedForward;
 use crate::control::state_feedback::reference::{Reference, ReferenceMotion, ReferenceState};
 use crate::control::state_feedback::tension_dither::{TensionDither, TensionDitherState};
@@ -52,6 +55,7 @@ pub(super) struct StateFeedback {
     slew: Slew,
     dither: Dither,
     tension_dither: TensionDither,
+    periodic_disturbance: PeriodicDisturbance,
     friction: FrictionFeedForward,
     pulleys: Option<PulleyFeedForward>,
     /// R, m.
@@ -121,6 +125,8 @@ pub(super) struct StateFeedbackState {
     drift: Vector3<f64>,
     dither: DitherState,
     tension_dither: TensionDitherState,
+    #[serde(default)]
+    periodic_disturbance: PeriodicDisturbanceState,
     /// Estimated joint angles at the newest sample, rad.
     pub joints: Vector3<f64>,
     /// Estimated joint rates, predicted for `sample_offset` relative to the next sample, rad/s.
@@ -145,6 +151,7 @@ impl StateFeedback {
             drift: Vector3::zeros(),
             dither: self.dither.start(),
             tension_dither: self.tension_dither.start(),
+            periodic_disturbance: PeriodicDisturbanceState::default(),
             joints,
             joint_rates: Vector3::zeros(),
         }

@@ -41,8 +41,8 @@ impl Hand {
         check_finite(&member.admission.read(), reflex.reaction)?;
         let condition = self.condition(finger, reflex.condition)?;
         within(finger, "priority", priority.into(), 0.0, u8::MAX.into(), "")?;
-        within(finger, "refractory time", reflex.refractory, 0.0, LONGEST, "s")?;
-        within(finger, "inhibition", reflex.inhibition, 0.0, LONGEST, "s")?;
+        within(finger, "refractory time", reflex.refractory, 0.0, LONGEST, " s")?;
+        within(finger, "inhibition", reflex.inhibition, 0.0, LONGEST, " s")?;
         let reaction = reaction(&member.admission.read(), reflex.reaction)?;
         let installed = member.reflexes.install(Reflex { condition, reaction, priority: priority as u8, ..reflex });
         Ok(installed.ok_or(ReflexError::TooMany(finger))?)
@@ -78,18 +78,18 @@ impl Hand {
                     return Err(ReflexError::OwnFinger(finger).into());
                 }
             }
-            Condition::ForceAbove(force) => within(finger, "force", force, 0.0, STRONGEST, "N")?,
+            Condition::ForceAbove(force) => within(finger, "force", force, 0.0, STRONGEST, " N")?,
             Condition::TensionAbove(tension) | Condition::TensionBelow(tension) => {
-                within(finger, "tension", tension, 0.0, STRONGEST, "N")?;
+                within(finger, "tension", tension, 0.0, STRONGEST, " N")?;
             }
             Condition::JointAbove { joint, angle } | Condition::JointBelow { joint, angle } => {
                 if joint > 2 {
                     return Err(ReflexError::NoSuchJoint { finger, joint }.into());
                 }
-                within(finger, "angle", angle, -WIDEST, WIDEST, "rad")?;
+                within(finger, "angle", angle, -WIDEST, WIDEST, " rad")?;
             }
             Condition::LinkLost(time) | Condition::PlannerSilent(time) => {
-                within(finger, "time", time, 0.0, LONGEST, "s")?;
+                within(finger, "time", time, 0.0, LONGEST, " s")?;
             }
             Condition::Event(_) => {}
         }
@@ -115,8 +115,8 @@ fn reaction(admission: &Admission, reaction: Reaction) -> Result<Reaction, HandE
         Reaction::Retract(joints) => Reaction::Retract(admission.joints(joints.into())?),
         Reaction::Soften(kx) => Reaction::Soften(admission.kx(rows(&kx))?),
         Reaction::Grip { by, most, .. } => {
-            within(finger, "increase of the force", by, 0.0, STRONGEST, "N")?;
-            within(finger, "largest force", most, 0.0, STRONGEST, "N")?;
+            within(finger, "increase of the force", by, 0.0, STRONGEST, " N")?;
+            within(finger, "largest force", most, 0.0, STRONGEST, " N")?;
             reaction
         }
         Reaction::Damp(ratio) => {

@@ -92,8 +92,8 @@ fn finish(threads: &[PeriodicThread], done: &[Option<u64>], own: usize, alone: u
     let mut time = alone;
     for (other, done) in threads.iter().zip(done).enumerate().filter(|(index, _)| *index != own).map(|(_, pair)| pair) {
         if thread.waits_for(other) && other.computing() > 0 {
-            let cycles = (window + (*done)? - other.computing()).div_ceil(other.period);
-            time += cycles * other.computing();
+            let cycles = (window.saturating_add((*done)?) - other.computing()).div_ceil(other.period);
+            time = time.saturating_add(cycles.saturating_mul(other.computing()));
         }
     }
     within(thread, time)

@@ -1,7 +1,7 @@
 //! The requests outside the servo's cycle. They are repeated until the board answers. Only [`Link::stop`] sends its
 //! request once.
 
-use super::{Allowance, Link};
+use super::{Allowance, Link, LinkCounters};
 use crate::board::link_error::LinkError;
 use crate::board::protocol::{
     ANY_ADDRESS, Configure, Configured, Frame, HIGHEST_ADDRESS, Hello, Identity, Kind, MAX_WIRE, Message, Reason,
@@ -97,13 +97,7 @@ impl<T: Transport> Link<T> {
                 _ => {}
             }
         }
-        let after = self.counters();
-        Err(match after.bytes == before.bytes {
-            true => LinkError::Silent { milliseconds: self.transport.now().saturating_sub(began) / 1_000_000 },
-            false => {
-                LinkError::Unintelligible { bytes: after.bytes - before.bytes, damaged: after.damaged - before.damaged }
-            }
-        })
+        Err(self.unidentified(ANY_ADDRESS, &before, began))
     }
 
     fn identify(&mut self, address: u8, deadline: u64) -> Result<Identity, LinkError> {
@@ -133,14 +127,20 @@ impl<T: Transport> Link<T> {
                 _ => {}
             }
         }
+        Err(self.unidentified(address, &before, began))
+    }
+
+    /// Returns why no identity arrived from this address since `began` (ns on the transport's clock), when the counters
+    /// had the values `before`.
+    fn unidentified(&self, address: u8, before: &LinkCounters, began: u64) -> LinkError {
         let after = self.counters();
-        Err(if after.bytes == before.bytes {
+        if after.bytes == before.bytes {
             LinkError::Silent { milliseconds: self.transport.now().saturating_sub(began) / 1_000_000 }
         } else if after.frames == before.frames {
             LinkError::Unintelligible { bytes: after.bytes - before.bytes, damaged: after.damaged - before.damaged }
         } else {
             LinkError::Unanswered { address, request: Kind::Hello }
-        })
+        }
     }
 
     fn configure(&mut self, address: u8, configure: Configure, deadline: u64) -> Result<Configured, LinkError> {

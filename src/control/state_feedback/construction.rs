@@ -11,6 +11,7 @@ use crate::control::state_feedback::dither::Dither;
 use crate::control::state_feedback::dither_burst::DitherBurst;
 use crate::control::state_feedback::friction_feed_forward::FrictionFeedForward;
 use crate::control::state_feedback::observer::{ElasticTendon, ObserverDesign, TendonObserver};
+use crate::control::state_feedback::periodic_disturbance::PeriodicDisturbance;
 use crate::control::state_feedback::pulley_feed_forward::PulleyFeedForward;
 use crate::control::state_feedback::reference::Reference;
 use crate::control::state_feedback::tension_dither::TensionDither;
@@ -137,19 +138,17 @@ fn damping_design(numbers: &Numbers, relative_damping: f64, stiffness: f64) -> D
     }
 }
 
-/// Returns the dither of the tensions. `lower_reserve` is the distance of the tensions from t_min without this dither,
-/// and `highest` is the largest tension of each tendon, N.
+/// Returns the dither of the tensions. `lowest` is the lowest tension in a burst, and `highest` is the largest tension
+/// of each tendon, N.
 fn tension_dither(
     finger: &ConfiguredFinger,
     numbers: &Numbers,
     tendons: &Tendons,
-    (lower_reserve, highest): (f64, Vector4<f64>),
+    (lowest, highest): (f64, Vector4<f64>),
     rate: f64,
 ) -> TensionDither {
     let (pulley, minimum) = (Vector4::from(finger.friction.pulley), finger.tendon.minimum);
     let pretension = tendons.pretension(minimum);
-    // A burst is short. So the desired tensions stay above t_min in it, but without a distance for the noise.
-    let lowest = minimum + lower_reserve - NOISE_RESERVE * GAUGE_NOISE;
     let burst = DitherBurst::new(&(tendons.r.abs() * pretension), rate);
     TensionDither::new(pretension.normalize(), numbers, (&pulley, burst), (lowest, highest), minimum, rate)
 }
@@ -176,21 +175,27 @@ impl StateFeedback {
         let shaken = joint_coulomb * numbers.dither;
         let apparent_motors = drives.apparent_inertia(numbers, &r);
         let friction = MotorFriction::new(finger, tendons);
-        let lower_reserve = (pseudo_inverse.abs() * shaken).max() + NOISE_RESERVE * GAUGE_NOISE;
+        let shaking = (pseudo_inverse.abs() * shaken).max();
+        let lower_reserve = shaking + NOISE_RESERVE * GAUGE_NOISE;
         let upper_reserve =
             Vector4::from_fn(|motor, _| lower_reserve + FRICTION_RESERVE * friction.at(motor, maximum[motor]));
         let common = tendons.pretension(1.0).normalize();
         let highest = maximum - upper_reserve;
-        let tension_dither = tension_dither(finger, numbers, tendons, (lower_reserve, highest), rate);
+        // A burst is short. So the desired tensions stay above t_min in it, but without a distance for the noise.
+        let lowest = finger.tendon.minimum + shaking;
+        let tension_dither = tension_dither(finger, numbers, tendons, (lowest, highest), rate);
+        let dither = Dither::new(shaken, numbers.dither_frequency, rate);
+        let observers = drives.observers(finger, numbers, rate)?;
         Ok(Self {
             period: 1.0 / rate,
-            observers: drives.observers(finger, numbers, rate)?,
+            periodic_disturbance: PeriodicDisturbance::new(&observers, dither.frequency, rate),
+            observers,
             joint_stiffness: JointStiffness::new(finger.links(), 0.0),
             dynamics,
             damping: damping_design(numbers, relative_damping, drives.stiffness.mean()),
             reference: Reference::new(numbers.reference_time, rate),
             slew: Slew::new(set_point_speed, rate),
-            dither: Dither::new(shaken, numbers.dither_frequency, rate),
+            dither,
             lower_reserve: lower_reserve + tension_dither.reserve(finger.tendon.minimum + lower_reserve, &highest),
             upper_reserve,
             tension_dither,

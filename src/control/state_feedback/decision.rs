@@ -60,7 +60,10 @@ impl StateFeedback {
         if begins {
             self.begin_without_deflection(state);
         }
-        let now = self.at_next_sample(state);
+        let mut now = self.at_next_sample(state);
+        if begins {
+            state.periodic_disturbance = self.periodic_disturbance.start(&now.disturbances);
+        }
         let reference = self.follow(state, &spring.joints, motion);
         let inertia = self.dynamics.inertia_at(&state.joints, pose);
         let (sprung, torques) =
@@ -72,6 +75,9 @@ impl StateFeedback {
             state.transition.begin(&now.tensions, &distributed);
         }
         let shake = self.shake(state, (&distributed, &now.tensions), (&reference.rates, &sprung));
+        let phase = self.dither.phase(&state.dither);
+        now.disturbances +=
+            self.periodic_disturbance.advance(&mut state.periodic_disturbance, &now.disturbances, &phase);
         let desired_tensions = distributed + shake.tensions;
         let error = desired_tensions + state.transition.advance(self.period) - now.tensions;
         let against_friction = self.friction.pulls(&now.motor_speeds, &now.tensions);

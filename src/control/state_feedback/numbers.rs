@@ -203,7 +203,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
             common_damping: 0.266,
             damped_inertia: 10.2,
             reference_time: 0.008,
-            dither_burst: 0.3,
+            dither_burst: 0.35,
         },
     ),
     (
@@ -220,7 +220,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
             common_damping: 0.184,
             damped_inertia: 9.03,
             reference_time: 0.008,
-            dither_burst: 0.3,
+            dither_burst: 0.35,
         },
     ),
 ];

@@ -1,6 +1,7 @@
 //! Observer of one tendon. It estimates what encoder and gauge do not measure: the speeds of motor side and joint side,
 //! and the disturbance of the motor.
 
+use super::matrix_exponential::exponential;
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Matrix6x2, Vector2, Vector6};
 use serde::{Deserialize, Serialize};
 
@@ -98,7 +99,7 @@ impl TendonObserver {
         rates[(1, 4)] = 1.0 / mass;
         let (transition, integral) = exponential(&rates, period);
         let (half, _) = exponential(&rates, period / 2.0);
-        let measured = Matrix2x6::new(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, stiffness, 0.0, -stiffness, 0.0, 0.0, 0.0);
+        let measured = measured(stiffness);
 
         // A uniform distribution has the variance width^2 / 12.
         let encoder = design.encoder_step.powi(2) / 12.0;
@@ -203,30 +204,20 @@ impl TendonObserver {
         estimate.x[2]
     }
 
+    /// Returns 1 - K C and A. The error of a prediction times 1 - K C is the error of the corrected estimate, and the
+    /// error of the estimate times A is the error of the next prediction.
+    pub fn error_transition(&self) -> (Matrix6<f64>, Matrix6<f64>) {
+        (Matrix6::identity() - self.gain * measured(self.tendon.stiffness), self.transition)
+    }
+
     fn tension(&self, x: &Vector6<f64>) -> f64 {
         self.tendon.home + self.tendon.stiffness * (x[0] - x[2])
     }
 }
 
-/// Returns e^(A T) and the integral of e^(A s) over s from 0 to T. The Taylor series is computed for a part of T that
-/// is short compared with the fastest motion in A. That part is then doubled until it is T.
-fn exponential(rates: &Matrix6<f64>, time: f64) -> (Matrix6<f64>, Matrix6<f64>) {
-    // The fastest motion is the motor on its tendon: A(1, 0) = - omega^2.
-    let turns = time * rates[(1, 0)].abs().sqrt();
-    let doublings = (turns * 16.0).log2().ceil().clamp(6.0, 60.0) as i32;
-    let part = time * 0.5f64.powi(doublings);
-    let (mut whole, mut integral) = (Matrix6::identity(), Matrix6::identity() * part);
-    let mut term = Matrix6::identity();
-    for order in 1..12 {
-        term = term * rates * (part / f64::from(order));
-        whole += term;
-        integral += term * (part / f64::from(order + 1));
-    }
-    for _ in 0..doublings {
-        integral += whole * integral;
-        whole *= whole;
-    }
-    (whole, integral)
+/// Returns C, which converts a state to the measurements.
+fn measured(stiffness: f64) -> Matrix2x6<f64> {
+    Matrix2x6::new(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, stiffness, 0.0, -stiffness, 0.0, 0.0, 0.0)
 }
 
 /// Returns the inverse of a positive definite matrix. The measurement noise keeps its determinant above zero.

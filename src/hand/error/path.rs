@@ -100,7 +100,7 @@ pub enum PathError {
         value: f64,
         /// The configured limit.
         limit: f64,
-        /// The factor by which the whole path must be slower.
+        /// The factor by which the whole path must be slower, rounded up to 0.01.
         factor: f64,
     },
     /// A tip path cannot be followed exactly.

@@ -10,7 +10,8 @@ use thiserror::Error;
 pub enum ReflexError {
     /// A value of the rule is outside its range.
     #[error(
-        "the reflex for finger {finger} is refused: its {what} of {value:?} {unit} is not between {low} and {high}"
+        "the reflex for finger {finger} is refused: its {what} of {value:?}{unit} is not between {low} and {high}: \
+         choose a value in this range"
     )]
     Value {
         /// The finger.
@@ -23,7 +24,7 @@ pub enum ReflexError {
         low: f64,
         /// The largest permitted value.
         high: f64,
-        /// The unit.
+        /// The unit after a space, or nothing.
         unit: &'static str,
     },
     /// The finger has no such joint.

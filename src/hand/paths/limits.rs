@@ -70,6 +70,8 @@ impl Admission {
     pub(super) fn too_fast(&self, excess: &Excess, per_pose: usize) -> PathError {
         let &Excess { factor, piece, joint, quantity: index, value } = excess;
         let ((quantity, unit), limit) = (QUANTITIES[index], self.motion_limits.0[index]);
+        // The text gives the factor with two digits. The path must be admitted if the times are multiplied by it.
+        let factor = (factor * 100.0).ceil() / 100.0;
         PathError::TooFast { finger: self.finger, pose: piece / per_pose, joint, quantity, unit, value, limit, factor }
     }
 }

@@ -74,9 +74,10 @@ fn a_monitor_a_page_and_a_recorder_do_not_delay_the_servos() {
         let browser = Browser::start(1280, 800);
         browser.open(&page.url);
         let mut recorder = Command::new(TOOL);
-        recorder.args(["record", &name, "-o"]).arg(folder.path().join(format!("{turn}.mcap")));
+        recorder.args(["record", "--hand", &name, "-o"]).arg(folder.path().join(format!("{turn}.mcap")));
         let mut recorder = recorder.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts");
         watched.measure(&hand);
+        assert!(recorder.try_wait().is_ok_and(|ended| ended.is_none()), "the recorder has ended");
         recorder.kill().and_then(|()| recorder.wait()).expect("it ends");
         ratios.push(watched.p999[turn] / alone.p999[turn]);
     }
