@@ -1,5 +1,5 @@
 //! A servo and its simulated board on a machine that delays the servo, the board and the carrier of their bytes. The
-//! time is simulated.
+//! machine's clock is simulated too.
 
 #[allow(dead_code)]
 #[path = "common/finger_on_a_cable.rs"]
@@ -138,7 +138,7 @@ struct Rig {
 }
 
 impl Rig {
-    /// `open_timeout_ms` is the real time that the finger may take to come under tension.
+    /// `open_timeout_ms` is the time by the machine's clock that the finger may take to come under tension.
     fn new(seed: u64, open_timeout_ms: u32) -> Self {
         let mut configuration = Configuration::default();
         configuration.hand.open_timeout_ms = open_timeout_ms;
@@ -159,7 +159,7 @@ impl Rig {
         Self { world, finger }
     }
 
-    /// Runs cycles for the given real time.
+    /// Runs cycles for the given time by the machine's clock.
     fn run(&mut self, seconds: f64) {
         let end = self.world.borrow().now + (seconds * 1e9) as u64;
         while self.world.borrow().now < end {
@@ -167,7 +167,7 @@ impl Rig {
         }
     }
 
-    /// Runs cycles until the report is as wanted, for at most the given real time.
+    /// Runs cycles until the report is as wanted, for at most the given time by the machine's clock.
     fn run_until(&mut self, seconds: f64, wanted: impl Fn(&FingerReport) -> bool) {
         let end = self.world.borrow().now + (seconds * 1e9) as u64;
         while !wanted(&self.finger.mailbox.report()) && self.world.borrow().now < end {
@@ -192,7 +192,7 @@ fn a_simulated_finger_survives_a_machine_that_runs_nothing_in_time() {
             let mut rig = Rig::new(seed, 60_000);
             let start = rig.world.borrow_mut().pose();
             rig.world.borrow_mut().load = load;
-            // The finger's own time passes more slowly.
+            // The board's time passes more slowly than the machine's clock, so opening takes longer than without load.
             rig.run_until(60.0, |report| report.stage != Stage::Opening);
             let report = rig.finger.mailbox.report();
             assert_eq!(report.stage, Stage::Running, "{load:?}, {seed}: {report:?}");
@@ -211,7 +211,8 @@ fn a_simulated_finger_survives_a_machine_that_runs_nothing_in_time() {
     }
 }
 
-/// What sun2xp_status counts while the servo does not run, and what the servo counts when it runs again.
+/// While the servo does not run, sun2xp_status counts the missing periods. When the servo runs again, it counts the
+/// same number, or up to two more.
 #[test]
 fn skipped_periods_are_counted_before_the_servo_runs_again() {
     let mut rig = Rig::new(0, 60_000);
@@ -276,7 +277,7 @@ fn a_simulated_board_that_never_answers_again_faults_its_finger() {
 #[test]
 fn a_finger_that_an_overloaded_machine_keeps_from_opening_faults_at_the_time_out() {
     let mut rig = Rig::new(0, 1500);
-    // Either nothing is carried, or every wake-up is late.
+    // Either the carrier stops after its next run, or every wake-up is late.
     for load in [Load { carrier: 1e9, ..Load::default() }, Load { servo: 30.0, ..Load::default() }] {
         rig.world.borrow_mut().load = load;
         let begun = rig.world.borrow().now;

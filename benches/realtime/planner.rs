@@ -26,7 +26,7 @@ const KINDS: [(Planners, &str); 3] = [
     (Planners::Calling, "two threads that call"),
 ];
 
-/// Largest number of measurements that are repeated because a finger faulted.
+/// A failed measurement is repeated until this number of measurements has failed. Then no further one is made.
 const MOST_DISTURBED: usize = 10;
 
 /// Median and 99 % of the wake-up latency of a finger, us.

@@ -48,7 +48,7 @@ fn row(truth: &Truth, cases: &[Case]) -> String {
     format!("| {} | {} | {}{fault} |", truth.name, cells.collect::<Vec<_>>().join(" | "), faults.len())
 }
 
-/// Returns the motions at rest, cm rms, and the first fault.
+/// Returns the motion that remains 1 s after the tap for each stiffness and ratio, cm rms, and the first fault.
 fn at_pose(case: &Case, number: usize, pose: &Vector3<f64>, truth: &Truth) -> (Vec<f64>, Option<String>) {
     let belief = case.finger(pose, Friction::Default);
     let mut finger = belief.clone();

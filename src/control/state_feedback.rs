@@ -186,6 +186,9 @@ impl StateFeedback {
         if self.blind(state) {
             return;
         }
+        if was_blind {
+            state.periodic_disturbance = PeriodicDisturbanceState::default();
+        }
         let measured = measured.map(|measured| (self.travel(measured), measured.tensions));
         let travel_jerk = self.r.tr_mul(&state.jerk);
         for (tendon, observer) in self.observers.iter().enumerate() {

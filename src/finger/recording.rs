@@ -61,7 +61,7 @@ struct Header {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// The file cannot be read, or it is not a regular file of an acceptable size.
+    /// The file cannot be read, it is not a regular file of an acceptable size, or a line is too long.
     #[error("cannot read {0}: {1}")]
     Unreadable(String, io::Error),
     /// The file is not a black box.
@@ -80,7 +80,7 @@ pub enum RecordingError {
         /// Version of the library that wrote the file.
         library: String,
     },
-    /// A line cannot be parsed.
+    /// A line cannot be parsed, or its cycle number does not follow that of the previous line.
     #[error("{file}, line {line}: {reason}{}", written_by(library))]
     Line {
         /// The file.
@@ -128,8 +128,8 @@ impl Recording {
     /// Writes the recording to a file. An existing file stays unchanged until the new one is complete.
     ///
     /// # Errors
-    /// Returns the error that the system reports. Also returns an error if `path` leads to something other than a
-    /// regular file, such as a symbolic link.
+    /// Returns the error that the system reports. Also returns an error if `path` is a symbolic link, a folder or
+    /// anything else that is not a regular file.
     pub fn save(&self, path: &Path) -> io::Result<()> {
         replace_file(path, |output| self.write(output))
     }

@@ -102,8 +102,8 @@ impl InverseKinematics {
         let toward = if across < ON_THE_AXIS { open } else { tip.x.atan2(tip.z) };
         let away = half_turn(toward + PI);
         let [one, other] = match (self.elbows(across, tip.y), self.elbows(-across, tip.y)) {
-            // A finger that bends over its base spans a larger distance. It may reach a tip that is too near for the
-            // direct solution.
+            // In the direct solution, joint 0 points toward the tip. A finger that bends over its base spans a larger
+            // distance, so it may reach a tip that is too near for the direct solution.
             (Err(refusal), Err(_)) => return Err(refusal),
             (one, other) => [one.ok(), other.ok()],
         };

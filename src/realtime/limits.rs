@@ -1,5 +1,5 @@
 //! Remedies for cases in which the system refuses a thread, a descriptor or a pseudo-terminal: a limit has been
-//! reached, a sandbox forbids the call, or pseudo-terminals are not available.
+//! reached, a sandbox or the scheduling policy of the caller forbids the call, or pseudo-terminals are not available.
 #![allow(unsafe_code, reason = "the scheduling policy of the calling thread")]
 
 use std::ffi::c_int;
@@ -8,14 +8,14 @@ use std::io;
 /// SCHED_DEADLINE, which has this value in every Linux.
 const DEADLINE: c_int = 6;
 
-/// The remedy for an error of a call that creates a thread, a descriptor or a pseudo-terminal. `None` if neither a
-/// limit nor a sandbox is the cause.
+/// The remedy for an error of a call that creates a thread, a descriptor or a pseudo-terminal. `None` if no remedy is
+/// known for this error.
 pub fn remedy(error: &io::Error) -> Option<&'static str> {
     // SAFETY: the call takes no pointer. 0 means the calling thread, whose call was refused.
     remedy_under(unsafe { libc::sched_getscheduler(0) }, error)
 }
 
-/// The remedy for a thread with this scheduling policy.
+/// Does the same as [`remedy`] for a calling thread with this scheduling policy.
 fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
     match error.raw_os_error()? {
         // `policy` has one more bit set if the thread has SCHED_FLAG_RESET_ON_FORK, and then it is not equal to

@@ -29,8 +29,9 @@ const CHANGES: &[Change] = &[
     ("much larger motor radius", |finger| finger.geometry.motor_radius = [0.0600; 4], true),
 ];
 
-/// Returns the largest change of a command from one cycle to the next, N at the tendon, for a finger on which a force
-/// acts. The three values are those at rest, during the adjustment, and when the controller is simply replaced.
+/// Returns the largest change of a motor's command in one cycle, N at the tendon, for a finger on which a force acts.
+/// The three values are for a cycle at rest, for the first cycle of the adjustment, and for the first cycle after the
+/// controller is simply replaced.
 fn jumps(scheme: Scheme, change: fn(&mut ConfiguredFinger)) -> [f64; 3] {
     let mut finger = quiet(scheme);
     let activity = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);
@@ -68,7 +69,7 @@ fn an_adjustment_does_not_jump() {
     }
 }
 
-/// The requested adjustment is complete soon afterwards, and the change is smooth.
+/// The adjustment is complete within 1 s, and the change is smooth.
 #[test]
 fn an_adjustment_takes_effect() {
     let activity = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);

@@ -13,7 +13,8 @@ fn collect(bench: &mut Bench, cycles: usize) -> Recording {
     bench.black_box.recording().expect("a recording")
 }
 
-/// The cycles of a recording. The replay needs to know only whether the finger was faulted.
+/// Returns the cycles of a recording. A recording has stages as texts, and the replay needs stages as values. Of a
+/// stage it uses only whether the finger was faulted, so every fault has the same kind here.
 fn cycles(recording: &Recording) -> impl Iterator<Item = CycleRecord> {
     recording.cycles.iter().map(|record| {
         let faulted = record.stage.starts_with("faulted");

@@ -193,8 +193,8 @@ fn no_contact_waits_longer_than_two_periods() {
     }
 }
 
-/// Two fingers with one servo each, as in two threads. Finger 1 reacts to the touch of finger 2 in the period after the
-/// one in which finger 2 notices the touch. The order in which the fingers run in a period makes no difference.
+/// Two fingers with one servo each, as in two threads. Finger 1 reacts to the touch of finger 2 at most one period
+/// after finger 2 notices the touch, whichever finger runs first in a period.
 #[test]
 fn a_finger_reacts_to_the_touch_of_another_one_period_later() {
     let mut configuration = Configuration::default();

@@ -34,10 +34,6 @@ const BEFORE: f64 = 0.02;
 /// Time for which a tendon with missing tension must be low, s.
 const DURATION: f64 = 0.012;
 
-/// Factor on the time in which a tendon with missing tension is low, but its tension is not gone. When rubbing hands
-/// are pushed suddenly, a tendon keeps a fifth of t_min for up to 17 ms.
-const PARTLY: f64 = 0.5;
-
 /// Time after which a low tendon has lost its tension, s. No motion keeps an intact tendon slack for so long.
 const TOO_LONG: f64 = 0.5;
 
@@ -73,8 +69,6 @@ pub(super) struct Memory {
     hung: [bool; 4],
     /// Time for which each tendon has been low with missing tension, s.
     missed: Vector4<f64>,
-    /// The same, but time in which the tension is not gone is multiplied by [`PARTLY`].
-    certain: Vector4<f64>,
     /// Time for which the tension of each tendon has been gone, s.
     gone: Vector4<f64>,
 }
@@ -109,9 +103,6 @@ impl TensionLost {
             memory.hung[tendon] = low && (memory.hung[tendon] || suddenly < -self.missed);
             let by_friction = if memory.hung[tendon] { missing.by_friction[tendon] } else { 0.0 };
             memory.missed[tendon] = counted(memory.missed[tendon], low && suddenly > self.missed + by_friction);
-            let part = if tension < self.gone { 1.0 } else { PARTLY };
-            memory.certain[tendon] =
-                if memory.missed[tendon] > 0.0 { memory.certain[tendon] + part * sample.elapsed } else { 0.0 };
             memory.gone[tendon] = counted(memory.gone[tendon], tension < self.gone);
             let impulse = memory.impulse[tendon] + tension * sample.elapsed;
             memory.impulse[tendon] = if low { impulse } else { 0.0 };
@@ -122,7 +113,7 @@ impl TensionLost {
         // After a tendon has torn, the others lose their tension too, because nothing balances them. So the tendon that
         // lost its tension first is reported.
         let (missed, lowest) = (memory.missed.imax(), memory.low.imax());
-        let fault = if memory.certain.max() >= DURATION {
+        let fault = if memory.missed[missed] >= DURATION {
             self.fault(memory, sample, flicker, missed)
         } else {
             (memory.low[lowest] >= TOO_LONG).then(|| self.lost(memory, lowest))

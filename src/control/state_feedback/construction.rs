@@ -138,8 +138,14 @@ fn damping_design(numbers: &Numbers, relative_damping: f64, stiffness: f64) -> D
     }
 }
 
-/// Returns the dither of the tensions. `lowest` is the lowest tension in a burst, and `highest` is the largest tension
-/// of each tendon, N.
+fn link_dynamics(finger: &ConfiguredFinger) -> Result<LinkDynamics, Unusable> {
+    positive("links.masses", &finger.links.masses)?;
+    positive("links.radii", &finger.links.radii)?;
+    Ok(LinkDynamics::new(finger.links(), finger.links.masses, finger.links.radii, Vector3::zeros()))
+}
+
+/// Returns the dither of the tensions. `highest` is the largest tension of each tendon, N. `lowest` is the lowest
+/// desired tension in a burst. A burst is short, so `lowest` is above t_min without a distance for the noise.
 fn tension_dither(
     finger: &ConfiguredFinger,
     numbers: &Numbers,
@@ -165,11 +171,9 @@ impl StateFeedback {
         rate: f64,
     ) -> Result<Self, Unusable> {
         let drives = Drives::new(finger, tendons)?;
-        positive("links.masses", &finger.links.masses)?;
-        positive("links.radii", &finger.links.radii)?;
+        let dynamics = link_dynamics(finger)?;
         let r = tendons.r * 0.01;
         let pseudo_inverse = right_inverse(&r)?;
-        let dynamics = LinkDynamics::new(finger.links(), finger.links.masses, finger.links.radii, Vector3::zeros());
         let relative_damping = drives.relative_damping(numbers, &dynamics, &r);
         let joint_coulomb = Vector3::from(finger.friction.joint_coulomb) * 0.01;
         let shaken = joint_coulomb * numbers.dither;
@@ -179,23 +183,19 @@ impl StateFeedback {
         let lower_reserve = shaking + NOISE_RESERVE * GAUGE_NOISE;
         let upper_reserve =
             Vector4::from_fn(|motor, _| lower_reserve + FRICTION_RESERVE * friction.at(motor, maximum[motor]));
-        let common = tendons.pretension(1.0).normalize();
-        let highest = maximum - upper_reserve;
-        // A burst is short. So the desired tensions stay above t_min in it, but without a distance for the noise.
-        let lowest = finger.tendon.minimum + shaking;
+        let (lowest, highest) = (finger.tendon.minimum + shaking, maximum - upper_reserve);
         let tension_dither = tension_dither(finger, numbers, tendons, (lowest, highest), rate);
-        let dither = Dither::new(shaken, numbers.dither_frequency, rate);
         let observers = drives.observers(finger, numbers, rate)?;
         Ok(Self {
             period: 1.0 / rate,
-            periodic_disturbance: PeriodicDisturbance::new(&observers, dither.frequency, rate),
+            periodic_disturbance: PeriodicDisturbance::new(&observers, TAU * numbers.dither_frequency, rate),
             observers,
             joint_stiffness: JointStiffness::new(finger.links(), 0.0),
             dynamics,
             damping: damping_design(numbers, relative_damping, drives.stiffness.mean()),
             reference: Reference::new(numbers.reference_time, rate),
             slew: Slew::new(set_point_speed, rate),
-            dither,
+            dither: Dither::new(shaken, numbers.dither_frequency, rate),
             lower_reserve: lower_reserve + tension_dither.reserve(finger.tendon.minimum + lower_reserve, &highest),
             upper_reserve,
             tension_dither,
@@ -203,7 +203,7 @@ impl StateFeedback {
             pulleys: PulleyFeedForward::new(&finger.friction.pulley.into(), numbers.pulley_share, numbers.pulley_creep),
             r,
             pseudo_inverse,
-            common,
+            common: tendons.pretension(1.0).normalize(),
             apparent_motors,
             damped_motors: apparent_motors * numbers.damped_inertia,
             mass: drives.mass,

@@ -148,7 +148,7 @@ struct TunedNumbers {
     damped_inertia: f64,
     /// Time constant of each stage of the reference filter, s.
     reference_time: f64,
-    /// At 1000 Hz, a value of 0.35 instead of 0.3 makes "worn" fingers settle sooner, and "cheap" fingers later.
+    /// At 1000 Hz, "cheap" fingers settle later with a larger value, and "worn" fingers with a smaller one.
     dither_burst: f64,
 }
 

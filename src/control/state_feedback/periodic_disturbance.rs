@@ -2,8 +2,8 @@
 //!
 //! The dither needs large pulls, because it accelerates the rotors. An error of a torque constant, of a rotor's inertia
 //! or of a friction therefore causes a disturbance at the frequency of the dither. The observer finds a disturbance
-//! with a delay of about two cycles. Compensated so late, a large part of the oscillation remains, and because the
-//! errors of the motors differ, that part moves the joints. At a known frequency, the delay is a known phase.
+//! with a delay of some cycles. Compensated so late, most of the oscillation remains, and because the errors of the
+//! motors differ, it moves the joints. At a known frequency, the delay is a known phase.
 
 use super::observer::TendonObserver;
 use nalgebra::{Vector2, Vector4, Vector6};
@@ -12,24 +12,27 @@ use serde::{Deserialize, Serialize};
 /// Time constant with which the oscillation of the disturbance is found, s. With 0.05 s, some fingers with amplifiers
 /// that lag by 2 ms oscillate at walls.
 const OSCILLATION: f64 = 0.15;
-/// Factor on the difference. Amplifiers delay the pulls further, and gauges with wrong gains hide a part of the
-/// disturbance. With 1, fingers of the "cheap" hand move by up to 53 um rms at rest. With 1.15, those of the "worn"
-/// hand do, and their steps settle later.
-const EXCESS: f64 = 1.1;
 /// Time constant with which the mean of the disturbance is found, s.
 const MEAN: f64 = 0.05;
 
-/// Relative accuracy of the phasors.
+/// Change of the phasors below which they count as steady.
 const ACCURACY: f64 = 1e-12;
 /// Largest number of cycles in which the error of an observer becomes a steady oscillation.
 const MOST_CYCLES: usize = 5000;
 
+/// Largest size of the lead. An observer whose encoder or gauge is much too coarse hardly follows the oscillation. Its
+/// phasor would be multiplied by a large factor, so nothing is added then.
+const LARGEST_LEAD: f64 = 3.0;
+
 /// Finds d = mean + Re(D e^(j omega t)) in the disturbance of each motor as the observer estimates it, and returns the
-/// difference between the oscillation that will act in the next period and the estimated one, times [`EXCESS`].
+/// difference between the oscillation that will act in the next period and the estimated one.
+///
+/// A factor above 1 on the difference would reduce the motion at walls, but the pull of a motor that is held would
+/// oscillate more and more.
 #[derive(Clone, Debug)]
 pub(super) struct PeriodicDisturbance {
-    /// Real and imaginary part of e^(j omega T) / H - 1 for each motor, times [`EXCESS`]. H is the phasor of the
-    /// estimate divided by the phasor of the disturbance, and T is the period.
+    /// Real and imaginary part of e^(j omega T) / H - 1 for each motor. H is the phasor of the estimate divided by the
+    /// phasor of the disturbance, and T is the period.
     lead: [Vector4<f64>; 2],
     /// Gains per cycle.
     oscillation: f64,
@@ -51,8 +54,7 @@ impl PeriodicDisturbance {
     pub fn new(observers: &[TendonObserver; 4], frequency: f64, rate: f64) -> Self {
         let leads: [Vector2<f64>; 4] = std::array::from_fn(|motor| lead(&observers[motor], frequency / rate));
         Self {
-            lead: [Vector4::from_fn(|motor, _| leads[motor].x), Vector4::from_fn(|motor, _| leads[motor].y)]
-                .map(|part| part * EXCESS),
+            lead: [Vector4::from_fn(|motor, _| leads[motor].x), Vector4::from_fn(|motor, _| leads[motor].y)],
             oscillation: 2.0 / (OSCILLATION * rate),
             mean: 1.0 / (MEAN * rate),
         }
@@ -107,7 +109,9 @@ fn lead(observer: &TendonObserver, turn: f64) -> Vector2<f64> {
     let [real, imaginary] = error.map(|part| (correction * part)[DISTURBANCE]);
     let estimate = Vector2::new(1.0 - real, -imaginary);
     let quotient = Vector2::new(cos * estimate.x + sin * estimate.y, sin * estimate.x - cos * estimate.y);
-    quotient / estimate.norm_squared() - Vector2::x()
+    let lead = quotient / estimate.norm_squared() - Vector2::x();
+    // A lead that is not a number is not smaller.
+    if lead.norm() < LARGEST_LEAD { lead } else { Vector2::zeros() }
 }
 
 #[cfg(test)]
@@ -167,8 +171,8 @@ mod tests {
     fn the_oscillation_of_the_next_period_is_predicted() {
         for constant in [0.0, -4.0] {
             let (of_estimate, of_prediction) = errors(constant);
-            assert!(of_estimate > 0.3, "{of_estimate}");
-            assert!(of_prediction < 0.15, "{of_prediction}");
+            assert!(of_estimate > 0.9, "{of_estimate}");
+            assert!(of_prediction < 0.02, "{of_prediction}");
         }
     }
 

@@ -11,8 +11,8 @@ use sun2xp::model::configuration::Configuration;
 /// have the hand open. The measurements take about `duration`. The motors stay off.
 ///
 /// # Errors
-/// Returns an error if the configuration cannot be used, or if the system cannot start a thread or open a
-/// pseudo-terminal.
+/// Returns an error if the configuration cannot be used, if a board is not found by its unique number or is found at
+/// two ports, or if the system cannot start a thread or open a pseudo-terminal.
 pub fn examine(configuration: &Configuration, root: &Path, duration: Duration) -> Result<Vec<Finding>, HandError> {
     check(configuration)?;
     let mut found = configuration.clone();

@@ -10,11 +10,11 @@ pub const HEADING: Font = Font { size: 15.0, colour: INK, bold: true, anchor: An
 pub const LABEL: Font = Font { size: 13.5, colour: INK, bold: false, anchor: Anchor::Start };
 pub const NUMBER: Font = Font { size: 13.0, colour: SOFT_INK, bold: false, anchor: Anchor::Middle };
 
-/// A curve has at most this many points for each pixel of its width. With more, it shows the lowest and the highest
-/// value of every pixel.
+/// A curve with more points than this for each pixel of its width is thinned. It keeps the lowest and the highest value
+/// of every section of about one pixel.
 const POINTS_PER_PIXEL: usize = 4;
 
-/// Something in a panel, in the values of its axes.
+/// Something in a panel. Coordinates are values of the panel's axes. Radii, strokes and fonts are in pixels.
 pub enum Mark {
     Curve {
         name: String,
@@ -39,7 +39,7 @@ pub enum Mark {
         stroke: Stroke,
         label: String,
     },
-    /// A bar: from and to in x, from and to in y.
+    /// A bar from `x[0]` to `x[1]` and from `y[0]` to `y[1]`.
     Bar {
         x: [f64; 2],
         y: [f64; 2],
@@ -107,7 +107,8 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// Draws the panel with its frame at left, top, width and height. Numbers and labels are outside of the frame.
+    /// Draws the panel. `frame` is the left, top, width and height of its frame, pixels. Numbers and labels are outside
+    /// of the frame.
     pub fn draw(&self, svg: &mut Svg, frame: [f64; 4]) {
         let [left, top, width, height] = frame;
         let place = |[x, y]: [f64; 2]| [left + width * self.x.place(x), top + height * (1.0 - self.y.place(y))];

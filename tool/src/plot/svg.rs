@@ -18,7 +18,7 @@ pub struct Svg {
     clips: usize,
 }
 
-/// The horizontal position of a text.
+/// The part of a text that is at the text's point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     Start,
