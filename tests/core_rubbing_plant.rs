@@ -1,5 +1,5 @@
 //! Tests the physics of a simulated finger that differs from the default finger: friction in conduits and on pulleys,
-//! stiction, hardening, creep, wrong moment arms, gauges, amplifiers, and a held mass.
+//! stiction, hardening, creep, wrong moment arms, gauges, torque ripple, and a held mass.
 
 #[path = "common/energy.rs"]
 mod energy;
@@ -158,11 +158,11 @@ fn moment_arms_turn_the_joints_by_their_ratio() {
             finger.simulation.joint_coulomb_friction = [0.0; 3];
         });
         plant.set_external_force(Vector3::new(0.5, 0.0, 0.0));
-        // The brake is off, so the motors yield too, but they need more than this millisecond.
+        // The brake is off, so the motors yield too. One millisecond is too short for a noticeable effect.
         pull(plant, &home(), 0.001);
         plant.joint_rates()[0]
     };
-    // In the first steps only the inertia counts, and the tendons keep the torque balance for every ratio.
+    // In the first steps only the inertia counts. The pretension gives no joint torque, whatever the ratio.
     assert!((angle(1.05) / angle(1.0) - 1.0).abs() < 0.01);
     let finger = configured(|finger| finger.simulation.moment_arm_ratio[0] = [1.05; 4]);
     let r = finger.true_tendons().expect("usable tendons").r;
@@ -203,7 +203,7 @@ proptest! {
         ..Default::default()
     })]
 
-    /// Motors without torque. The finger is released from a strained state.
+    /// The motors have no torque. The finger is released from a strained state.
     #[test]
     fn rubbing_tendons_never_create_energy(
         joints in (-50.0..50.0f64, -25.0..95.0f64, 8.0..118.0f64),
@@ -228,7 +228,7 @@ proptest! {
         plant.release_brake();
         plant.set_external_force(Vector3::zeros());
         // See `passive_parts_never_create_energy` in core_plant.rs. A section between pulley and joint is five times as
-        // stiff as the whole tendon, and hardening adds 60 %, so w is below 4000 rad/s, which gives 0.2.
+        // stiff as the whole tendon, and hardening adds 60 %. The stiffest mode is below 4000 rad/s, which gives 0.2.
         assert_gains_no_energy(&mut plant, 0.2);
     }
 }

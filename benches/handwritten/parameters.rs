@@ -171,7 +171,7 @@ fn radians_per_count(finger: &ConfiguredFinger) -> [f64; 4] {
     })
 }
 
-/// Returns the inverse of the Cholesky factor of the joint stiffness with locked tendons.
+/// Returns the inverse of the Cholesky factor of the joint stiffness with locked motors.
 fn inverse_cholesky(finger: &ConfiguredFinger, r: &Matrix3x4<f64>) -> Result<Matrix3<f64>, Box<dyn Error>> {
     let stretched = Matrix3x4::from_fn(|i, j| r[(i, j)] * finger.tendon.stiffness[j]);
     let cholesky = (stretched * r.transpose()).cholesky().ok_or("the rank of R is below 3")?;

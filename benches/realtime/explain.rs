@@ -198,8 +198,9 @@ impl Pauses {
 pub enum Cause {
     /// Its thread was woken late. If the thread had been woken on time, the cycle would have met its deadline.
     WakeUp,
-    /// During the cycle, a core did not run a thread whose priority is above that of all servos. This pause lasted at
-    /// least as long as the time by which the cycle was late.
+    /// During the cycle, a core did not run a thread whose priority is above that of all servos. The pauses of this
+    /// core, each lengthened by `CHECK_INTERVAL`, lasted in total at least as long as the time by which the cycle was
+    /// late.
     Pause,
     /// A poll that returned late, or other threads, kept the thread off its core. The run time of the thread was at
     /// most the part of a period that is left after [`REPLY_WINDOW`]. If the thread had kept its core, the cycle would

@@ -197,7 +197,7 @@ fn observe(mailboxes: &[Mailbox], phase: &Phase, length: Duration) -> Vec<Row> {
     mailboxes.iter().zip(&before).zip(&last).map(row).collect()
 }
 
-/// Returns why a finger is not measured.
+/// Returns why the measurement of a finger did not begin, or ended early.
 fn state(mailbox: &Mailbox) -> String {
     let report = mailbox.report();
     let losses = report.losses;

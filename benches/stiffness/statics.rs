@@ -1,4 +1,4 @@
-//! Measurements for the table: the tip is pushed slowly, and its deflection is measured.
+//! Measurements for the table: a constant or slowly changing force pushes the tip, and its deflection is measured.
 
 use crate::cases::{Case, Friction, axes};
 use crate::closed_loop::{ClosedLoop, Held, Senses};
@@ -46,7 +46,7 @@ pub struct Pushed {
     pub scale: f64,
 }
 
-/// Pushes along every axis both ways, with forces that deflect Kx by 1 mm.
+/// Pushes with the forces that deflect a spring Kx by 1 mm along every axis, in both directions.
 ///
 /// Both pushes of a pair have the same noise, so that most of it cancels in their difference. The rest is averaged.
 pub fn pushed_about(held: &Held) -> Pushed {
@@ -82,7 +82,7 @@ pub fn triangle(case: &Case, stiffness: f64) -> f64 {
             let points: Vec<(f64, f64)> = (0..cycles)
                 .map(|cycle| {
                     let phase = 4.0 * cycle as f64 / cycles as f64;
-                    // The wave rises to 1, falls to -1 and returns, so that the loop begins and ends at rest.
+                    // The wave rises to 1, falls to -1 and returns, so that the force begins and ends at 0.
                     let wave = match phase {
                         ..1.0 => phase,
                         ..3.0 => 2.0 - phase,

@@ -38,8 +38,8 @@ impl Hand {
     /// `valid` is how long the path stays valid after its end; none for the configured time.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger, if the finger is faulted or is not a spring, or if the path is
-    /// refused ([`PathError`]). Then the finger continues with the last set point or path.
+    /// Returns an error if there is no such finger, if the finger is faulted or is not a spring, if the path is refused
+    /// ([`PathError`]), or if a Kx is too stiff for the damping ratio. Then the call changes nothing.
     pub fn send_path(&self, finger: i32, poses: &[PathPose], valid: Option<Duration>) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;

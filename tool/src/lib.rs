@@ -1,5 +1,5 @@
 //! The command-line tool of the library, as a function for the programs that contain it: the program `sun2xp`, and the
-//! Python package. Only they use this package, so it may change with every version.
+//! Python package. Nothing else uses this crate, so its interface may change with every version.
 
 #![deny(unsafe_code)]
 

@@ -1,4 +1,5 @@
-//! Detects warm and overheated motors by the filtered mean square of their torque.
+//! Detects warm and overheated motors by their heat, which is the filtered mean square of the torque. The continuous
+//! heat of a motor is the square of its continuous torque.
 
 use super::alarm::{Alarms, Symptom, first_of};
 use super::sample::Sample;

@@ -15,6 +15,10 @@ const OSCILLATION: f64 = 0.15;
 /// Time constant with which the mean of the disturbance is found, s.
 const MEAN: f64 = 0.05;
 
+/// Rate below which nothing is predicted, Hz. At 500 Hz, the delay is so long that some fingers with the stiffest joint
+/// springs oscillate with the prediction.
+const LEAST_RATE: f64 = 750.0;
+
 /// Change of the phasors below which they count as steady.
 const ACCURACY: f64 = 1e-12;
 /// Largest number of cycles in which the error of an observer becomes a steady oscillation.
@@ -52,7 +56,10 @@ pub(super) struct PeriodicDisturbanceState {
 impl PeriodicDisturbance {
     /// `frequency` is omega in rad/s, and `rate` is in Hz.
     pub fn new(observers: &[TendonObserver; 4], frequency: f64, rate: f64) -> Self {
-        let leads: [Vector2<f64>; 4] = std::array::from_fn(|motor| lead(&observers[motor], frequency / rate));
+        let leads: [Vector2<f64>; 4] = match rate < LEAST_RATE {
+            true => [Vector2::zeros(); 4],
+            false => std::array::from_fn(|motor| lead(&observers[motor], frequency / rate)),
+        };
         Self {
             lead: [Vector4::from_fn(|motor, _| leads[motor].x), Vector4::from_fn(|motor, _| leads[motor].y)],
             oscillation: 2.0 / (OSCILLATION * rate),

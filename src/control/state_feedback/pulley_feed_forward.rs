@@ -2,11 +2,12 @@
 
 use nalgebra::Vector4;
 
-/// Feeds share p t sat(v / creep) forward, N, where p is the friction of the pulleys and t the tension.
+/// The feed-forward is s p t sat(v / c), N. s is the share of the friction that is fed forward, p the friction of the
+/// pulleys as a fraction of the tension t, and c the speed from which the share is fed forward in full.
 ///
-/// v is the speed of a tendon at the joints, if they follow the reference. If v were the observed speed, the
-/// feed-forward would act against a person who pushes the finger. Only configured friction is fed forward: on a finger
-/// without this friction, a feed-forward makes steps overshoot.
+/// v is the speed that a tendon has at the joints if they follow the reference. If v were the observed speed, the
+/// feed-forward would be a negative damping for a finger that a person pushes. Only configured friction is fed forward:
+/// on a finger without this friction, a feed-forward makes steps overshoot.
 ///
 /// The dither of the tensions makes the mean friction of a slow tendon proportional to its speed. Feed-forward of the
 /// full friction with the sign of v would therefore be too much near the end of a motion.

@@ -51,7 +51,7 @@ impl EventQueue {
     }
 
     /// Waits for an event, and takes it. The wait lasts at most `limit`; it has no limit if `limit` is none. Returns
-    /// none if the limit has passed or the hand is closed.
+    /// none if the limit has passed, or if the hand is closed and no event is left.
     #[must_use]
     pub fn wait(&self, limit: Option<Duration>) -> Option<Event> {
         let deadline = deadline(limit);

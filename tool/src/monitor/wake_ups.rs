@@ -9,7 +9,7 @@ pub const EDGES: [f64; 12] = [2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1
 /// Number of classes.
 pub const CLASSES: usize = EDGES.len() + 1;
 
-/// Length of the histogram, s.
+/// Time that the histogram covers, s.
 pub const SECONDS: usize = 10;
 
 /// Counts of the last [`SECONDS`] seconds.
@@ -27,7 +27,7 @@ pub struct Histogram {
 }
 
 impl WakeUps {
-    /// Counts the cycle that began at `time`, ns.
+    /// Counts the cycle that began at `time`, ns. `nanoseconds` is its wake-up time.
     pub fn note(&mut self, time: u64, nanoseconds: u32) {
         let microseconds = f64::from(nanoseconds) * 1e-3;
         let class = EDGES.partition_point(|&edge| edge < microseconds);

@@ -1,4 +1,4 @@
-//! A recording of a simulated hand is passed on whole: every cycle, its gaps, stages and events.
+//! The items of a recording of a simulated hand are complete: every cycle, gap, stage and event.
 
 use super::{Item, Mark, MarkKind, Row, first_cycle, read};
 use crate::recording::RecordingWriter;
@@ -10,7 +10,7 @@ use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, RealTime};
 use sun2xp::telemetry::{Message, Reader, Sample, View};
 
-/// The messages of a hand whose finger 1 moves until it settles.
+/// The messages of a hand whose finger 1 moves, up to the first event.
 fn messages() -> (Reader, Vec<Message>) {
     let mut configuration = Configuration::default();
     configuration.telemetry.name = format!("trace-{}", std::process::id());
@@ -44,7 +44,8 @@ fn every_cycle_of_a_recording_is_a_row_and_lost_cycles_are_marked() {
     let (reader, messages) = messages();
     let mut writer =
         RecordingWriter::new(File::create(&path).expect("a file"), reader.description(), 0).expect("begun");
-    // The recorder may mark cycles that were lost before the first one, here at the beginning of the clock.
+    // The recorder may mark cycles that were lost before the first recorded cycle. The mark then has the time at which
+    // the recording begins, here 0.
     writer.write_lost(FingerNumber::THREE, 1).expect("written");
     let half = messages.len() / 2;
     messages[..half].iter().for_each(|message| writer.write(message).expect("written"));
