@@ -6,6 +6,7 @@
 mod finger_on_a_cable;
 
 use finger_on_a_cable::{Hooks, ServedFinger, World};
+use std::cell::Cell;
 use sun2xp::board::{PortError, Transport};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, CycleStage, Distribution, Histograms};
@@ -16,7 +17,7 @@ const PERIOD: u64 = 1_000_000;
 /// A host and a board, whose clock may be faster or slower than the host's.
 #[derive(Default)]
 struct Clocks {
-    now: u64,
+    now: Cell<u64>,
     drift: f64,
     /// Delay of the next wake-up of the host's thread, ns.
     oversleep: u64,
@@ -24,16 +25,20 @@ struct Clocks {
     beginnings: Vec<u64>,
     /// Whether replies are withheld.
     withheld: bool,
+    /// Number of times that the host has read its clock since its last wake-up.
+    readings: Cell<u32>,
+    /// A number of a reading, and the time that passes before it, ns. It passes once. Readings count from 1.
+    busy: Cell<(u32, u64)>,
 }
 
 impl Clocks {
     fn advance_to(&mut self, cable: &mut SimulatedCable, time: u64) {
-        self.now = self.now.max(time);
+        self.now.set(self.now.get().max(time));
         cable.advance_to(self.board_time());
     }
 
     fn board_time(&self) -> u64 {
-        (self.now as f64 * (1.0 + self.drift)) as u64
+        (self.now.get() as f64 * (1.0 + self.drift)) as u64
     }
 }
 
@@ -54,10 +59,15 @@ impl Hooks for Clocks {
         let oversleep = std::mem::take(&mut self.oversleep);
         self.advance_to(cable, deadline + oversleep);
         self.beginnings.push(self.board_time());
+        self.readings.set(0);
     }
 
     fn now(&self, _: &SimulatedCable) -> u64 {
-        self.now
+        self.readings.set(self.readings.get() + 1);
+        if self.busy.get().0 == self.readings.get() {
+            self.now.set(self.now.get() + self.busy.take().1);
+        }
+        self.now.get()
     }
 }
 
@@ -122,6 +132,19 @@ fn a_late_cycle_runs_late_and_skipped_periods_are_not_made_up() {
     assert_eq!((losses.cycles, losses.overruns, losses.skipped_periods), (16, 1, 2));
     let beginnings = rig.beginnings_from(10);
     assert_eq!(beginnings, [13_400, 13_400, 14_000, 15_000, 16_000, 17_000], "us");
+}
+
+#[test]
+fn a_cycle_whose_computation_ends_late_is_an_overrun() {
+    let mut rig = Rig::new(0.0, false);
+    rig.cycles(10);
+    // The servo reads its clock for the last time in a cycle when the computation has ended.
+    let last = rig.world.place().hooks.readings.get();
+    rig.world.place().hooks.busy.set((last, PERIOD + 50_000));
+    rig.cycles(2);
+    let losses = rig.finger.mailbox.report().losses;
+    assert_eq!((losses.cycles, losses.overruns, losses.skipped_periods, losses.lost_replies), (12, 1, 0, 0));
+    assert_eq!(rig.beginnings_from(10), [10_000, 11_050], "us");
 }
 
 #[test]

@@ -91,6 +91,11 @@ impl FingerServo {
         }
     }
 
+    /// Counts an overrun of a cycle whose computation ended after the next cycle was due.
+    pub fn count_late_computation(&mut self) {
+        self.report.losses.overruns += 1;
+    }
+
     /// Reading of the board's clock when this cycle's command arrived, us modulo 65 536; none without a reply.
     pub fn sampled_at(&self) -> Option<u16> {
         self.sampled_at.filter(|_| self.replied)
