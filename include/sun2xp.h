@@ -239,7 +239,8 @@ typedef struct sun2xp_hand sun2xp_hand;
 #define SUN2XP_ERROR_EXITING 3              /* The process is exiting, and its hands are closed. */
 #define SUN2XP_ERROR_NO_HAND 4              /* The handle does not belong to an open hand. */
 #define SUN2XP_ERROR_BUSY 5                 /* Hand or finger is busy: it is being opened, closed, calibrated or
-                                               recovered, or 16 groups wait for the finger. Call again later. */
+                                               recovered, or 16 groups wait for the finger. Call again later. If the
+                                               motors of a finger are off, first zero it. */
 #define SUN2XP_ERROR_TOO_MANY 6             /* Too many hands or reflexes. */
 #define SUN2XP_ERROR_ARGUMENT 7             /* An argument makes no sense: null, NaN, no such finger, a struct that
                                                is too small. */

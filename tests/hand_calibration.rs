@@ -1,9 +1,11 @@
 //! Calibration of an open hand on a simulated board: real threads, a real pseudo-terminal, real time.
 
 use std::fs;
+use std::time::Duration;
 use sun2xp::calibration::{Findings, Obstacle, Progress, Step, Zeros};
 use sun2xp::finger::Stage;
-use sun2xp::hand::{Calibrating, Configured, Fingers, Found, Hand, HandError, read_configuration, store_findings};
+use sun2xp::hand::{Calibrating, Configured, Fingers, Found, Hand, HandError, PathPose, Pose, Until};
+use sun2xp::hand::{read_configuration, store_findings};
 use sun2xp::model::FingerNumber;
 
 const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500\n[finger.zeroing]\nspeed = 2.0\n[finger.encoder]\n\
@@ -112,6 +114,21 @@ fn a_refused_calibration_leaves_the_finger_limp_and_says_why() {
     assert_eq!(hand.calibrated(1).expect("there"), configuration.fingers[0]);
     assert!(!hand.store_calibration(1).expect("nowhere to store"));
     assert!(matches!(hand.zero(4, |_| {}), Err(HandError::NoSuchFinger(4))));
+}
+
+/// Nothing switches the motors of a limp finger on, so it does not help to wait.
+#[test]
+fn a_limp_finger_is_refused_with_the_calls_that_end_this() {
+    let hand = Hand::open_limp(read_default(), None, Fingers::ALL).expect("open");
+    let pose = PathPose { time: 3.0, pose: Pose::Joints([0.2, 0.6, 1.1]), stiffness: None };
+    let waiting = hand.wait(&[1], Until::Settled, Duration::from_secs(10));
+    for refused in [waiting, hand.send_path(1, &[pose], None)] {
+        let refused = refused.expect_err("limp");
+        assert!(matches!(refused, HandError::Limp(FingerNumber::ONE)), "{refused}");
+        let text = refused.to_string();
+        assert!(text.contains("motors of finger 1 are off") && !text.contains("wait until"), "{text}");
+        assert_eq!(refused.errno(), libc::EBUSY);
+    }
 }
 
 /// Two fingers at once: one is zeroed against its stops, the other, whose tendons are not as stiff as configured, is

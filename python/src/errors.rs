@@ -71,7 +71,8 @@ impl Refusal {
                 | HandError::TooMuchForce { .. }
                 | HandError::NotSimulated(_)
                 | HandError::NoObject
-                | HandError::Busy(_) => "Refused",
+                | HandError::Busy(_)
+                | HandError::Limp(_) => "Refused",
                 _ => "Error",
             },
         }

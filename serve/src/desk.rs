@@ -278,7 +278,7 @@ pub fn code_of(error: &HandError) -> Code {
     match error {
         HandError::NoSuchFinger(_) | HandError::NotInHand { .. } | HandError::NotOpened(_) => Code::NoSuchFinger,
         HandError::Faulted { .. } => Code::Stopped,
-        HandError::Busy(_) => Code::InProgress,
+        HandError::Busy(_) | HandError::Limp(_) => Code::InProgress,
         _ => Code::Argument,
     }
 }

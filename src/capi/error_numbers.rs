@@ -17,7 +17,7 @@ pub const SUN2XP_ERROR_EXITING: c_int = 3;
 pub const SUN2XP_ERROR_NO_HAND: c_int = 4;
 
 /// Hand or finger is busy: it is being opened, closed, calibrated or recovered, or 16 groups wait for the finger. Call
-/// again later.
+/// again later. If the motors of a finger are off, first zero it.
 pub const SUN2XP_ERROR_BUSY: c_int = 5;
 
 /// Too many hands or reflexes.
@@ -102,7 +102,7 @@ pub fn of_hand(error: &HandError) -> c_int {
         HandError::NotRealTime { .. } => SUN2XP_ERROR_REAL_TIME,
         HandError::WrongWiring { .. } => SUN2XP_ERROR_FAULTED,
         HandError::Calibration { .. } | HandError::Interrupted(_) => SUN2XP_ERROR_CALIBRATION,
-        HandError::Busy(_) => SUN2XP_ERROR_BUSY,
+        HandError::Busy(_) | HandError::Limp(_) => SUN2XP_ERROR_BUSY,
         HandError::NotThereInTime(_) | HandError::NoAnswer(_) => SUN2XP_ERROR_TIMED_OUT,
         HandError::NoRecord { .. } => SUN2XP_ERROR_NOT_FOUND,
         HandError::TooMuchForce { .. } => SUN2XP_ERROR_LIMIT,

@@ -189,6 +189,12 @@ pub enum HandError {
     /// The finger is busy.
     #[error("finger {0} is being opened, calibrated or closed: wait until this is done")]
     Busy(FingerNumber),
+    /// The motors of the finger are off, and no call is in progress that switches them on.
+    #[error(
+        "the motors of finger {0} are off, because its last calibration failed, or because a program opened or tested \
+         it that way: zero or identify the finger, or close the hand and open it again"
+    )]
+    Limp(FingerNumber),
     /// A wait has reached its time limit.
     #[error(
         "finger {0} has not arrived or settled within the time limit: check what keeps it from moving, send a set \

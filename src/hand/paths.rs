@@ -47,10 +47,8 @@ impl Hand {
         let admission = member.admission.read();
         let report = self.dispatcher.last_report(finger)?;
         let plan = admission.path(&report.reference, poses)?;
-        match report.stage {
-            Stage::Running => {}
-            Stage::Faulted(fault) => return Err(HandError::Faulted { finger, fault }),
-            _ => return Err(HandError::Busy(finger)),
+        if report.stage != Stage::Running {
+            return Err(member.refusal(report.stage));
         }
         let (damping, law) = (admission.damping, plan.law);
         let (stiffest, end) = (plan.stiffest(), plan.end());

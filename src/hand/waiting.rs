@@ -52,14 +52,12 @@ impl Waiting {
         let late = self.deadline.is_some_and(|deadline| Instant::now() >= deadline);
         let mut waiting_for = None;
         for &finger in &self.fingers {
-            let (in_force, report) = hand.dispatcher.member(finger)?.mailbox.newest_in_force();
+            let member = hand.dispatcher.member(finger)?;
+            let (in_force, report) = member.mailbox.newest_in_force();
             let holds = match report.stage {
-                Stage::Faulted(fault) => return Err(HandError::Faulted { finger, fault }),
-                Stage::Limp | Stage::Calibrating | Stage::Closing | Stage::Closed => {
-                    return Err(HandError::Busy(finger));
-                }
                 Stage::Opening => false,
                 Stage::Running => in_force && self.holds(report.arrival),
+                stage => return Err(member.refusal(stage)),
             };
             if !holds {
                 waiting_for = waiting_for.or(Some(finger));

@@ -8,7 +8,7 @@ pub use loss::Loss;
 
 use crate::admission::AdmissionError;
 use std::path::PathBuf;
-use sun2xp_remote_protocol::{Code, Finger, HandName};
+use sun2xp_remote_protocol::{Code, Finger, HandName, Stage};
 use thiserror::Error;
 
 /// A call that was refused or that failed. A refused call changes nothing.
@@ -46,7 +46,10 @@ pub enum RemoteError {
         text: String,
     },
     /// The finger does not act as a spring now.
-    #[error("finger {finger} is {stage}: wait until it is running")]
+    #[error(
+        "finger {finger} is {stage}: {}",
+        if *stage == Stage::Limp.name() { "zero or identify it" } else { "wait until it is running" }
+    )]
     Busy {
         /// The finger.
         finger: Finger,

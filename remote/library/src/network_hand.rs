@@ -132,9 +132,12 @@ fn member(hand: &client::RemoteHand, number: i32) -> Result<FingerNumber, Remote
 /// Refuses to wait for a finger that follows no set point, and will not follow one by itself.
 fn follows_set_points(record: &client::Record) -> Result<(), RemoteRefusal> {
     use client::Stage::{Calibrating, Closed, Closing, Limp};
-    let busy = matches!(record.stage, Limp | Calibrating | Closing | Closed);
-    let finger = FingerNumber::new(record.finger.number().into()).filter(|_| busy);
-    finger.map_or(Ok(()), |finger| Err(HandError::Busy(finger).into()))
+    let Some(finger) = FingerNumber::new(record.finger.number().into()) else { return Ok(()) };
+    match record.stage {
+        Limp => Err(HandError::Limp(finger).into()),
+        Calibrating | Closing | Closed => Err(HandError::Busy(finger).into()),
+        _ => Ok(()),
+    }
 }
 
 /// The finger of a call that takes 0 for all fingers; none for all.

@@ -27,6 +27,7 @@ impl Fingers {
         match report.stage {
             Stage::Running => {}
             Stage::Faulted(fault) => return Err(HandError::Faulted { finger: known, fault }),
+            Stage::Limp => return Err(HandError::Limp(known)),
             // The servo discards a part that was prepared before the finger begins to follow set points.
             _ => return Err(HandError::Busy(known)),
         }

@@ -1,11 +1,12 @@
 //! What planners use of one finger.
 
-use crate::finger::{Elements, Mailbox, Reflexes};
+use crate::finger::{Elements, Mailbox, Reflexes, Stage};
+use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::model::FingerNumber;
 use crate::realtime::RwLock;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The planners' side of one finger.
 pub struct Member {
@@ -17,4 +18,17 @@ pub struct Member {
     pub reflexes: Reflexes,
     /// Whether a caller holds the right to calibrate the finger at present.
     pub calibrated: Arc<AtomicBool>,
+}
+
+impl Member {
+    /// Returns why the finger follows no set point in this stage, which is not `Running`.
+    pub fn refusal(&self, stage: Stage) -> HandError {
+        let finger = self.number;
+        match stage {
+            Stage::Faulted(fault) => HandError::Faulted { finger, fault },
+            // Between the end of a calibration and the use of its results, a finger is limp for a moment.
+            Stage::Limp if !self.calibrated.load(Ordering::Acquire) => HandError::Limp(finger),
+            _ => HandError::Busy(finger),
+        }
+    }
 }

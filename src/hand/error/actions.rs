@@ -11,6 +11,7 @@ impl HandError {
         match self {
             Self::Faulted { fault, .. } => fault.kind.description().actions,
             Self::FaultedAtOpening { .. } => &[Action::Open],
+            Self::Limp(_) => &[Action::Zero, Action::Close, Action::Open],
             Self::NoAnswer(_) => &[Action::QueryStatus, Action::Close, Action::Open],
             Self::Link { source: LinkError::Port(PortError::Closed), .. } => &[Action::Close, Action::Open],
             Self::Configuration(ConfigurationError::Permanent { .. }) => &[Action::Close, Action::Open],

@@ -31,7 +31,7 @@ impl HandError {
             Self::WrongWiring { .. } => libc::EIO,
             Self::SameNumber { .. } => libc::ENOTUNIQ,
             Self::NoSuchBoard { .. } => libc::ENODEV,
-            Self::Busy(_) => libc::EBUSY,
+            Self::Busy(_) | Self::Limp(_) => libc::EBUSY,
             Self::BlackBox { source, .. } => errno(source),
             Self::NotStored { source, .. } => source.errno(),
             Self::NoRecord { .. } => libc::ENOENT,

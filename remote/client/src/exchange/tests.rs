@@ -179,6 +179,9 @@ fn paths_are_checked() {
     exchange.take_state(&state(2, 11 * MS, Stage::Calibrating), 11 * MS);
     let (kind, text) = refused(exchange.admit_path(1, &[pose(1.0, 0.5)], 11 * MS).map(drop));
     assert_eq!((kind, text.as_str()), (RemoteErrorKind::Busy, "finger 1 is calibrating: wait until it is running"));
+    exchange.take_state(&state(3, 12 * MS, Stage::Limp), 12 * MS);
+    let (kind, text) = refused(exchange.admit_path(1, &[pose(1.0, 0.5)], 12 * MS).map(drop));
+    assert_eq!((kind, text.as_str()), (RemoteErrorKind::Busy, "finger 1 is limp: zero or identify it"));
 }
 
 #[test]
