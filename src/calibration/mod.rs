@@ -6,6 +6,7 @@
 //! hand stores and applies the findings.
 
 mod average;
+mod causes;
 mod findings;
 mod identification;
 mod instruments;

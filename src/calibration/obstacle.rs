@@ -1,5 +1,6 @@
 //! Why a routine gave up.
 
+use super::causes::{DOES_NOT_RETURN, STAYS_BEHIND};
 use crate::model::Part;
 use thiserror::Error;
 
@@ -115,14 +116,16 @@ pub enum Obstacle {
         /// Configured range, degrees.
         expected: f64,
     },
-    /// A joint cannot be moved although it is away from its stops.
+    /// A joint cannot be moved where it should be away from its stops.
     #[error(
-        "joint {joint} does not move freely: something blocks it, or zeroing.torque is too small for its friction. \
-         Check both"
+        "joint {joint} does not move freely: something blocks it, {}",
+        if *returning { DOES_NOT_RETURN } else { STAYS_BEHIND }
     )]
     JointBlocked {
         /// The joint, 0 to 2.
         joint: u8,
+        /// Whether the joint returns to its start. `zeroing.torque` affects only this motion.
+        returning: bool,
     },
     /// The measurements do not determine a value, or the value is impossible.
     #[error(

@@ -69,6 +69,19 @@ fn a_joint_that_something_blocks() {
     assert!(matches!(refused, Err(Obstacle::EarlyStop { joint: 0, .. })), "{refused:?}");
 }
 
+/// The largest torque of the motion back and forth does not depend on `zeroing.torque`.
+#[test]
+fn a_joint_that_is_stuck_while_the_finger_is_identified() {
+    let belief = ConfiguredFinger::default();
+    let mut finger = belief.clone();
+    finger.simulation.joint_coulomb_friction[1] = 0.3;
+    let refused = Bench::new(&finger, &belief, 1000.0).open().calibrate(Task::Identify).expect_err("refused");
+    assert_eq!(refused, Obstacle::JointBlocked { joint: 1, returning: false });
+    assert!(!refused.to_string().contains("zeroing.torque"), "{refused}");
+    let returning = Obstacle::JointBlocked { joint: 1, returning: true };
+    assert!(returning.to_string().contains("zeroing.torque"), "{returning}");
+}
+
 #[test]
 fn a_stop_that_is_not_where_it_is_configured() {
     let finger = with_stops();

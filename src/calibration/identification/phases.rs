@@ -142,7 +142,7 @@ impl Identification {
         guide.advance(joint, self.start[joint], self.speed * instruments.period);
         let strained = if guide.strained(joint) { strained + instruments.period } else { 0.0 };
         if strained > BLOCKED {
-            return Err(Obstacle::JointBlocked { joint: joint as u8 });
+            return Err(Obstacle::JointBlocked { joint: joint as u8, returning: true });
         }
         // Within this angle of its anchor, friction holds a joint against the spring of the guide.
         let held = self.friction_torque(instruments) / HOLDING_STIFFNESS;

@@ -117,7 +117,7 @@ impl Shaking {
         let blocked = (0..3).find(|&joint| guide.strained(joint));
         self.strained = if blocked.is_some() { self.strained + instruments.period } else { 0.0 };
         match blocked.filter(|_| self.strained > BLOCKED) {
-            Some(joint) => Err(Obstacle::JointBlocked { joint: joint as u8 }),
+            Some(joint) => Err(Obstacle::JointBlocked { joint: joint as u8, returning: false }),
             None => Ok(()),
         }
     }

@@ -1,0 +1,9 @@
+//! Causes and remedies of a refusal that depend on what the finger did.
+
+/// A joint stays behind its motion back and forth. The largest torque of this motion is fixed, so `zeroing.torque` does
+/// not affect it.
+pub(super) const STAYS_BEHIND: &str = "it has far too much friction, or it meets a stop because its zeros or the \
+    configured stops are wrong. Clear its way, check the joint and its tendons, and zero the finger again";
+
+/// A joint does not return to its start.
+pub(super) const DOES_NOT_RETURN: &str = "or zeroing.torque is too small for its friction. Check both";
