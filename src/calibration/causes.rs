@@ -7,3 +7,9 @@ pub(super) const STAYS_BEHIND: &str = "it has far too much friction, or it meets
 
 /// A joint does not return to its start.
 pub(super) const DOES_NOT_RETURN: &str = "or zeroing.torque is too small for its friction. Check both";
+
+/// A joint moves less between its stops than configured.
+pub(super) const NARROW: &str = "something blocks it, zeroing.torque is too small for its friction";
+
+/// A joint moves farther between its stops than configured.
+pub(super) const WIDE: &str = "a stop is missing, a tendon is off its pulley";

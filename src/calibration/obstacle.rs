@@ -1,6 +1,6 @@
 //! Why a routine gave up.
 
-use super::causes::{DOES_NOT_RETURN, STAYS_BEHIND};
+use super::causes::{DOES_NOT_RETURN, NARROW, STAYS_BEHIND, WIDE};
 use crate::model::Part;
 use thiserror::Error;
 
@@ -93,8 +93,8 @@ pub enum Obstacle {
     },
     /// A joint moved beyond the expected position of its stop.
     #[error(
-        "joint {joint} moved by {degrees:.0} degrees and reached no stop: a tendon is off its pulley, or \
-         zeroing.lower_stop_degrees or upper_stop_degrees is wrong. Check them"
+        "joint {joint} moved by {degrees:.0} degrees and reached no stop: a tendon is off its pulley, or the range \
+         from zeroing.lower_stop_degrees to upper_stop_degrees is too small for it. Check them"
     )]
     NoStop {
         /// The joint, 0 to 2.
@@ -104,11 +104,11 @@ pub enum Obstacle {
     },
     /// The range of a joint between its stops differs from the configured range.
     #[error(
-        "joint {joint} moves {degrees:.1} degrees between its stops, but {expected:.1} are configured: something \
-         blocks it, zeroing.torque is too small for its friction, or zeroing.lower_stop_degrees, upper_stop_degrees or \
-         geometry.r is wrong. Check them"
+        "joint {joint} moves {degrees:.1} degrees between its stops, but {expected:.1} are configured: {}, or the \
+         range from zeroing.lower_stop_degrees to upper_stop_degrees or geometry.r is wrong. Check them",
+        if degrees < expected { NARROW } else { WIDE }
     )]
-    EarlyStop {
+    WrongRange {
         /// The joint, 0 to 2.
         joint: u8,
         /// Measured range, degrees.

@@ -38,7 +38,7 @@ fn a_tendon_that_breaks_on_the_way() {
         eprintln!("{breaks_at} s: {refused:?}");
         let expected = match refused {
             Err(Obstacle::Slack { tendon, .. }) => tendon == 2,
-            Err(Obstacle::NoStop { .. } | Obstacle::EarlyStop { .. } | Obstacle::TimeLimit { .. }) => true,
+            Err(Obstacle::NoStop { .. } | Obstacle::WrongRange { .. } | Obstacle::TimeLimit { .. }) => true,
             _ => false,
         };
         assert!(expected, "{refused:?}");
@@ -66,7 +66,7 @@ fn a_joint_that_something_blocks() {
         Some(Surface::Wall { point: [3.0, 0.0, 0.0], normal: [-1.0, 0.0, 0.0], stiffness: 300.0 });
     let mut bench = Bench::new(&finger, &finger, 1000.0).open();
     let refused = bench.calibrate(Task::Zero);
-    assert!(matches!(refused, Err(Obstacle::EarlyStop { joint: 0, .. })), "{refused:?}");
+    assert!(matches!(refused, Err(Obstacle::WrongRange { joint: 0, .. })), "{refused:?}");
 }
 
 /// The largest torque of the motion back and forth does not depend on `zeroing.torque`.
@@ -88,11 +88,24 @@ fn a_stop_that_is_not_where_it_is_configured() {
     let mut belief = finger.clone();
     belief.zeroing.upper_stop_degrees = Some([63.0, 110.0, 123.0]);
     let refused = Bench::new(&finger, &belief, 1000.0).open().calibrate(Task::Zero);
-    assert!(matches!(refused, Err(Obstacle::EarlyStop { joint: 1, .. })), "{refused:?}");
+    assert!(matches!(refused, Err(Obstacle::WrongRange { joint: 1, .. })), "{refused:?}");
     let mut truth = finger.clone();
     truth.simulation.stop_margin_degrees = 30.0;
     let refused = Bench::new(&truth, &finger, 1000.0).open().calibrate(Task::Zero);
     assert!(matches!(refused, Err(Obstacle::NoStop { joint: 0, .. })), "{refused:?}");
+}
+
+/// The stops of the finger are 2.5 degrees farther out than configured.
+#[test]
+fn a_range_that_is_larger_than_configured() {
+    let finger = with_stops();
+    let mut truth = finger.clone();
+    truth.simulation.stop_margin_degrees = 5.5;
+    let refused = Bench::new(&truth, &finger, 1000.0).open().calibrate(Task::Zero).expect_err("refused");
+    let Obstacle::WrongRange { joint: 0, degrees, expected } = refused else { panic!("{refused:?}") };
+    assert!((degrees - expected - 5.0).abs() < 2.0, "{refused:?}");
+    let text = refused.to_string();
+    assert!(text.contains("upper_stop_degrees") && !text.contains("zeroing.torque"), "{text}");
 }
 
 #[test]

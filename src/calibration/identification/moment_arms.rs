@@ -88,7 +88,7 @@ impl MomentArms {
             let (expected, range) = (stops.1[joint] - stops.0[joint], row.dot(&moved) / row.norm_squared());
             if known && (range / expected - 1.0).abs() > RANGE {
                 let [degrees, expected] = [range, expected].map(f64::to_degrees);
-                return Err(Obstacle::EarlyStop { joint: joint as u8, degrees, expected });
+                return Err(Obstacle::WrongRange { joint: joint as u8, degrees, expected });
             }
             let found = moved / if known { expected } else { range };
             let difference = (found - row).amax() / row.amax();

@@ -147,13 +147,9 @@ impl Zeroing {
     fn check_range(&self, joint: usize) -> Result<(), Obstacle> {
         let (found, expected) =
             (self.stops_found.1[joint] - self.stops_found.0[joint], self.stops.1[joint] - self.stops.0[joint]);
-        let number = joint as u8;
-        if found < expected - TOLERANCE {
-            let (degrees, expected) = (found.to_degrees(), expected.to_degrees());
-            return Err(Obstacle::EarlyStop { joint: number, degrees, expected });
-        }
-        if found > expected + TOLERANCE {
-            return Err(Obstacle::NoStop { joint: number, degrees: found.to_degrees() });
+        if (found - expected).abs() > TOLERANCE {
+            let [degrees, expected] = [found, expected].map(f64::to_degrees);
+            return Err(Obstacle::WrongRange { joint: joint as u8, degrees, expected });
         }
         Ok(())
     }
