@@ -1,6 +1,7 @@
 //! The host's end of the cable: handshake, one exchange of frames per period, and error counts.
 
 mod allowance;
+mod asked;
 mod handshake;
 mod relayed;
 mod traffic;
@@ -202,7 +203,7 @@ impl<T: Transport> Link<T> {
                 Frame::Refused(refused) if refused.request == Kind::Command as u8 => {
                     return Err(LinkError::Refused { address, refused });
                 }
-                _ if self.relayed.is_awaited() => {
+                _ if self.relayed.is_answered_by(&message) => {
                     self.relayed.answered();
                     return Ok(Some(Arrival::Relayed(message)));
                 }

@@ -52,6 +52,26 @@ fn a_refused_handshake_frame_that_comes_late_is_no_fault() {
     }
 }
 
+/// A servo stops one finger and relays a request to another one. The answer to its own Stop comes first.
+#[test]
+fn only_the_answer_to_a_relayed_request_is_passed_on() {
+    let wire = |address, sequence, frame| WireFrame::new(&Message { address, sequence, frame }).as_bytes().to_vec();
+    let stopped = |address, sequence| wire(address, sequence, Frame::Stopped(Stopped::default()));
+    let other = Refused { request: Kind::Configure as u8, reason: Reason::Running, detail: 0 };
+    let foreign = [stopped(1, 4), stopped(2, 8), stopped(1, 9), wire(2, 9, Frame::Refused(other))].concat();
+    let answers = [foreign, stopped(2, 9), stopped(2, 9)].concat();
+    let mut link = Link::new(OtherEnd::new(move |_| answers.clone(), Vec::new()));
+    link.relay(&wire(2, 9, Frame::Stop(Stop)));
+    link.send(&[]).unwrap();
+    let arrival = link.next_arrival(&mut Allowance::for_replies(MS)).unwrap();
+    let expected = Message { address: 2, sequence: 9, frame: Frame::Stopped(Stopped::default()) };
+    assert_eq!(arrival, Some(Arrival::Relayed(expected)));
+    assert!(!link.awaits_relayed());
+    assert_eq!(link.next_arrival(&mut Allowance::for_replies(MS)).unwrap(), None);
+    // The four frames before the answer, and its repetition.
+    assert_eq!(link.counters().foreign, 5);
+}
+
 #[test]
 fn endless_rubbish_delays_no_call() {
     /// Always has bytes to read. Each read takes 10 us.

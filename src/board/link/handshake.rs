@@ -1,6 +1,7 @@
 //! The requests outside the servo's cycle. They are repeated until the board answers. Only [`Link::stop`] sends its
 //! request once.
 
+use super::asked::Asked;
 use super::{Allowance, Link, LinkCounters};
 use crate::board::link_error::LinkError;
 use crate::board::protocol::{
@@ -192,7 +193,8 @@ impl<T: Transport> Link<T> {
     fn exchange(&mut self, address: u8, request: Frame, deadline: u64) -> Result<Option<Message>, LinkError> {
         self.handshake_sequence = self.handshake_sequence.wrapping_add(1);
         let sequence = self.handshake_sequence;
-        let wire = WireFrame::new(&Message { address, sequence, frame: request });
+        let request = Message { address, sequence, frame: request };
+        let wire = WireFrame::new(&request);
         let mut bytes = [0; 1 + MAX_WIRE];
         let length = 1 + wire.as_bytes().len();
         bytes[1..length].copy_from_slice(wire.as_bytes());
@@ -202,13 +204,7 @@ impl<T: Transport> Link<T> {
 
         let mut allowance = Allowance::until(deadline.min(self.transport.now() + PATIENCE));
         while let Some(message) = self.next_message(&mut allowance)? {
-            let answers = match message.frame {
-                Frame::Refused(refused) => refused.request == request.kind() as u8,
-                // The type of an answer is the type of its request with the top bit set.
-                frame => frame.kind() as u8 == request.kind() as u8 | 0x8,
-            };
-            let meant = message.sequence == sequence && (message.address == address || address == ANY_ADDRESS);
-            if answers && meant {
+            if Asked::by(&request).is_answered_by(&message) {
                 return Ok(Some(message));
             }
             self.foreign += 1;

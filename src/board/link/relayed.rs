@@ -1,6 +1,7 @@
 //! A handshake request of another thread. The servo sends the request after its Commands.
 
-use crate::board::protocol::MAX_WIRE;
+use super::asked::Asked;
+use crate::board::protocol::{MAX_WIRE, Message};
 
 /// Number of periods in which the answer may arrive. The longest answer ends in the period after its request. The other
 /// periods allow for the delay of a USB bridge.
@@ -11,20 +12,22 @@ const ANSWER_PERIODS: u8 = 20;
 pub(super) struct RelayedRequest {
     bytes: [u8; 1 + MAX_WIRE],
     length: usize,
+    /// What the request asks for; none if its bytes are no frame.
+    asked: Option<Asked>,
     /// Number of periods for which the answer is still awaited.
     periods: u8,
 }
 
 impl RelayedRequest {
     pub fn none() -> Self {
-        Self { bytes: [0; 1 + MAX_WIRE], length: 0, periods: 0 }
+        Self { bytes: [0; 1 + MAX_WIRE], length: 0, asked: None, periods: 0 }
     }
 
     /// Sets the bytes of the request, with delimiters. A request that is too long is ignored.
     pub fn set(&mut self, bytes: &[u8]) {
         if let Some(room) = self.bytes.get_mut(..bytes.len()) {
             room.copy_from_slice(bytes);
-            self.length = bytes.len();
+            (self.length, self.asked) = (bytes.len(), Asked::on_wire(bytes));
         }
     }
 
@@ -38,6 +41,12 @@ impl RelayedRequest {
     /// Whether an answer is awaited.
     pub fn is_awaited(&self) -> bool {
         self.periods > 0
+    }
+
+    /// Returns whether this is the awaited answer. Other frames come too, for example the answer to a Stop that the
+    /// servo has sent to another finger.
+    pub fn is_answered_by(&self, message: &Message) -> bool {
+        self.is_awaited() && self.asked.is_some_and(|asked| asked.is_answered_by(message))
     }
 
     /// Ends the wait, because the answer has arrived.

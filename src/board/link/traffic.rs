@@ -49,6 +49,6 @@ pub enum Arrival {
         /// The content of the answer.
         event: TactileEvent,
     },
-    /// Any other answer that arrives while the answer to a relayed request is awaited.
+    /// The answer to a relayed request.
     Relayed(Message),
 }
