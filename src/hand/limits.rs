@@ -28,18 +28,19 @@ impl Hand {
     /// Returns an error if there is no such finger.
     pub fn limits(&self, finger: i32) -> Result<FingerLimits, HandError> {
         let finger = FingerNumber::try_from(finger)?;
-        let admission = self.dispatcher.member(finger)?.admission.read();
-        let ((low, high), stiffness) = (admission.joint_limits, admission.stiffness_bound);
-        drop(admission);
+        let member = self.dispatcher.member(finger)?;
+        // An adjustment holds this lock while it changes the admission, so all limits belong to the same moment.
         let configuration = self.configuration.read();
         let configured = &configuration.fingers[finger.index()];
+        let admission = member.admission.read();
+        let (low, high) = admission.joint_limits;
         Ok(FingerLimits {
             joint_minimum: low.into(),
             joint_maximum: high.into(),
             tension_minimum: configured.tendon.minimum,
             tension_maximum: configured.tendon.maximum,
             motor_torque: configured.motor.torque_limit,
-            stiffness,
+            stiffness: admission.stiffness_bound,
         })
     }
 }
@@ -66,5 +67,25 @@ mod tests {
         assert!(close(adjusted.joint_maximum[0], 50.0_f64.to_radians()), "{adjusted:?}");
         assert_eq!(hand.limits(1).expect("finger 1"), limits);
         assert!(hand.limits(4).is_err());
+    }
+
+    /// Most of the time of an adjustment lies between its beginning and its change of the bound of Kx.
+    #[test]
+    fn limits_that_are_read_during_an_adjustment_belong_to_one_moment() {
+        let mut configuration = Configuration::default();
+        configuration.hand.real_time = RealTime::Ignore;
+        let hand = Hand::open(configuration).expect("the simulated hand");
+        let adjust = |bound: u32| {
+            let keys = format!("stiffness.bound = {bound}\ntendon.minimum = {}", bound + 1);
+            hand.adjust(2, &keys).expect("finger 2 is adjusted");
+        };
+        adjust(4);
+        std::thread::scope(|scope| {
+            let adjusting = scope.spawn(|| (0..10).for_each(|turn| adjust(4 + turn % 2)));
+            while !adjusting.is_finished() {
+                let limits = hand.limits(2).expect("finger 2");
+                assert!((limits.tension_minimum - limits.stiffness - 1.0).abs() < 1e-4, "{limits:?}");
+            }
+        });
     }
 }
