@@ -47,7 +47,10 @@ pub struct sun2xp_path_pose {
 /// and it continues the anchor's motion. It passes every pose at its time and rests at the last one.
 /// Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only
 /// pose is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
-/// continuous. Because they are fed forward, the finger follows without the lag of sun2xp_send_position.
+/// continuous, with one exception: a path that would be refused if it continued the motion first brakes
+/// for 0.15 s. It begins with the present speed, but without acceleration and jerk. State feedback smooths
+/// this step. Speed, acceleration and jerk are fed forward, so the finger follows without the lag of
+/// sun2xp_send_position.
 /// Between two poses that have a Kx, Kx changes linearly. Until the first pose that has a Kx, Kx changes
 /// linearly from its value at the beginning of the path. After sun2xp_send_joint_stiffness this value is 0,
 /// and the joint stiffness ends when a path with a Kx begins. So send Kx before such a path. A path without a

@@ -28,7 +28,9 @@ pub struct PathPose {
 
 impl Hand {
     /// Sends a path to finger 1, 2 or 3. The path begins at once where the set point is, continues its motion, passes
-    /// every pose at its time, and rests at the last one. Joint angles, rates, accelerations and jerk are continuous.
+    /// every pose at its time, and rests at the last one. Joint angles, rates, accelerations and jerk are continuous,
+    /// with one exception: a path that would be refused if it continued the motion first brakes for 0.15 s. It begins
+    /// with the present rates, but without acceleration and jerk. State feedback smooths this step.
     /// The finger follows without the lag with which it follows a single set point.
     ///
     /// The whole path is checked against the joint limits and the limits of `[finger.motion]` before anything moves. A

@@ -73,6 +73,8 @@ fn a_slow_path_of_a_finger_in_motion_is_accepted() {
             let pieces = plan.table().pieces;
             let begin = pieces[0].at(0.0);
             assert!((begin.place - TARGET).amax() < 1e-12 && (begin.rates - motion.rates).amax() < 1e-9);
+            // A path that first brakes does not continue the acceleration and the jerk.
+            assert!(begin.accelerations.amax() < 1e-9 && begin.jerk.amax() < 1e-6);
             assert!((plan.end() - Vector3::from(angles)).amax() < 1e-3);
             // Except while it brakes, the finger stays between both places.
             let [low, high] = [TARGET.inf(&angles.into()), TARGET.sup(&angles.into())];
