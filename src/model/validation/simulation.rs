@@ -13,6 +13,7 @@ impl ConfiguredFinger {
         each("simulation.joint_coulomb_friction", &simulation.joint_coulomb_friction, 0.0, 1.0, "N m")?;
         each("simulation.tendon_stiffness", &simulation.tendon_stiffness, 1.0, 3000.0, "N/cm")?;
         each("simulation.rotor_inertia", &simulation.rotor_inertia, 1e-8, 1.0, "kg m^2")?;
+        self.check_simulated_rotors()?;
         each("simulation.motor_viscous_friction", &simulation.motor_viscous_friction, 0.0, 1.0, "N m s/rad")?;
         each("simulation.motor_coulomb_friction", &simulation.motor_coulomb_friction, 0.0, 1.0, "N m")?;
         within("simulation.shaft_friction", simulation.shaft_friction, 0.0, 1.0, "")?;
