@@ -152,6 +152,19 @@ mod tests {
         }
     }
 
+    /// The periods are as long as the numbers permit, so every time of a single thread is within its period.
+    #[test]
+    fn sums_that_are_too_large_have_no_bound() {
+        const TENTH: u64 = u64::MAX / 10;
+        let longest = |priority, period, computing| thread(0, priority, period, [0, computing, 0, 0]);
+        // The window and the bound of the other thread are 12 tenths of the largest number together.
+        let half = longest(80, u64::MAX - 1, 6 * TENTH);
+        assert_eq!(done(&[half, half]), [None, None]);
+        // Three cycles of the other thread come to 9 tenths.
+        let often = longest(90, 3 * TENTH, 3 * TENTH);
+        assert_eq!(done(&[often, longest(80, u64::MAX - 1, 9 * TENTH)]), [Some(3 * TENTH), None]);
+    }
+
     #[test]
     fn a_thread_that_may_be_late_has_no_bound_nor_has_one_that_waits_for_it() {
         let late = thread(0, 90, 1000, [0, 600, 500, 0]);

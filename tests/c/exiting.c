@@ -23,7 +23,12 @@
 static void commands_are_refused(void)
 {
     static const double Kx[9] = {3, 0, 0, 0, 3, 0, 0, 0, 3}, Three[3] = {0.1, 0.5, 0.9};
+    static struct sun2xp_reflex Guard;
 
+    Guard.size = sizeof Guard;
+    Guard.condition = SUN2XP_WHEN_EVENT;
+    Guard.event = SUN2XP_EVENT_CONTACT;
+    Guard.reaction = SUN2XP_THEN_HOLD;
     REFUSED(OpenHand(), ESHUTDOWN, "before exit");
     REFUSED(SendPosD(1, Three), ESHUTDOWN, "before exit");
     REFUSED(SendKxD(1, Kx), ESHUTDOWN, "before exit");
@@ -36,6 +41,7 @@ static void commands_are_refused(void)
     REFUSED(sun2xp_zero(HAND, 1), ESHUTDOWN, "before exit");
     REFUSED(sun2xp_identify(HAND, 1), ESHUTDOWN, "before exit");
     REFUSED(sun2xp_recover(HAND, 1), ESHUTDOWN, "before exit");
+    REFUSED(sun2xp_install_reflex(HAND, 1, &Guard), ESHUTDOWN, "before exit");
     REFUSED(SendPosD(1, (double *)NULL), EFAULT, "null");
     CHECK(sun2xp_stop_all() == 0);
 }

@@ -52,6 +52,22 @@ fn a_path_that_is_too_fast_is_made_slower_if_commands_are_clamped() {
     assert!(matches!(again, Err(PathError::TooFast { .. })));
 }
 
+/// The text gives the factor with two digits. The path is admitted with this factor, and refused with the next smaller
+/// one.
+#[test]
+fn the_factor_of_a_path_that_is_too_fast_is_rounded_up() {
+    let rest = Reference { joints: TARGET, ..Reference::default() };
+    let planned = |time: f64| plan_path(&configuration(), FingerNumber::ONE, &rest, &[joints(time, [0.7, 0.6, 1.1])]);
+    for step in 0..20 {
+        let time = 0.05 + 0.005 * f64::from(step);
+        let text = planned(time).err().expect("too fast").to_string();
+        let remedy = text.split_once("multiply all times by ").unwrap_or_else(|| panic!("{text}")).1;
+        let factor: f64 = remedy.split(',').next().and_then(|factor| factor.parse().ok()).expect("a factor");
+        assert!(planned(time * factor).is_ok(), "{time} s: {text}");
+        assert!(planned(time * (factor - 0.01)).is_err(), "{time} s: {text}");
+    }
+}
+
 /// A finger that still settles has small derivatives, which a single polynomial over 30 s would turn into many rad.
 #[test]
 fn a_slow_path_of_a_finger_in_motion_is_accepted() {
