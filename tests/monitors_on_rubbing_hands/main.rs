@@ -17,6 +17,7 @@ use rig::{Bench, MILLISECOND};
 use std::collections::BTreeMap;
 use std::panic::catch_unwind;
 use sun2xp::calibration::Task;
+use sun2xp::control::Numbers;
 use sun2xp::finger::{Fault, FaultKind};
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use sun2xp::simulated::Defect;
@@ -150,13 +151,19 @@ fn a_tendon_that_hangs_for_a_moment_on_an_identified_hand_is_no_fault() {
     }
 }
 
+/// Returns the period of the dither of finger 1, ns, rounded up to whole milliseconds.
+fn dither_period(configuration: &Configuration) -> u64 {
+    let numbers = Numbers::new(&configuration.fingers[0].controller, configuration.hand.rate).expect("usable numbers");
+    (1000.0 / numbers.dither_frequency).ceil() as u64 * MILLISECOND
+}
+
 /// Injects a defect into a part of the rubbing hand, which continues to move. Returns the part, the fault, and the time
 /// to the fault, ms. `shows` returns the direction in which the defect shows in a cycle, or 0. The time counts from the
 /// first cycle in which it shows. It counts again from the next such cycle if the defect then shows in the other
 /// direction, or has not shown for a period of the dither.
 fn report(seed: u64, defect: impl Fn(u8) -> Defect, shows: impl Fn(&Bench, u8) -> f64) -> (u8, Option<Fault>, f64) {
-    const DITHER_PERIOD: u64 = 23 * MILLISECOND;
     let mut bench = bench(&RUBBING, seed);
+    let dither_period = dither_period(&bench.configuration);
     let before = 3000 + bench.random(0.0, 1000.0) as u64;
     bench.run(before);
     let part = bench.part();
@@ -168,7 +175,7 @@ fn report(seed: u64, defect: impl Fn(u8) -> Defect, shows: impl Fn(&Bench, u8) -
         bench.cycle();
         let (now, shown) = (bench.now(), shows(&bench, part));
         if shown != 0.0 {
-            if began.is_none() || shown != direction || now - last > DITHER_PERIOD {
+            if began.is_none() || shown != direction || now - last > dither_period {
                 began = Some(now);
             }
             (last, direction) = (now, shown);
