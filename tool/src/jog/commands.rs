@@ -98,6 +98,12 @@ impl From<HandError> for Refused {
 }
 
 impl Command {
+    /// Returns whether the command ends a push. Such a command moves nothing by itself. It is neither refused nor
+    /// dropped because of other commands, because the push would then go on.
+    pub fn ends_push(&self) -> bool {
+        matches!(self, Self::Push { force: [0.0, 0.0, 0.0], .. })
+    }
+
     /// Carries the command out, and returns what was done, in words.
     ///
     /// # Errors

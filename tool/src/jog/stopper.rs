@@ -1,19 +1,21 @@
 //! The emergency stop of a person, which also drops the commands that still wait.
 
+use super::commands::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Stops all fingers, from any thread.
 #[derive(Clone, Default)]
 pub struct Stopper {
-    /// Number of emergency stops. Commands that were sent before the last stop are not carried out.
+    /// Number of emergency stops. Commands that were sent before the last stop are not carried out, except the end of a
+    /// push.
     stops: Arc<AtomicU64>,
     /// Whether the hand is about to be closed. Then no further command is carried out.
     ending: Arc<AtomicBool>,
 }
 
 impl Stopper {
-    /// Stops all fingers at once, and drops the commands that are still waiting.
+    /// Stops all fingers at once, and drops the commands that are still waiting, except the end of a push.
     pub fn stop(&self) {
         // The number rises first. In the reverse order, a recovery that begins between the two statements would cancel
         // the stop and move the finger again.
@@ -31,14 +33,16 @@ impl Stopper {
         self.stops.load(Ordering::SeqCst)
     }
 
-    /// Carries out a command that was sent after `stops` stops. Returns none if a later stop or the end has dropped it.
-    pub fn carry_out<T>(&self, stops: u64, command: impl FnOnce() -> T) -> Option<T> {
-        if self.ending.load(Ordering::SeqCst) || self.stops() != stops {
+    /// Calls `execute` for a command that was sent after `stops` stops. Returns none if a later stop or the end has
+    /// dropped the command.
+    pub fn carry_out<T>(&self, command: &Command, stops: u64, execute: impl FnOnce() -> T) -> Option<T> {
+        let stopped = || self.stops() != stops && !command.ends_push();
+        if self.ending.load(Ordering::SeqCst) || stopped() {
             return None;
         }
-        let result = command();
+        let result = execute();
         // The stop may have come between the check and the command, and the command may have recovered a finger.
-        if self.stops() != stops {
+        if stopped() {
             sun2xp::stop_all();
         }
         Some(result)
@@ -52,10 +56,15 @@ mod tests {
     #[test]
     fn nothing_is_carried_out_after_the_end() {
         let stopper = Stopper::default();
-        assert_eq!(stopper.carry_out(0, || 1), Some(1));
+        let carry_out = |command, stops| stopper.carry_out(&command, stops, || 1);
+        let end_of_push = Command::Push { finger: 1, force: [0.0; 3] };
+        assert_eq!(carry_out(Command::Open, 0), Some(1));
         // The number of a command that was sent before another stop.
-        assert_eq!(stopper.carry_out(1, || 1), None);
+        assert_eq!(carry_out(Command::Open, 1), None);
+        assert_eq!(carry_out(Command::Push { finger: 1, force: [0.0, 0.0, 0.1] }, 1), None);
+        assert_eq!(carry_out(end_of_push, 1), Some(1), "a stop does not let a push go on");
         stopper.end();
-        assert_eq!(stopper.carry_out(0, || 1), None);
+        assert_eq!(carry_out(Command::Open, 0), None);
+        assert_eq!(carry_out(end_of_push, 0), None);
     }
 }

@@ -10,7 +10,7 @@ use std::thread::{self, JoinHandle};
 use sun2xp::Hand;
 use sun2xp::model::configuration::Configuration;
 
-/// Largest number of commands that wait.
+/// Largest number of commands that wait. The end of a push may always wait, because the push would otherwise go on.
 const MOST_WAITING: usize = 4;
 
 /// The handle of the thread, for the code that handles the keys.
@@ -36,7 +36,7 @@ impl Worker {
         let (stopped, left) = (stopper.clone(), waiting.clone());
         let thread = thread::Builder::new().name("commands".into()).spawn(move || {
             for (stops, command) in to_do {
-                let result = stopped.carry_out(stops, || match command.execute(&hand, &configuration) {
+                let result = stopped.carry_out(&command, stops, || match command.execute(&hand, &configuration) {
                     Ok(text) => (text, false),
                     Err(refused) => (refused.to_string(), true),
                 });
@@ -49,13 +49,11 @@ impl Worker {
     }
 
     /// Sends a command. Returns false, and does not send it, if several commands are still waiting. A key that repeats
-    /// while a finger recovers would otherwise move the finger much later.
+    /// while a finger recovers would otherwise move the finger much later. The end of a push is always sent.
     #[must_use]
     pub fn send(&self, command: Command) -> bool {
-        let Some(commands) = self.commands.as_ref().filter(|_| self.waiting.load(Ordering::SeqCst) < MOST_WAITING)
-        else {
-            return false;
-        };
+        let room = command.ends_push() || self.waiting.load(Ordering::SeqCst) < MOST_WAITING;
+        let Some(commands) = self.commands.as_ref().filter(|_| room) else { return false };
         self.waiting.fetch_add(1, Ordering::SeqCst);
         commands.send((self.stopper.stops(), command)).is_ok()
     }
@@ -85,6 +83,10 @@ impl Drop for Worker {
 mod tests {
     use super::*;
     use crate::jog::commands::desired_joints;
+    use std::time::Duration;
+
+    /// Longest time until a result. The machine of the tests may be busy.
+    const PATIENCE: Duration = Duration::from_secs(60);
 
     #[test]
     fn commands_that_wait_at_the_end_are_not_carried_out() {
@@ -100,5 +102,22 @@ mod tests {
         }
         drop(worker);
         assert_eq!(desired_joints(&hand, 2).expect("runs"), before);
+    }
+
+    #[test]
+    fn the_end_of_a_push_is_carried_out_after_the_commands_that_wait() {
+        let configuration = Configuration::default();
+        let hand = Arc::new(Hand::open(configuration.clone()).expect("the simulated hand opens"));
+        hand.stop(1).expect("open");
+        let worker = Worker::start(hand, configuration).expect("a thread");
+        // The recovery takes some time, and the others wait for it.
+        assert!(worker.send(Command::Recover { finger: 1 }));
+        for _ in 1..MOST_WAITING {
+            assert!(worker.send(Command::MoveJoints { finger: 2, by: [0.0; 3] }));
+        }
+        assert!(worker.send(Command::Push { finger: 1, force: [0.0; 3] }));
+        let result = |_| worker.results.recv_timeout(PATIENCE).expect("a result");
+        let results: Vec<_> = (0..=MOST_WAITING).map(result).collect();
+        assert_eq!(results.last(), Some(&("finger 1: no push".to_owned(), false)));
     }
 }

@@ -12,7 +12,8 @@ use sun2xp::Hand;
 use sun2xp::model::configuration::Configuration;
 use tokio::sync::mpsc::UnboundedSender;
 
-/// Number of commands of pages that may wait. A recovery takes seconds, and commands wait for it.
+/// Number of commands of pages that may wait. A recovery takes seconds, and commands wait for it. The end of a push may
+/// always wait, because the push would otherwise go on.
 const WAITING: usize = 32;
 
 /// The thread that carries the commands out one after the other. It holds the hand only while it carries one out.
@@ -80,7 +81,7 @@ impl Control {
             let _ = answers.send(Answer::new(true, "all fingers are stopped".into()));
             return;
         }
-        if self.waiting.load(Ordering::Relaxed) >= WAITING {
+        if !command.ends_push() && self.waiting.load(Ordering::Relaxed) >= WAITING {
             let text = "the hand is busy, and too many commands wait: send the command again later";
             let _ = answers.send(Answer::new(false, text.into()));
             return;
@@ -125,11 +126,8 @@ impl Executor {
     fn run(&self, orders: &Receiver<Order>) {
         for Order { command, stops, answers } in orders {
             self.waiting.fetch_sub(1, Ordering::Relaxed);
-            // The end of a push moves nothing by itself, so a stop does not drop it.
-            let ends_push = matches!(command, Command::Push { force: [0.0, 0.0, 0.0], .. });
-            let stops = if ends_push { self.stopper.stops() } else { stops };
             let dropped = || Answer::new(false, "dropped by the emergency stop: send it again".into());
-            let answer = self.stopper.carry_out(stops, || self.execute(&command)).unwrap_or_else(dropped);
+            let answer = self.stopper.carry_out(&command, stops, || self.execute(&command)).unwrap_or_else(dropped);
             // The page may have left.
             let _ = answers.map(|answers| answers.send(answer));
         }

@@ -34,14 +34,21 @@ fn open(program: &Program) -> Socket {
 /// Sends a command, and returns the answer.
 fn answer(socket: &mut Socket, command: &str) -> Value {
     socket.send(command);
-    loop {
+    answers(socket, 1).remove(0)
+}
+
+/// Returns the next answers, in the order in which they come.
+fn answers(socket: &mut Socket, number: usize) -> Vec<Value> {
+    let mut answers = Vec::new();
+    while answers.len() < number {
         let message = message(socket);
         match message["type"].as_str() {
-            Some("answer") => return message,
+            Some("answer") => answers.push(message),
             Some("batch") => socket.send(&format!(r#"{{"received":{}}}"#, message["number"])),
             _ => {}
         }
     }
+    answers
 }
 
 /// Waits until joint 0 of finger 1 is where it is wanted.
@@ -100,16 +107,30 @@ fn a_stop_drops_the_recoveries_that_wait() {
         page.send(&format!(r#"{{"command":"recover","finger":{finger}}}"#));
     }
     page.send(r#"{"command":"stop"}"#);
-    let mut answers = Vec::new();
-    while answers.len() < 4 {
-        let message = message(&mut page);
-        match message["type"].as_str() {
-            Some("answer") => answers.push(message["text"].as_str().expect("a text").to_owned()),
-            Some("batch") => page.send(&format!(r#"{{"received":{}}}"#, message["number"])),
-            _ => {}
-        }
+    let answers = answers(&mut page, 4);
+    let texts: Vec<&str> = answers.iter().map(|answer| answer["text"].as_str().expect("a text")).collect();
+    let dropped = texts.iter().filter(|text| text.contains("dropped by the emergency stop")).count();
+    assert!(dropped >= 2, "{texts:?}");
+    assert!(!texts.iter().any(|text| text.contains("finger 2: holds") || text.contains("finger 3: holds")));
+}
+
+#[test]
+fn a_push_ends_although_too_many_commands_wait() {
+    let (program, _folder) = jog(&["--control"]);
+    let mut page = open(&program);
+    assert_eq!(answer(&mut page, r#"{"command":"stop"}"#)["done"], true);
+    // The first recovery takes some time, and the others wait for it.
+    for finger in 1..=3 {
+        page.send(&format!(r#"{{"command":"recover","finger":{finger}}}"#));
     }
-    let dropped = answers.iter().filter(|text| text.contains("dropped by the emergency stop")).count();
-    assert!(dropped >= 2, "{answers:?}");
-    assert!(!answers.iter().any(|text| text.contains("finger 2: holds") || text.contains("finger 3: holds")));
+    for _ in 0..40 {
+        page.send(r#"{"command":"scale_stiffness","finger":1,"factor":1}"#);
+    }
+    page.send(r#"{"command":"push","finger":1,"force":[0,0,0]}"#);
+    let answers = answers(&mut page, 44);
+    assert!(
+        answers.iter().any(|answer| answer["text"].as_str().is_some_and(|text| text.contains("too many commands")))
+    );
+    let ended = answers.iter().find(|answer| answer["text"] == "finger 1: no push");
+    assert!(ended.is_some_and(|answer| answer["done"] == true), "{answers:?}");
 }
