@@ -3,6 +3,7 @@
 pub mod commands;
 mod keys;
 pub mod panel;
+mod push;
 pub mod stopper;
 mod worker;
 
@@ -90,8 +91,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let controls = Controls {
         keys: |view: &mut View, key| keys::press(view, &worker, &configuration, key),
         tick: |view: &mut View| {
-            if let (Some(panel), Some(result)) = (&mut view.jog, worker.result()) {
-                panel.result = Some(result);
+            if let Some(panel) = &mut view.jog {
+                worker.outcomes().for_each(|outcome| panel.conclude(outcome));
             }
         },
         urgent: move |event: &Event| keys::stop(&stopper, event),

@@ -47,10 +47,9 @@ pub fn press(view: &mut View, worker: &Worker, configuration: &Configuration, ke
         KeyCode::Char('{') => view.scroll = view.scroll.saturating_sub(1),
         KeyCode::Char('}') => view.scroll = view.scroll.saturating_add(1),
         code => {
-            if let Some(command) = command(&mut panel, configuration, code)
-                && !worker.send(command)
-            {
-                panel.result = Some(("the hand still carries out earlier commands: wait for it".into(), true));
+            if let Some(command) = command(&mut panel, configuration, code) {
+                let sent = worker.send(command);
+                panel.note(&command, sent);
             }
         }
     }
@@ -61,7 +60,8 @@ pub fn press(view: &mut View, worker: &Worker, configuration: &Configuration, ke
     Pressed::Handled
 }
 
-/// Returns the command of a key; none if the key has no command.
+/// Returns the command of a key; none if the key has no command. The panel is told by [`JogPanel::note`] whether the
+/// command was sent.
 pub fn command(panel: &mut JogPanel, configuration: &Configuration, code: KeyCode) -> Option<Command> {
     let finger = panel.finger;
     Some(match code {
@@ -71,7 +71,7 @@ pub fn command(panel: &mut JogPanel, configuration: &Configuration, code: KeyCod
         KeyCode::Char('c') => Command::Close,
         KeyCode::Char('r') => Command::Recover { finger },
         KeyCode::Char('0') => {
-            *panel.force()? = [0.0; 3];
+            panel.push(finger)?.wanted = [0.0; 3];
             Command::Push { finger, force: [0.0; 3] }
         }
         code => {
@@ -88,7 +88,7 @@ pub fn command(panel: &mut JogPanel, configuration: &Configuration, code: KeyCod
                 }
                 Mode::Push => {
                     let step = sign * PUSH_STEPS[panel.step];
-                    let force = panel.force()?;
+                    let force = &mut panel.push(finger)?.wanted;
                     force[axis] += step;
                     // Decimal steps such as 0.1 N have no exact binary value. Rounding keeps their sum free of errors.
                     force[axis] = (force[axis] * 1e6).round() / 1e6;
@@ -140,7 +140,7 @@ mod tests {
         press(&mut panel, KeyCode::Down);
         assert_eq!(press(&mut panel, KeyCode::Down), Some(Command::Push { finger: 3, force: [0.0, 0.0, -0.4] }));
         assert_eq!(press(&mut panel, KeyCode::Char('0')), Some(Command::Push { finger: 3, force: [0.0; 3] }));
-        assert_eq!((panel.forces[2], press(&mut panel, KeyCode::F(5))), ([0.0; 3], None));
+        assert_eq!((panel.push(3).expect("there").wanted, press(&mut panel, KeyCode::F(5))), ([0.0; 3], None));
     }
 
     #[test]

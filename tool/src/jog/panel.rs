@@ -1,5 +1,8 @@
 //! The controls of `sun2xp jog`: what the person has chosen, and the lines that show it.
 
+use super::commands::Command;
+use super::push::Push;
+use super::worker::Outcome;
 use crate::monitor::draw::Palette;
 use crate::monitor::view::View;
 use crate::monitor::words::wrap;
@@ -40,8 +43,8 @@ pub struct JogPanel {
     pub step: usize,
     /// Whether the hand has a real finger. Then steps are limited.
     pub real: bool,
-    /// The push on each finger in the palm's frame, N.
-    pub forces: [[f64; 3]; 3],
+    /// The push on each finger.
+    pushes: [Push; 3],
     /// The result of the last command in words, and whether it was refused.
     pub result: Option<(String, bool)>,
 }
@@ -49,7 +52,7 @@ pub struct JogPanel {
 impl JogPanel {
     /// Returns the controls at the start.
     pub fn new(real: bool) -> Self {
-        Self { finger: 1, mode: Mode::Joints, step: 2, real, forces: [[0.0; 3]; 3], result: None }
+        Self { finger: 1, mode: Mode::Joints, step: 2, real, pushes: Default::default(), result: None }
     }
 
     /// Makes the steps larger or smaller.
@@ -58,10 +61,37 @@ impl JogPanel {
         self.step = if larger { (self.step + 1).min(most) } else { self.step.saturating_sub(1) };
     }
 
-    /// Returns the push on the chosen finger, N.
-    pub fn force(&mut self) -> Option<&mut [f64; 3]> {
-        let index = usize::try_from(self.finger - 1).ok()?;
-        self.forces.get_mut(index)
+    /// Returns the push on a finger; none if there is no finger with this number.
+    pub fn push(&mut self, finger: i32) -> Option<&mut Push> {
+        let index = usize::try_from(finger - 1).ok()?;
+        self.pushes.get_mut(index)
+    }
+
+    /// Notes whether a command was sent.
+    pub fn note(&mut self, command: &Command, sent: bool) {
+        if let Command::Push { finger, .. } = *command
+            && let Some(push) = self.push(finger)
+        {
+            push.note(sent);
+        }
+        if !sent {
+            self.result = Some(("the hand still carries out earlier commands: wait for it".into(), true));
+        }
+    }
+
+    /// Shows what became of a command that was sent.
+    pub fn conclude(&mut self, Outcome { command, result }: Outcome) {
+        if let Command::Push { finger, .. } = command
+            && let Some(push) = self.push(finger)
+        {
+            push.conclude(matches!(result, Some(Ok(_))));
+        }
+        // The text of the emergency stop stays if the stop has dropped the command.
+        match result {
+            Some(Ok(text)) => self.result = Some((text, false)),
+            Some(Err(text)) => self.result = Some((text, true)),
+            None => {}
+        }
     }
 }
 
@@ -85,7 +115,7 @@ pub fn lines(view: &View, palette: &Palette, width: usize) -> Vec<Line<'static>>
     };
     spans.push(Span::styled(arrows, palette.dim));
     let mut lines = vec![Line::from(spans)];
-    let pushed = panel.forces.iter().zip(1..).filter(|(force, _)| **force != [0.0; 3]);
+    let pushed = panel.pushes.iter().map(Push::acting).zip(1..).filter(|(force, _)| *force != [0.0; 3]);
     for ([x, y, z], finger) in pushed {
         let text = format!(" pushes finger {finger} with {x:.2} {y:.2} {z:.2} N in the palm's frame; key 0 ends it");
         lines.push(Line::styled(text, palette.warning));
@@ -99,4 +129,52 @@ pub fn lines(view: &View, palette: &Palette, width: usize) -> Vec<Line<'static>>
     let texts = wrap(text, width.saturating_sub(2));
     lines.extend(texts.into_iter().map(|line| Line::styled(format!(" {line}"), style)));
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(panel: &JogPanel) -> String {
+        let mut view = View::new(String::new());
+        view.jog = Some(panel.clone());
+        lines(&view, &Palette::plain(), 80).iter().map(Line::to_string).collect()
+    }
+
+    fn pushing(force: f64) -> Command {
+        Command::Push { finger: 2, force: [0.0, 0.0, force] }
+    }
+
+    fn press(panel: &mut JogPanel, force: f64, sent: bool) {
+        panel.push(2).expect("there").wanted = [0.0, 0.0, force];
+        panel.note(&pushing(force), sent);
+    }
+
+    fn conclude(panel: &mut JogPanel, force: f64, result: Option<Result<&str, &str>>) {
+        let result = result.map(|result| result.map(String::from).map_err(String::from));
+        panel.conclude(Outcome { command: pushing(force), result });
+    }
+
+    #[test]
+    fn a_push_is_shown_while_it_acts_and_a_refused_one_is_shown_as_refused() {
+        let mut panel = JogPanel::new(false);
+        press(&mut panel, 0.2, true);
+        press(&mut panel, 0.4, true);
+        assert!(!shown(&panel).contains("pushes"), "nothing acts yet");
+        conclude(&mut panel, 0.2, Some(Ok("pushed")));
+        assert!(shown(&panel).contains("pushes finger 2 with 0.00 0.00 0.20 N"), "{}", shown(&panel));
+        conclude(&mut panel, 0.4, Some(Err("too strong")));
+        assert!(shown(&panel).contains("0.20 N") && shown(&panel).contains("too strong"), "{}", shown(&panel));
+        assert_eq!(panel.result, Some(("too strong".into(), true)));
+        press(&mut panel, 0.4, false);
+        assert!(shown(&panel).contains("0.20 N") && shown(&panel).contains("wait for it"), "{}", shown(&panel));
+        // An emergency stop drops the next one.
+        press(&mut panel, 0.4, true);
+        conclude(&mut panel, 0.4, None);
+        assert!(shown(&panel).contains("0.20 N") && shown(&panel).contains("wait for it"), "{}", shown(&panel));
+        press(&mut panel, 0.0, true);
+        assert!(shown(&panel).contains("0.20 N"), "it acts until the hand has ended it");
+        conclude(&mut panel, 0.0, Some(Ok("no push")));
+        assert!(!shown(&panel).contains("pushes"));
+    }
 }

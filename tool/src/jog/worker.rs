@@ -13,10 +13,17 @@ use sun2xp::model::configuration::Configuration;
 /// Largest number of commands that wait. The end of a push may always wait, because the push would otherwise go on.
 const MOST_WAITING: usize = 4;
 
+/// What became of a command that was sent.
+pub struct Outcome {
+    pub command: Command,
+    /// What was done, or why the hand refused the command, in words. None if an emergency stop has dropped the command.
+    pub result: Option<Result<String, String>>,
+}
+
 /// The handle of the thread, for the code that handles the keys.
 pub struct Worker {
     commands: Option<Sender<(u64, Command)>>,
-    results: Receiver<(String, bool)>,
+    outcomes: Receiver<Outcome>,
     stopper: Stopper,
     /// Number of commands that are not carried out yet.
     waiting: Arc<AtomicUsize>,
@@ -31,21 +38,19 @@ impl Worker {
     /// Returns an error if the system cannot start a thread.
     pub fn start(hand: Arc<Hand>, configuration: Configuration) -> io::Result<Self> {
         let (commands, to_do) = channel::<(u64, Command)>();
-        let (done, results) = channel();
+        let (done, outcomes) = channel();
         let (stopper, waiting) = (Stopper::default(), Arc::new(AtomicUsize::new(0)));
         let (stopped, left) = (stopper.clone(), waiting.clone());
         let thread = thread::Builder::new().name("commands".into()).spawn(move || {
             for (stops, command) in to_do {
-                let result = stopped.carry_out(&command, stops, || match command.execute(&hand, &configuration) {
-                    Ok(text) => (text, false),
-                    Err(refused) => (refused.to_string(), true),
-                });
+                let execute = || command.execute(&hand, &configuration).map_err(|refused| refused.to_string());
+                let result = stopped.carry_out(&command, stops, execute);
                 // The receiver is gone only when the program ends.
-                let _ = result.map(|result| done.send(result));
+                let _ = done.send(Outcome { command, result });
                 left.fetch_sub(1, Ordering::SeqCst);
             }
         })?;
-        Ok(Self { commands: Some(commands), results, stopper, waiting, thread: Some(thread) })
+        Ok(Self { commands: Some(commands), outcomes, stopper, waiting, thread: Some(thread) })
     }
 
     /// Sends a command. Returns false, and does not send it, if several commands are still waiting. A key that repeats
@@ -63,9 +68,9 @@ impl Worker {
         &self.stopper
     }
 
-    /// Returns the newest result since the last call: its text, and whether the command was refused.
-    pub fn result(&self) -> Option<(String, bool)> {
-        self.results.try_iter().last()
+    /// Returns what became of the commands since the last call: one outcome for each command, in the order of sending.
+    pub fn outcomes(&self) -> impl Iterator<Item = Outcome> {
+        self.outcomes.try_iter()
     }
 }
 
@@ -85,7 +90,7 @@ mod tests {
     use crate::jog::commands::desired_joints;
     use std::time::Duration;
 
-    /// Longest time until a result. The machine of the tests may be busy.
+    /// Longest time until an outcome. The machine of the tests may be busy.
     const PATIENCE: Duration = Duration::from_secs(60);
 
     #[test]
@@ -115,9 +120,11 @@ mod tests {
         for _ in 1..MOST_WAITING {
             assert!(worker.send(Command::MoveJoints { finger: 2, by: [0.0; 3] }));
         }
-        assert!(worker.send(Command::Push { finger: 1, force: [0.0; 3] }));
-        let result = |_| worker.results.recv_timeout(PATIENCE).expect("a result");
-        let results: Vec<_> = (0..=MOST_WAITING).map(result).collect();
-        assert_eq!(results.last(), Some(&("finger 1: no push".to_owned(), false)));
+        let end = Command::Push { finger: 1, force: [0.0; 3] };
+        assert!(worker.send(end));
+        let outcome = |_| worker.outcomes.recv_timeout(PATIENCE).expect("an outcome");
+        let outcomes: Vec<Outcome> = (0..=MOST_WAITING).map(outcome).collect();
+        let Outcome { command, result } = &outcomes[MOST_WAITING];
+        assert_eq!((command, result), (&end, &Some(Ok("finger 1: no push".to_owned()))));
     }
 }
