@@ -192,8 +192,10 @@ export class Control {
       // The hand keeps a push, so it is sent once.
       let pushes = false;
       const begin = () => {
-        if (!pushes) push([0, 1, 2].map((one) => (one === axis ? sign * newton.value : 0)));
+        if (pushes) return;
         pushes = true;
+        // A button whose push was not sent does not stay pressed.
+        if (!push([0, 1, 2].map((one) => (one === axis ? sign * newton.value : 0)))) releaseAll();
       };
       const end = () => {
         pushes = false;
@@ -236,13 +238,16 @@ export class Control {
     if (arrived) this.wanted = null;
   }
 
+  /// Sends a command. Returns whether the connection is open.
   order(command, values) {
     if (["move_tip", "open", "close", "stop", "recover"].includes(command)) this.wanted = null;
     const sent = this.send({ command, ...values });
-    if (command !== "stop") return;
-    this.stopping = true;
-    if (!sent) this.warn();
-    else setTimeout(() => this.stopping && this.warn(), STOP_ANSWER_MS);
+    if (command === "stop") {
+      this.stopping = true;
+      if (!sent) this.warn();
+      else setTimeout(() => this.stopping && this.warn(), STOP_ANSWER_MS);
+    }
+    return sent;
   }
 
   /// Repeats an unanswered stop as soon as the page knows that it may stop this hand.
@@ -252,6 +257,8 @@ export class Control {
   }
 
   disconnected() {
+    // The server ends the pushes of a page whose connection ends.
+    releaseAll();
     if (this.stopping) this.warn();
   }
 
@@ -263,10 +270,16 @@ export class Control {
     this.message.className = "message refused";
   }
 
-  answer({ done, text }) {
+  answer({ command, done, text }) {
     if (text === STOPPED) this.stopping = false;
     if (!done) this.wanted = null;
+    const push = command.command === "push" ? command.force : null;
+    // A push that was refused does not act, so its button does not stay pressed.
+    if (push && !done) releaseAll();
     if (!this.message || this.stopping) return;
+    // The end of a refused push follows at once, and must not hide why the push was refused.
+    const refusal = this.message.classList.contains("refused") && this.message.textContent;
+    if (refusal && done && push?.every((part) => part === 0)) return;
     this.message.textContent = text;
     this.message.className = done ? "message" : "message refused";
     clearTimeout(this.forget);

@@ -37,6 +37,7 @@ struct Order {
 pub struct Answer {
     #[serde(rename = "type")]
     kind: &'static str,
+    command: Command,
     /// Whether the hand has accepted it.
     done: bool,
     /// What was done, or why not.
@@ -44,13 +45,13 @@ pub struct Answer {
 }
 
 impl Answer {
-    fn new(done: bool, text: String) -> Self {
-        Self { kind: "answer", done, text }
+    fn new(command: Command, done: bool, text: String) -> Self {
+        Self { kind: "answer", command, done, text }
     }
 
     /// Returns the message to the page.
     pub fn json(&self) -> String {
-        // Two strings and a truth value always have a JSON text.
+        // Strings, numbers and a truth value always have a JSON text.
         serde_json::to_string(self).unwrap_or_default()
     }
 }
@@ -78,12 +79,12 @@ impl Control {
         if command == Command::Stop {
             // A stop waits for nothing, and drops the commands that wait, of other pages too. The page may have left.
             self.stopper.stop();
-            let _ = answers.send(Answer::new(true, "all fingers are stopped".into()));
+            let _ = answers.send(Answer::new(command, true, "all fingers are stopped".into()));
             return;
         }
         if !command.ends_push() && self.waiting.load(Ordering::Relaxed) >= WAITING {
             let text = "the hand is busy, and too many commands wait: send the command again later";
-            let _ = answers.send(Answer::new(false, text.into()));
+            let _ = answers.send(Answer::new(command, false, text.into()));
             return;
         }
         self.queue(command, Some(answers));
@@ -126,18 +127,20 @@ impl Executor {
     fn run(&self, orders: &Receiver<Order>) {
         for Order { command, stops, answers } in orders {
             self.waiting.fetch_sub(1, Ordering::Relaxed);
-            let dropped = || Answer::new(false, "dropped by the emergency stop: send it again".into());
-            let answer = self.stopper.carry_out(&command, stops, || self.execute(&command)).unwrap_or_else(dropped);
+            let dropped = || (false, "dropped by the emergency stop: send it again".into());
+            let result = self.stopper.carry_out(&command, stops, || self.execute(&command));
+            let (done, text) = result.unwrap_or_else(dropped);
             // The page may have left.
-            let _ = answers.map(|answers| answers.send(answer));
+            let _ = answers.map(|answers| answers.send(Answer::new(command, done, text)));
         }
     }
 
-    fn execute(&self, command: &Command) -> Answer {
-        let Some(hand) = self.hand.upgrade() else { return Answer::new(false, "the hand is closed".into()) };
+    /// Returns whether the hand has accepted the command, and what was done, or why not.
+    fn execute(&self, command: &Command) -> (bool, String) {
+        let Some(hand) = self.hand.upgrade() else { return (false, "the hand is closed".into()) };
         match command.execute(&hand, &self.configuration) {
-            Ok(text) => Answer::new(true, text),
-            Err(refused) => Answer::new(false, refused.to_string()),
+            Ok(text) => (true, text),
+            Err(refused) => (false, refused.to_string()),
         }
     }
 }

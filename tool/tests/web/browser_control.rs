@@ -25,6 +25,9 @@ fn button(text: &str) -> String {
     format!("[...document.querySelectorAll('#control button')].find((one) => one.textContent === '{text}')")
 }
 
+/// The button that pushes the fingertip along x.
+const PUSH: &str = "document.querySelector('#control button[title^=\"Push the fingertip along +x\"]')";
+
 /// Opens the page of a hand that it may move; none without a browser. Nothing else uses a browser meanwhile.
 fn page() -> Option<(MutexGuard<'static, ()>, Program, TempDir, Browser)> {
     if !available("chromium", "the page in a browser") {
@@ -43,8 +46,9 @@ fn key(value: &str) -> Value {
 }
 
 /// Moves the mouse to the middle of a button, and then does `more`.
-fn mouse(browser: &Browser, text: &str, more: &[Value]) {
-    let place = browser.wait_for(&format!("return {}?.getBoundingClientRect().toJSON()", button(text)));
+fn mouse(browser: &Browser, button: &str, more: &[Value]) {
+    browser.wait_for(&format!("{button}?.scrollIntoView({{ block: 'nearest' }}); return !!{button}"));
+    let place = browser.wait_for(&format!("return {button}?.getBoundingClientRect().toJSON()"));
     let middle = |from: &str, length: &str| {
         let number = |name: &str| place[name].as_f64().expect("a number");
         (number(from) + number(length) / 2.0) as i64
@@ -53,6 +57,12 @@ fn mouse(browser: &Browser, text: &str, more: &[Value]) {
     let mut actions = vec![json!({ "type": "pointerMove", "x": x, "y": y, "duration": 0 })];
     actions.extend_from_slice(more);
     browser.act(&json!([{ "type": "pointer", "id": "mouse", "actions": actions }]));
+}
+
+/// Releases the button of the mouse.
+fn release(browser: &Browser) {
+    let up = json!({ "type": "pointerUp", "button": 0 });
+    browser.act(&json!([{ "type": "pointer", "id": "mouse", "actions": [up] }]));
 }
 
 fn commands(browser: &Browser) -> Vec<String> {
@@ -99,7 +109,7 @@ fn a_held_button_ends_when_another_finger_is_selected() {
     let Some((_alone, _program, _folder, browser)) = page() else { return };
     browser.wait_for(&format!("return !!{}", button("+z")));
     browser.run(NOTE_COMMANDS);
-    mouse(&browser, "+z", &[json!({ "type": "pointerDown", "button": 0 })]);
+    mouse(&browser, &button("+z"), &[json!({ "type": "pointerDown", "button": 0 })]);
     browser.wait_for("return window.sent.length > 2");
     browser.act(&key("2"));
     browser.wait_for("return document.querySelector('#control h3').textContent === 'Finger 2'");
@@ -107,5 +117,46 @@ fn a_held_button_ends_when_another_finger_is_selected() {
     // Ten times the interval of the commands of a held button.
     browser.run("await new Promise((resolve) => setTimeout(resolve, 600))");
     assert_eq!(commands(&browser), [""; 0]);
-    browser.act(&json!([{ "type": "pointer", "id": "mouse", "actions": [{ "type": "pointerUp", "button": 0 }] }]));
+    release(&browser);
+}
+
+/// A push lasts while its button is held, so the page must not show a push that does not act.
+#[test]
+fn a_button_whose_push_was_refused_does_not_stay_pressed() {
+    let Some((_alone, _program, _folder, browser)) = page() else { return };
+    // The hand refuses a push that is too strong.
+    browser.wait_for(
+        "const force = document.querySelector('#control input[aria-label^=\"force of the push\"]');
+        if (!force || document.getElementById('link').dataset.state !== 'live') return false;
+        force.max = 2000;
+        force.value = 2000;
+        return true;",
+    );
+    mouse(&browser, PUSH, &[json!({ "type": "pointerDown", "button": 0 })]);
+    let refused = "const message = document.querySelector('#control .message');
+        return message.className === 'message refused' && message.textContent.includes('use a smaller force')";
+    browser.wait_for(refused);
+    browser.wait_for(&format!("return !{PUSH}.classList.contains('held')"));
+    release(&browser);
+    // The answer to the end of the push arrives meanwhile.
+    browser.run("await new Promise((resolve) => setTimeout(resolve, 600))");
+    assert_eq!(browser.run(refused), true);
+}
+
+#[test]
+fn a_held_button_ends_with_the_connection() {
+    let Some((_alone, _program, _folder, browser)) = page() else { return };
+    browser.run(
+        "const send = WebSocket.prototype.send;
+        WebSocket.prototype.send = function (text) {
+          window.socket = this;
+          return send.call(this, text);
+        };",
+    );
+    browser.wait_for("return window.socket && document.getElementById('link').dataset.state === 'live'");
+    mouse(&browser, PUSH, &[json!({ "type": "pointerDown", "button": 0 })]);
+    browser.wait_for(&format!("return {PUSH}.classList.contains('held')"));
+    browser.run("window.socket.close()");
+    browser.wait_for(&format!("return !{PUSH}.classList.contains('held')"));
+    release(&browser);
 }

@@ -76,6 +76,7 @@ fn a_page_with_the_token_moves_the_hand_and_its_push_ends_with_the_page() {
     assert_eq!(refused["done"], false, "{refused}");
     let pushed = answer(&mut page, r#"{"command":"push","finger":1,"force":[2.0,0.0,0.0]}"#);
     assert_eq!(pushed["done"], true, "{pushed}");
+    assert_eq!(pushed["command"]["force"][0], 2.0, "an answer has its command: {pushed}");
     wait_until(&mut page, |angle| angle > 0.23);
     drop(page);
     wait_until(&mut open(&program), |angle| (angle - 0.2).abs() < 0.02);
