@@ -12,6 +12,7 @@
 //! wake-up and long-run need cyclictest (Debian: rt-tests), and wake-up also needs stress-ng. A measurement that
 //! compares two cases measures them alternately. Without a name, everything except the long run is measured.
 
+mod attempts;
 mod cyclictest;
 mod events;
 mod explain;

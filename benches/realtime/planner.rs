@@ -1,6 +1,7 @@
 //! Measures whether planners that call as fast as they can delay the servo.
 
 use crate::Failure;
+use crate::attempts::Attempts;
 use crate::percentiles::median;
 use crate::turns::Turns;
 use std::hint::{black_box, spin_loop};
@@ -26,32 +27,36 @@ const KINDS: [(Planners, &str); 3] = [
     (Planners::Calling, "two threads that call"),
 ];
 
-/// A failed measurement is repeated until this number of measurements has failed. Then no further one is made.
-const MOST_DISTURBED: usize = 10;
-
 /// Median and 99 % of the wake-up latency of a finger, us.
 type WakeUp = (f64, f64);
 
+/// The wake-up latencies of each of [`KINDS`].
+type WakeUps = [Vec<WakeUp>; KINDS.len()];
+
 pub fn run(turns: &Turns) -> Result<(), Failure> {
-    let mut wake_ups = [const { Vec::new() }; 3];
-    let calls = AtomicU64::new(0);
-    let mut disturbed = 0;
+    let mut wake_ups = WakeUps::default();
+    let (calls, mut attempts) = (AtomicU64::new(0), Attempts::default());
     for _ in 0..turns.repeats {
         for ((kind, name), wake_ups) in KINDS.into_iter().zip(&mut wake_ups) {
-            while disturbed < MOST_DISTURBED {
-                match turn(turns.seconds, kind, &calls) {
-                    Ok(measured) => {
-                        wake_ups.extend(measured);
-                        break;
-                    }
-                    Err(reason) => {
-                        disturbed += 1;
-                        eprintln!("{name}: {reason}. Other work on the machine can cause this.");
-                    }
-                }
-            }
+            let measured = attempts.measure(name, || turn(turns.seconds, kind, &calls));
+            wake_ups.extend(measured.into_iter().flatten());
         }
     }
+    print_table(&wake_ups);
+    let made = wake_ups.map(|wake_ups| wake_ups.len() / FINGERS);
+    let [quiet, spinning, calling] = made;
+    println!(
+        "\nMedians over three fingers and {quiet}, {spinning} and {calling} measurements of {} s. {} more were \
+         disturbed by faults, and {} were skipped because of them. {:.1} million calls per second.\n",
+        turns.seconds,
+        attempts.disturbed,
+        attempts.skipped,
+        calls.load(Relaxed) as f64 / (calling as u64 * turns.seconds) as f64 * 1e-6
+    );
+    Ok(attempts.check(KINDS.map(|(_, name)| name).into_iter().zip(made))?)
+}
+
+fn print_table(wake_ups: &WakeUps) {
     println!(
         "| | median | 99 % | relative to spinning: median (goal for threads that call: at most 1.1) | 99 % \
          |\n|---|---|---|---|---|"
@@ -59,18 +64,13 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
     let of = |kind: usize, part: fn(&WakeUp) -> f64| median(wake_ups[kind].iter().map(part));
     let (spinning, spinning_p99) = (of(1, |wake| wake.0), of(1, |wake| wake.1));
     for (kind, (_, name)) in KINDS.iter().enumerate() {
+        if wake_ups[kind].is_empty() {
+            println!("| {name} | not measured, because faults disturbed every measurement | | | |");
+            continue;
+        }
         let (middle, p99) = (of(kind, |wake| wake.0), of(kind, |wake| wake.1));
         println!("| {name} | {middle:.1} us | {p99:.1} us | {:.2} | {:.2} |", middle / spinning, p99 / spinning_p99);
     }
-    let [_, _, calling] = wake_ups.map(|wake_ups| wake_ups.len() / FINGERS);
-    println!(
-        "\nMedians over three fingers and {} repeats of {} s, {disturbed} more were disturbed by faults. {:.1} million \
-         calls per second.\n",
-        turns.repeats,
-        turns.seconds,
-        calls.load(Relaxed) as f64 / (calling as u64 * turns.seconds) as f64 * 1e-6
-    );
-    Ok(())
 }
 
 /// Makes one measurement on a hand of its own.

@@ -1,0 +1,50 @@
+//! Measurements that other work on the machine can disturb. A disturbed measurement is repeated, but not for ever.
+
+use std::fmt::Display;
+
+/// A measurement is repeated until this number of measurements has failed. Later ones are skipped.
+pub const MOST_DISTURBED: usize = 10;
+
+/// What has become of the measurements.
+#[derive(Default)]
+pub struct Attempts {
+    /// Number of measurements that have failed.
+    pub disturbed: usize,
+    /// Number of measurements that were not made, or not repeated, because too many had failed.
+    pub skipped: usize,
+}
+
+impl Attempts {
+    /// Measures until a measurement succeeds. Returns none if too many have failed. `name` names what is measured.
+    pub fn measure<T, E: Display>(&mut self, name: &str, mut measure: impl FnMut() -> Result<T, E>) -> Option<T> {
+        while self.disturbed < MOST_DISTURBED {
+            match measure() {
+                Ok(measured) => return Some(measured),
+                Err(reason) => {
+                    self.disturbed += 1;
+                    eprintln!("{name}: {reason}. Other work on the machine can cause this.");
+                }
+            }
+        }
+        self.skipped += 1;
+        None
+    }
+
+    /// Checks that something was measured of everything. Each entry has a name and the number of measurements that have
+    /// succeeded.
+    ///
+    /// # Errors
+    /// Returns the names of what was not measured at all.
+    pub fn check<'a>(&self, measured: impl IntoIterator<Item = (&'a str, usize)>) -> Result<(), String> {
+        let missing = measured.into_iter().filter(|&(_, number)| number == 0).map(|(name, _)| name);
+        let missing = missing.collect::<Vec<_>>().join(", ");
+        if missing.is_empty() {
+            return Ok(());
+        }
+        let Self { disturbed, skipped } = self;
+        Err(format!(
+            "nothing was measured with {missing}: {disturbed} measurements were disturbed, and {skipped} were skipped. \
+             Measure again when the machine has no other work"
+        ))
+    }
+}
