@@ -1,4 +1,4 @@
-"""A running node, and a planner that talks to it."""
+"""A running node, a planner that talks to it, and what the planner sends and expects."""
 
 import os
 import signal
@@ -9,6 +9,7 @@ import time
 
 import pytest
 import rclpy
+from builtin_interfaces.msg import Duration
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped, WrenchStamped
 from rcl_interfaces.msg import Log
@@ -17,13 +18,41 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import Trigger
-from trajectory_msgs.msg import JointTrajectory
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 #: Longest time of a wait, s. The machine may be busy.
 LONGEST = 30.0
 
 #: The prefix of names with which the node runs.
 PREFIX = "left_"
+
+#: The names of all joints, in the order of the node.
+JOINTS = [f"{PREFIX}finger{finger}_joint{joint}" for finger in (1, 2, 3) for joint in (0, 1, 2)]
+
+
+def trajectory(finger, *points, names=None):
+    """A trajectory of one finger: times, s, and angles, rad."""
+    message = JointTrajectory(joint_names=names or JOINTS[3 * finger - 3 : 3 * finger])
+    for seconds, angles in points:
+        since = Duration(sec=int(seconds), nanosec=round(seconds % 1 * 1e9))
+        message.points.append(JointTrajectoryPoint(positions=angles, time_from_start=since))
+    return message
+
+
+def near(finger, angles, tolerance=0.03):
+    """Whether joint states have a finger near these angles."""
+
+    def condition(message):
+        found = dict(zip(message.name, message.position))
+        names = JOINTS[3 * finger - 3 : 3 * finger]
+        return all(name in found and abs(found[name] - angle) < tolerance for name, angle in zip(names, angles))
+
+    return condition
+
+
+def refused(*words):
+    """Whether the log has a refusal with these words."""
+    return lambda line: line.level == 40 and all(word in line.msg for word in words)
 
 
 class Planner:

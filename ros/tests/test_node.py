@@ -1,4 +1,4 @@
-"""The node against rclpy: what it publishes, and what it does with messages and services."""
+"""The node against rclpy: what it publishes, what it does with messages, and how it starts and ends."""
 
 import math
 import os
@@ -13,54 +13,13 @@ from xml.etree import ElementTree
 import numpy
 import pytest
 import sun2xp
-from builtin_interfaces.msg import Duration
-from conftest import LONGEST, PREFIX, start
+from conftest import JOINTS, LONGEST, PREFIX, near, refused, start, trajectory
 from geometry_msgs.msg import PointStamped
 from std_msgs.msg import Float64MultiArray
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from trajectory_msgs.msg import JointTrajectory
 
 #: Environment of a second node, whose topics have the same names. Its ROS domain separates it from the first node.
 APART = {"ROS_DOMAIN_ID": str(int(os.environ.get("ROS_DOMAIN_ID", 0)) % 100 + 1)}
-
-JOINTS = [f"{PREFIX}finger{finger}_joint{joint}" for finger in (1, 2, 3) for joint in (0, 1, 2)]
-
-
-def trajectory(finger, *points, names=None):
-    """A trajectory of one finger: times, s, and angles, rad."""
-    message = JointTrajectory(joint_names=names or JOINTS[3 * finger - 3 : 3 * finger])
-    for seconds, angles in points:
-        since = Duration(sec=int(seconds), nanosec=round(seconds % 1 * 1e9))
-        message.points.append(JointTrajectoryPoint(positions=angles, time_from_start=since))
-    return message
-
-
-def near(finger, angles, tolerance=0.03):
-    """Whether joint states have a finger near these angles."""
-
-    def condition(message):
-        found = dict(zip(message.name, message.position))
-        names = JOINTS[3 * finger - 3 : 3 * finger]
-        return all(name in found and abs(found[name] - angle) < tolerance for name, angle in zip(names, angles))
-
-    return condition
-
-
-def refused(*words):
-    """Whether the log has a refusal with these words."""
-    return lambda line: line.level == 40 and all(word in line.msg for word in words)
-
-
-def of_finger(message, finger):
-    found = {status.name: status for status in message.status}
-    return found[f"sun2xp: {PREFIX}finger{finger}"]
-
-
-def in_stage(finger, stage):
-    def condition(message):
-        values = {value.key: value.value for value in of_finger(message, finger).values}
-        return values["stage"] == stage
-
-    return condition
 
 
 def test_joint_states_are_complete_and_fresh(planner):
@@ -220,44 +179,6 @@ def test_wrenches_are_in_the_frames_of_the_tips(planner):
         # Nothing touches the fingers.
         assert math.hypot(force.x, force.y, force.z) < 1.0
         assert message.wrench.torque.x == message.wrench.torque.y == message.wrench.torque.z == 0.0
-
-
-def test_a_fault_is_in_diagnostics_and_recover_ends_it(planner):
-    message = planner.wait("/diagnostics")
-    # A busy machine loses periods, of which the diagnostics warn.
-    assert [status for status in message.status if status.level > b"\x01"] == []
-    assert {"tension 4, N", "lost replies", "remedy"} <= {value.key for value in message.status[0].values}
-    assert message.status[0].hardware_id == "simulated finger 1"
-
-    response = planner.call("finger2/stop")
-    assert response.success and "finger 2 is stopped" in response.message
-    status = of_finger(planner.wait("/diagnostics", in_stage(2, "faulted")), 2)
-    values = {value.key: value.value for value in status.values}
-    assert status.level == b"\x02" and "stop of the finger" in status.message
-    assert values["fault"].startswith("50: ") and "recover it" in values["remedy"]
-    assert list(planner.wait("joint_states").name) == JOINTS[:3] + JOINTS[6:]
-    planner.trajectories.publish(trajectory(2, (1.0, [0.0, 0.5, 0.9])))
-    planner.wait("/rosout", refused("finger 2 is faulted"))
-
-    response = planner.call("recover")
-    assert response.success, response
-    assert response.message == "finger 1 has no fault; finger 2 has recovered; finger 3 has no fault"
-    assert planner.wait("/diagnostics", in_stage(2, "running")).status[1].level < b"\x02"
-    assert list(planner.wait("joint_states").name) == JOINTS
-
-
-def test_a_zeroing_does_not_delay_the_node_and_stop_ends_it(planner):
-    zeroing = planner.begin("finger3/zero")
-    planner.wait("/diagnostics", in_stage(3, "calibrating"))
-    planner.trajectories.publish(trajectory(3, (1.0, [0.0, 0.5, 0.9])))
-    planner.wait("/rosout", refused("trajectory refused", "finger 3"))
-    planner.trajectories.publish(trajectory(2, (1.0, [0.1, 0.6, 1.0])))
-    planner.wait("joint_states", near(2, [0.1, 0.6, 1.0]))
-    assert not zeroing.done() and planner.call("stop").success
-    response = planner.finish(zeroing)
-    assert not response.success and "finger 3" in response.message
-    assert planner.call("recover").success
-    planner.wait("/diagnostics", in_stage(3, "running"))
 
 
 @pytest.mark.parametrize(
