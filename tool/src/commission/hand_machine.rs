@@ -11,7 +11,7 @@ use sun2xp::board::{Link, LinkError, Terms};
 use sun2xp::calibration::{Findings, Task};
 use sun2xp::hand::{Fingers, Hand, HandError, SimulatedHand, find_boards, ports};
 use sun2xp::model::FingerNumber;
-use sun2xp::model::configuration::{BoardNumber, Configuration, ConfiguredFinger};
+use sun2xp::model::configuration::{BoardNumber, Configuration, ConfiguredFinger, EndState};
 use sun2xp::realtime::now;
 
 /// How long to wait for an answer of the board, ns.
@@ -38,11 +38,19 @@ impl HandMachine {
         Self { configuration, finger, hand: None }
     }
 
+    /// Returns the configuration with which the finger is opened. A closed finger releases its motors, whatever the
+    /// configured end state is: the person relies on [`Machine::off`] when asked to turn motors by hand.
+    fn released(&self) -> Configuration {
+        let mut configuration = self.configuration.clone();
+        configuration.hand.end_state = EndState::Release;
+        configuration
+    }
+
     /// Opens the finger with its motors off, if it is not open.
     fn limp(&mut self) -> Result<&Hand, HandError> {
         let hand = match self.hand.take() {
             Some(hand) => hand,
-            None => Hand::open_limp(self.configuration.clone(), None, Fingers::ALL)?,
+            None => Hand::open_limp(self.released(), None, Fingers::ALL)?,
         };
         Ok(self.hand.insert(hand))
     }
@@ -174,7 +182,7 @@ impl Machine for HandMachine {
 
     fn spring(&mut self) -> Result<(), Refused> {
         self.off();
-        self.hand = Some(Hand::open(self.configuration.clone()).map_err(refused)?);
+        self.hand = Some(Hand::open(self.released()).map_err(refused)?);
         Ok(())
     }
 
@@ -196,6 +204,8 @@ impl Machine for HandMachine {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sun2xp::realtime::Priority;
+    use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
     #[test]
     fn a_reading_of_a_stopped_finger_names_the_fault() {
@@ -204,5 +214,28 @@ mod tests {
         machine.hand.as_ref().expect("open").stop(1).expect("there");
         let error = machine.read(0.2).expect_err("the finger has stopped").to_string();
         assert!(error.starts_with("finger 1: "), "{error}");
+    }
+
+    #[test]
+    fn the_motors_are_off_although_the_configured_end_state_is_hold() {
+        let mut configuration = Configuration::default();
+        (configuration.hand.rate, configuration.hand.watchdog_ms) = (500.0, 1000);
+        (configuration.hand.end_state, configuration.hand.hold_time_ms) = (EndState::Hold, 60_000);
+        let board = SimulatedBoard::new(&configuration, &[FingerNumber::ONE]).expect("a board");
+        let port = SimulatedPort::start(board, Pace::patient(500.0), Priority::default()).expect("a port");
+        let finger = &mut configuration.fingers[0];
+        (finger.port, finger.baud) = (port.path().display().to_string(), 2_000_000);
+        let address = configuration.address(FingerNumber::ONE);
+        let torque = || port.with_finger(address, |finger| finger.motor_torques().amax()).expect("the board has it");
+        let mut machine = HandMachine::new(configuration, FingerNumber::ONE);
+        machine.spring().expect("a spring");
+        assert!(torque() > 0.0);
+        machine.off();
+        // The last frame needs some time to reach the board. A hold would last for a minute.
+        let begun = Instant::now();
+        while torque() > 0.0 {
+            assert!(begun.elapsed() < Duration::from_secs(10), "the motors hold with {} N cm", torque());
+            sleep(SAMPLING);
+        }
     }
 }
