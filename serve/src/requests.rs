@@ -218,20 +218,23 @@ fn in_progress(desk: &Desk, epoch: u64) -> Answer {
 }
 
 /// Recovers this finger, or every finger if `finger` is none. `stops` was read when the request was admitted. A finger
-/// that was stopped since stays stopped, also if the recovery began after the stop.
+/// that was stopped since stays stopped.
 fn recover(shared: &Shared, finger: Option<Finger>, stops: &Stops) -> Result<(), HandError> {
-    let recovered = recover_fingers(&shared.hand, finger);
+    let recovered = recover_fingers(shared, finger, stops);
     let stopped = shared.desk.lock().stop_again(stops);
     recovered.and(stopped)
 }
 
 /// Recovers this finger, or every finger at the same time if `finger` is none. A recovery can take seconds.
-fn recover_fingers(hand: &Hand, finger: Option<Finger>) -> Result<(), HandError> {
-    if let Some(finger) = finger {
-        return hand.recover(number(finger));
-    }
-    let members = hand.fingers().members();
-    let begun = members.map(|finger| Recovering::begin(hand, finger.get())).collect::<Result<Vec<_>, _>>()?;
+fn recover_fingers(shared: &Shared, finger: Option<Finger>, stops: &Stops) -> Result<(), HandError> {
+    let hand = &shared.hand;
+    let numbers: Vec<i32> = match finger {
+        Some(finger) => vec![number(finger)],
+        None => hand.fingers().members().map(|member| member.get()).collect(),
+    };
+    let begun = numbers.into_iter().map(|number| Recovering::begin(hand, number)).collect::<Result<Vec<_>, _>>()?;
+    // The recoveries would undo the stops that came before they began. Later stops end them.
+    shared.desk.lock().stop_again(stops)?;
     let reconnected: Vec<_> = begun.iter().map(Recovering::reconnect).collect();
     let recovered: Vec<_> = begun
         .iter()

@@ -3,7 +3,8 @@ use crate::server::prepare;
 use crate::settings::{Overrides, Settings};
 use std::path::Path;
 use std::sync::mpsc::{Sender, channel};
-use sun2xp::{Configuration, RealTime};
+use std::time::Instant;
+use sun2xp::{Configuration, RealTime, Stage};
 
 /// Longest time until an Answer. The machine of the tests may be busy.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -53,4 +54,27 @@ fn an_acquire_that_the_owner_prevents_does_not_hold_up_a_recovery() {
     shared.busy.store(false, Ordering::Release);
     assert_eq!(ask(&shared, "bob", taking).code, Code::Done);
     join(&shared);
+}
+
+/// The finger would otherwise tighten its tendons before it is stopped again.
+#[test]
+fn a_stop_since_the_request_prevents_the_recovery() {
+    let shared = shared();
+    let report = || shared.hand.report(1).expect("finger 1");
+    shared.desk.lock().stop(Some(1)).expect("finger 1");
+    let begun = Instant::now();
+    while !matches!(report().stage, Stage::Faulted(_)) {
+        assert!(begun.elapsed() < PATIENCE, "finger 1 does not stop");
+        std::thread::sleep(POLLED);
+    }
+    let stops = shared.desk.lock().stops();
+    shared.desk.lock().stop(Some(1)).expect("finger 1");
+    for finger in [Finger::new(1), None] {
+        let refused = recover(&shared, finger, &stops).expect_err("finger 1 was stopped since");
+        assert!(matches!(refused, HandError::Faulted { .. }), "{refused}");
+        assert_eq!(report().recoveries, 0, "finger 1 has not moved");
+    }
+    let stops = shared.desk.lock().stops();
+    recover(&shared, Finger::new(1), &stops).expect("recovered");
+    assert_eq!(report().recoveries, 1);
 }
