@@ -14,8 +14,8 @@ use sun2xp::model::configuration::{Configuration, RealTime};
 
 #[test]
 fn real_time_that_is_ignored_gives_no_warning() {
-    // A thread without real time waits for all other threads of the machine. The bench therefore keeps other tests
-    // from running, and the rate is low.
+    // A thread without real-time priority shares the processors with all other threads of the machine. The bench
+    // therefore keeps other tests from running, and the rate is low.
     let _turn = Bench::new();
     let mut configuration = Configuration::default();
     (configuration.hand.real_time, configuration.hand.rate) = (RealTime::Ignore, 500.0);
@@ -90,7 +90,7 @@ fn enforced_real_time_is_available_or_refused_with_the_remedy() {
 
     let (status, output, _) = opened_without((libc::RLIMIT_MEMLOCK, CAP_IPC_LOCK), enforce);
     assert_eq!(status, Some(2), "{output}");
-    // A process that may not use SCHED_FIFO either gets that reason.
+    // If the process may not use SCHED_FIFO either, the refusal gives that reason instead.
     assert!(output.contains("memlock") || output.contains("rtprio"), "{output}");
 
     let (status, output, _) =

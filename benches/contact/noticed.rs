@@ -1,4 +1,4 @@
-//! The detected forces, at rest and in motion, and the time until they are detected.
+//! Measures which forces are detected, at rest and in motion, and the time until they are detected.
 
 use crate::finger::{Finger, RATE};
 use crate::hands::Hand;
@@ -24,7 +24,7 @@ const SETTLING: f64 = 1.0;
 /// Fastest joint rate in motion, rad/s.
 const SPEED: f64 = 1.0;
 
-/// The pushes with one force.
+/// The results of all pushes with one force.
 #[derive(Default)]
 pub struct Pushes {
     pub pushes: usize,
@@ -33,7 +33,7 @@ pub struct Pushes {
     pub times: Vec<f64>,
     /// Times from the end of a push until the contact is lost, s, sorted.
     pub losses: Vec<f64>,
-    /// Largest error of the estimated force at the end of a push, N.
+    /// Largest error of the estimated force at the end of a detected push, N.
     pub error: f64,
 }
 

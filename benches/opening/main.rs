@@ -119,7 +119,7 @@ fn calls(library: &Path) -> Result<Vec<Row>, Box<dyn Error>> {
         unsafe { std::mem::transmute::<*mut libc::c_void, extern "C" fn() -> *const c_char>(call(c"HandError")) };
     begin = Instant::now();
     if open() != 0 {
-        // SAFETY: HandError returns a C string that lives until this thread's next call.
+        // SAFETY: HandError returns a C string that is valid until this thread's next refused call.
         return Err(unsafe { CStr::from_ptr(error()) }.to_string_lossy().into());
     }
     rows.push(row("OpenHand", &mut begin));

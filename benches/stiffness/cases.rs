@@ -43,7 +43,7 @@ impl Case {
         value.as_str().unwrap_or_default().to_owned()
     }
 
-    /// Returns the admissible bound on the largest eigenvalue of Kx, N/cm.
+    /// Returns the default bound on the largest eigenvalue of Kx, N/cm.
     pub fn bound(&self) -> f64 {
         ConfiguredFinger::default().stiffness_bound(self.rate)
     }

@@ -58,7 +58,7 @@ pub fn cases(arguments: &Arguments, poses: usize, seeds: u64) -> Result<Vec<Case
     Ok((0..seeds).map(|seed| Case { scheme, rate, poses, seed: arguments.seed + seed * 1000, law, numbers }).collect())
 }
 
-/// Returns the numbers of the library at `rate`, Hz.
+/// Returns the library's numbers of state feedback at `rate`, Hz.
 pub fn default_numbers(rate: f64) -> Result<Numbers, Box<dyn Error>> {
     Numbers::new(&ConfiguredController::default(), rate).map_err(|unusable| unusable.reason.into())
 }

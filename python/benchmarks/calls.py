@@ -1,5 +1,5 @@
-"""Measures the time of calls from Python, and of the same call in Rust. One run measures all of them in turns. Prints
-the table of docs/python.md.
+"""Measures the time of calls from Python, and of `Hand::position` in Rust. The measurements alternate in one run.
+Prints a table. docs/python.md has its medians.
 
     python calls.py [--rounds 20] [--calls 20000]
 """

@@ -49,7 +49,7 @@ enum Phase {
     Gauges(GaugeZero),
     /// Tightens the tendons. The gauge offsets are now known.
     Tighten(TakeUp),
-    /// The finger was limp at the beginning. Reads its pose before it is pushed.
+    /// The finger was limp at the beginning. Reads its pose before the pushes of [`Phase::Try`].
     ReadHeld {
         guide: JointGuide,
         swing: Swing,

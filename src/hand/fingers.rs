@@ -47,7 +47,7 @@ impl Fingers {
     }
 }
 
-/// Calls take plain numbers, as in C. Here they become fingers.
+/// Calls take plain numbers, as in C. This conversion checks a number and returns its finger.
 impl TryFrom<i32> for FingerNumber {
     type Error = HandError;
 

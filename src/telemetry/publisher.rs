@@ -58,7 +58,8 @@ pub enum Serving {
 }
 
 impl Publisher {
-    /// Makes a hand known under its configured name, or under that name with a number. `fingers` are the open ones.
+    /// Makes a hand known under its configured name or, if another hand has that name, under the name with a number.
+    /// `fingers` are the open ones.
     ///
     /// # Errors
     /// Returns the error that the system reports.

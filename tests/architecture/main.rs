@@ -93,7 +93,7 @@ fn no_files_import_each_other_in_a_circle() {
     assert!(found.is_empty(), "circles of files:\n{}", found.join("\n\n"));
 }
 
-/// The generated headers are no source files. Neither are Markdown, TOML and other texts.
+/// The generated headers do not count as source files. Markdown, TOML and other texts do not count either.
 #[test]
 fn files_functions_and_lines_are_short() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -146,8 +146,8 @@ fn a_set_point_passes_through_few_files_and_changes_its_shape_twice() {
 
 #[test]
 fn no_field_is_left_out_of_a_message() {
-    // Messages of telemetry contain types of these folders. Their format, postcard, has no names of fields, so a field
-    // that is left out makes the rest unreadable.
+    // Messages of telemetry contain types from all folders of the library. The format of the messages, postcard, has no
+    // names of fields, so a field that is left out makes the rest unreadable.
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let found: Vec<String> = limits::source_files(&source)
         .into_iter()

@@ -20,7 +20,7 @@ fn a_slewing_anchor_is_reported_with_its_rates() {
         for pair in track.0.windows(2) {
             let slope = (pair[1].joints - pair[0].joints) * 1000.0;
             let rates = pair[0].motion.rates;
-            // The set point arrives in one of these periods. The rates before it are zero.
+            // The set point takes effect in one of these periods. The rates of the period before it are still zero.
             assert!((slope - rates).amax() < 1e-9 || rates == Vector3::zeros(), "{scheme:?}: {rates} and {slope}");
             fastest = fastest.max(rates.amax());
         }
@@ -30,7 +30,7 @@ fn a_slewing_anchor_is_reported_with_its_rates() {
     }
 }
 
-/// A polynomial over 30 s that continued the motion would lead far beyond the joint limits.
+/// A path of one 30 s polynomial that continued the motion of the anchor would lead far beyond the joint limits.
 #[test]
 fn a_slow_path_begins_smoothly_while_the_finger_settles() {
     for cycles in [5, 20, 50, 100] {

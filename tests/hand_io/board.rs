@@ -1,4 +1,4 @@
-//! The adapter that acts as the board, on a link without threads.
+//! The adapter `IoBoard`, which acts as the board, on a link without threads.
 
 use super::plant_io::{PlantIo, Switches, starts_and_stops};
 use sun2xp::board::protocol::{Command, Configured, Identity, Status};

@@ -1,4 +1,4 @@
-//! The snippets in C. The test completes each snippet to a program, which must not fail.
+//! The snippets in C. The test makes a complete program of each snippet. The program must not fail.
 
 use crate::c::{Bench, C_STANDARDS, STRICT, c_compiler, c_compilers, said};
 use crate::pages::{Block, in_language, pages};

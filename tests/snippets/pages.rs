@@ -17,7 +17,7 @@ pub struct Block<'page> {
     pub text: &'page str,
 }
 
-/// Returns README and the pages of docs.
+/// Returns README.md, python/README.md and the pages of docs.
 pub fn pages() -> Vec<Page> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let docs = fs::read_dir(root.join("docs")).expect("a folder").map(|file| file.expect("a file").path());

@@ -1,17 +1,17 @@
 //! Determines the gains of the gauges relative to each other, the friction of the joints and the friction of the
 //! pulleys, from the tensions of a free finger whose joints move back and forth.
 //!
-//! Let t be the tensions at the gauges, and f_i = (1 + mu_i)^-s_i the factor by which the friction mu_i of the pulleys
-//! reduces tension i at the joint; s_i is +1 while the tendon moves toward its motor and -1 otherwise. With the moment
-//! arms R, the joint rates v and their signs s,
+//! Let t be the tensions at the gauges. Because of the friction mu_i of the pulleys, tension i at the joint is f_i t_i
+//! with f_i = (1 + mu_i)^-s_i; s_i is +1 while the tendon moves toward its motor and -1 otherwise. With the moment arms
+//! R, the joint rates v and their signs s,
 //!
 //! R f t = g + s (C + b |v|)
 //!
-//! with the joint torques g of gravity, and the Coulomb friction C and the viscous friction b of the joints. The half
-//! difference of the two directions of a motion eliminates g. C is the same at both levels of tension and both speeds,
-//! so that C, b and the four mu can be separated. The mean of both directions eliminates the friction, and g is the
-//! same at both levels. So the rise of the mean of f t between the levels is along the null vector of R. This gives the
-//! gains of the gauges up to a common factor. The tensions of a free finger do not show this factor.
+//! with the joint torques g of gravity, and the Coulomb friction C and the viscous friction b of the joints. Half
+//! of the difference between the two directions of a motion eliminates g. C is the same at both levels of tension and
+//! both speeds, so that C, b and the four mu can be separated. The mean of both directions eliminates the friction, and
+//! g is the same at both levels. So the rise of the mean of f t between the levels is along the null vector of R. This
+//! gives the gains of the gauges up to a common factor. The tensions of a free finger do not show this factor.
 
 use super::least_squares::LeastSquares;
 use crate::calibration::average::Average;
@@ -58,7 +58,7 @@ pub(super) struct JointFriction {
 /// What the tensions of a free finger show.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FreeFinger {
-    /// Factors for the tensions of the gauges. The mean of the configured gains (N per count) is unchanged.
+    /// Factors for the tensions of the gauges. They do not change the mean of the configured gains (N per count).
     pub gains: Vector4<f64>,
     /// Relative uncertainty of the gains: the largest difference between the gains from one direction of motion and the
     /// gains from all directions.

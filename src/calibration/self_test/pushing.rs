@@ -7,7 +7,7 @@ use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;
 use nalgebra::Vector4;
 
-/// Rest before each push, in which the readings are averaged, s.
+/// Rest before each pull, in which the readings are averaged, s.
 const REST: f64 = 0.025;
 /// A motor is at rest if it moves by less than this distance in the time [`REST`], cm.
 const AT_REST: f64 = 0.001;
@@ -27,11 +27,11 @@ const LONGEST: f64 = 0.12;
 const FARTHEST: f64 = 0.12;
 /// A gauge has responded if it has changed by more than this, in t_min.
 const RESPONDED: f64 = 0.35;
-/// Damping of a motor after its push, N s/cm, and its duration, s.
+/// Damping that stops a motor after its pull, N s/cm, and the time for which it acts, s.
 const DAMPING: f64 = 2.0;
 const BRAKING: f64 = 0.02;
 
-/// A push of one motor.
+/// The test of one motor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pushing {
     motor: usize,

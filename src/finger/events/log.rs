@@ -35,7 +35,7 @@ pub struct EventWriter {
 /// A reader's end. Each reader gets every event that is still in the log when it reads.
 pub struct EventReader {
     log: SharedPages<Log>,
-    /// Number of events that this reader has taken or lost.
+    /// Number of events that were written before the one that this reader takes next.
     position: u64,
     lost: u64,
 }

@@ -11,8 +11,8 @@ use crate::finger::{Fault, FaultKind, Reference, Stage, Validity};
 use crate::model::Part;
 
 impl FingerServo {
-    /// Computes when a set point expires. A path is valid until its end, and from there for the time of a set point.
-    /// This also applies to a path that the finger does not follow because of an inhibition.
+    /// Computes when a set point expires. A path is valid until its end, and then for the time for which a set point is
+    /// valid. This also applies to a path that the finger does not follow because of an inhibition.
     pub(super) fn begin_validity(&mut self, sent: &SentSetPoint) {
         let end = sent.path.as_ref().map_or(0, |path| path.end(self.limits.period()));
         let begin = end.max(self.motion.next_period);
@@ -104,8 +104,8 @@ impl FingerServo {
         }
     }
 
-    /// Carries out the configured reaction to a set point that has expired after `age_ms`, or faults the finger if
-    /// `ends`.
+    /// Carries out the configured reaction to a set point that has expired at the age `age_ms`. If `ends` is true, the
+    /// end time of the validity has passed too, and the finger faults, whatever the configured reaction is.
     fn expire(&mut self, age_ms: f64, ends: bool) {
         if !self.report.expired {
             let values = [age_ms, 0.0, 0.0, 0.0];

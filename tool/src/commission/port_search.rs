@@ -46,7 +46,8 @@ pub type Taken = (BoardNumber, u8);
 /// Searches these ports for the board of a finger. `taken` belong to other fingers of the hand.
 ///
 /// # Errors
-/// Returns the reason if no board or no single board belongs to the finger.
+/// Returns the reason if no finger answers that is not in `taken`, or if several do, and not exactly one of them has
+/// the number of `finger` as its address.
 pub fn search(patterns: &[String], baud: u32, finger: FingerNumber, taken: &[Taken]) -> Result<Chosen, String> {
     let searched = search_boards(patterns, &[baud]);
     let answers = searched.iter().flat_map(|port| {
@@ -59,7 +60,7 @@ pub fn search(patterns: &[String], baud: u32, finger: FingerNumber, taken: &[Tak
 fn choose(answers: Vec<Answer>, finger: FingerNumber, taken: &[Taken]) -> Result<Chosen, String> {
     let (others, free): (Vec<Answer>, Vec<Answer>) =
         answers.into_iter().partition(|answer| taken.contains(&(answer.number(), answer.found.address)));
-    // A board can have several fingers. One with the address of this finger is the right one.
+    // A board can have several fingers. The right one is the one whose address is the number of this finger.
     let same: Vec<&Answer> = free.iter().filter(|answer| i32::from(answer.found.address) == finger.get()).collect();
     let (answer, reason) = match (&free[..], &same[..]) {
         ([], _) if others.is_empty() => {

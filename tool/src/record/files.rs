@@ -11,8 +11,8 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use sun2xp::model::{FingerNumber, ShownPath};
 use sun2xp::telemetry::{Description, Message};
 
-/// Largest number of controllers of a finger that a new file begins with. A cycle names its own controller, and the
-/// controller that was replaced in that cycle.
+/// Largest number of controllers per finger at the beginning of a new file. One is not enough: a cycle names its own
+/// controller, and the controller that was replaced in that cycle.
 const MOST_CONTROLLERS: usize = 4;
 
 /// When a new file begins, and how many are kept.
@@ -127,7 +127,7 @@ impl Files {
         self.file.explain(|writer| writer.write_lost(finger, cycles))
     }
 
-    /// Ends a batch of messages: writes what has been waiting for long enough.
+    /// Ends a batch of messages. Writes the buffered messages if the last write is at least half a second old.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
@@ -146,7 +146,7 @@ impl Files {
             return Ok(Turn::default());
         }
         let (path, created) = self.create_next()?;
-        // Until the next cycle, messages get the time of the newest cycle, which is in the present file.
+        // Messages of the new file that precede its first cycle get the time of the newest cycle in the present file.
         let next = OpenFile::begin(path, created, &self.description, self.file.writer.time())?;
         self.begun += 1;
         let last = std::mem::replace(&mut self.file, next);
@@ -171,8 +171,8 @@ impl Files {
         }
     }
 
-    /// Deletes the oldest file if there are too many. Returns why it is still there. The recording continues, because
-    /// its cycles matter more than the space.
+    /// Deletes the oldest file if there are too many. If that fails, returns the reason, and the recording continues,
+    /// because its cycles matter more than the space.
     fn delete_oldest(&mut self) -> Option<String> {
         let superfluous = self.limits.keep.is_some_and(|keep| self.paths.len() > keep as usize);
         let path = superfluous.then(|| self.paths.pop_front()).flatten()?;
@@ -211,7 +211,7 @@ impl OpenFile {
         write(&mut self.writer).map_err(|error| format!("cannot write {}: {error}", ShownPath(path)).into())
     }
 
-    /// The size of the file now. It does not include the last half second.
+    /// The size of the file now, bytes. The messages of the last half second are not written yet.
     fn bytes(&self) -> u64 {
         fs::metadata(&self.path).map_or(0, |metadata| metadata.len())
     }
