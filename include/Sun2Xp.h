@@ -123,7 +123,7 @@
        return values ignored      see the line on standard error (chapter 2)
        own functions named like   This header declares only OpenHand, SendPos, SendKx, GetPos, CloseHand
        other calls                and HandError, and SendPosD, SendKxD and GetPosD for double. The other
-                                  names of the library begin with sun2xp_
+                                  names of the library begin with sun2xp_, Sun2Xp or SUN2XP_
 
    Macros: with gcc and clang this header saves the planner's macros and restores them at its end.
    So a planner may have macros named i, K or Pos, and macros named like C keywords, such as const,
@@ -163,8 +163,8 @@
    the finger is simulated, and announced too; with port = "simulated" it is not announced. OpenHand
    refuses a file that names a real port or board for one finger, and neither of the two for another.
 
-   A program that is setuid or setgid, or whose file has capabilities, does not trust its
-   environment and working directory, which belong to its caller. It reads only
+   If a program is setuid or setgid, or if its file has capabilities, its environment and its working
+   directory belong to its caller, and the library does not trust them. It then reads only
    /etc/xdg/sun2xp/sun2xp.toml; if SUN2XP_CONFIG is set, OpenHand fails with EACCES.
 
    The file is TOML: [hand], [finger] for all fingers, [finger.1] to [finger.3] for one. Every key

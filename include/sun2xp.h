@@ -9,7 +9,7 @@
        3. Units, frames, order    6. Servo and real time
 
    The calls follow in sections, each with its manual. Sun2Xp.h has the five calls of 1990. The calls of
-   this header work on the hand of those calls too: sun2xp_default_hand returns the handle of that hand.
+   this header also work on the hand that OpenHand has opened: sun2xp_default_hand returns its handle.
    The report is COINS Technical Report 90-48 (1990), which describes the controller.
 
 
@@ -53,7 +53,7 @@
    returns the negative of a SUN2XP_ERROR_ number, sets errno, and changes nothing unless its entry says
    otherwise. sun2xp_error gives number, text and remedy of the calling thread's last refused call, for
    one hand or for any. A call that succeeds changes neither errno nor these. If several reasons apply, a
-   call reports the one that its entry lists first. The errnos and the numbers that belong to them are:
+   call reports the one that its entry lists first. The most common errnos and their numbers are:
 
        EPERM      SUN2XP_ERROR_FORKED          the process is a forked child (chapter 5)
        EFAULT     SUN2XP_ERROR_ARGUMENT        an argument is a null pointer
@@ -1827,9 +1827,9 @@ const char *sun2xp_fault_text(int number);
 
  With hand.end_state = "release", the default, the torque goes to zero at once. With "hold" the motors
  keep their last torque, up to hand.hold_torque_limit, for hand.hold_time_ms, by default 2 s and at most
- a minute. Configure "hold" only for objects that must not be dropped. Only the emergency stop input of the
- board, cutting the board's power, or starting the finger again releases the torque earlier: sun2xp_recover, or
- sun2xp_close and sun2xp_open, configure the board again, and that ends the hold.
+ a minute. Configure "hold" only for objects that must not be dropped. Three things release the torque
+ earlier: the emergency stop input of the board, cutting the board's power, and configuring the board again.
+ sun2xp_recover configures the board again, and so do sun2xp_close and sun2xp_open together.
 
  sun2xp_stop_all is not a safety function: it needs this process, this machine and the cable.
 
