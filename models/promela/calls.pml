@@ -46,7 +46,7 @@ inline give_order(f, what) {
 #define OTHER_STAGE(f) (report[f].stage != seen.stage || report[f].verdict != seen.verdict)
 #define OTHER_REPORT(f) (OTHER_STAGE(f) || report[f].orders != seen.orders || report[f].recoveries != seen.recoveries)
 
-/* Calibrating in src/hand/calibrating.rs, and `calibrate` in src/capi/default_hand.rs. */
+/* Calibrating in src/hand/calibrating.rs, and `calibrate` in src/capi/hand_table.rs. */
 proctype Calibrator(byte f)
 {
     byte mine, now, my_order, recoveries;
@@ -217,7 +217,7 @@ returned:
     atomic { unread(hand); callers-- }
 }
 
-/* `close_at_exit` in src/capi/default_hand.rs. The exit can come from a signal handler that has interrupted a call in
+/* `close_at_exit` in src/capi/hand_table.rs. The exit can come from a signal handler that has interrupted a call in
  * its own thread, and then that call keeps its lock. */
 proctype Exiter()
 {

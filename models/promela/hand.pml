@@ -28,7 +28,7 @@ typedef Report {
     byte recoveries
 }
 
-/* parking_lot::RwLock: from the first attempt of a writer on, no new reader gets the lock. */
+/* RwLock of src/realtime/locks.rs: from the first attempt of a writer on, no new reader gets the lock. */
 typedef RwLock {
     byte readers;
     bool writer
@@ -47,7 +47,7 @@ inline write(rwlock) {
 }
 inline unwrite(rwlock) { rwlock.writer = false }
 
-/* src/capi/default_hand.rs: LIFECYCLE, HAND and EXITING. */
+/* src/capi/hand_table.rs: LIFECYCLE, HAND and EXITING. */
 bool lifecycle;
 RwLock hand;
 bool open_hand;

@@ -1,6 +1,6 @@
 /* The call that recovers a finger. */
 
-/* Recovering in src/hand/recovery.rs, and `recover` in src/capi/default_hand.rs. */
+/* Recovering in src/hand/recovery.rs, and `recover` in src/capi/hand_table.rs. */
 proctype Recoverer(byte f)
 {
     byte p = PORT_OF(f), mine, i, before[FINGERS];

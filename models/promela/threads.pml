@@ -121,7 +121,7 @@ inline new_hand() {
 
 #define HOLDS_POSE(f) (report[f].stage != OPENING && report[f].stage != FAULTED)
 
-/* `open` in src/capi/default_hand.rs, Hand::open_from in src/hand/root.rs, `start` in src/hand/servo_threads.rs. */
+/* `open` in src/capi/hand_table.rs, Hand::open_from in src/hand/root.rs, `start` in src/hand/servo_threads.rs. */
 proctype Opener()
 {
     byte i;
@@ -180,7 +180,7 @@ refused:
     callers--
 }
 
-/* `close` in src/capi/default_hand.rs. */
+/* `close` in src/capi/hand_table.rs. */
 inline close_hand() {
     lock(lifecycle);
     write(hand);
