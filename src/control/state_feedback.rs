@@ -9,6 +9,7 @@ mod damping_design;
 pub(super) mod decision;
 mod dither;
 mod dither_burst;
+mod dither_scale;
 mod friction_feed_forward;
 mod matrix_exponential;
 mod numbers;

@@ -8,7 +8,6 @@ use crate::control::spring::joint_stiffness::JointStiffness;
 use crate::control::spring::slew::Slew;
 use crate::control::state_feedback::damping_design::DampingDesign;
 use crate::control::state_feedback::dither::Dither;
-use crate::control::state_feedback::dither_burst::DitherBurst;
 use crate::control::state_feedback::friction_feed_forward::FrictionFeedForward;
 use crate::control::state_feedback::observer::{ElasticTendon, ObserverDesign, TendonObserver};
 use crate::control::state_feedback::periodic_disturbance::PeriodicDisturbance;
@@ -155,8 +154,8 @@ fn tension_dither(
 ) -> TensionDither {
     let (pulley, minimum) = (Vector4::from(finger.friction.pulley), finger.tendon.minimum);
     let pretension = tendons.pretension(minimum);
-    let burst = DitherBurst::new(&(tendons.r.abs() * pretension), rate);
-    TensionDither::new(pretension.normalize(), numbers, (&pulley, burst), (lowest, highest), minimum, rate)
+    let torques = tendons.r.abs() * pretension;
+    TensionDither::new(pretension.normalize(), numbers, (&pulley, &torques), (lowest, highest), minimum, rate)
 }
 
 impl StateFeedback {

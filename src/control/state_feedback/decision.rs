@@ -37,6 +37,16 @@ struct FingerMotion {
     rates: Vector3<f64>,
 }
 
+/// The torques of the joints, and the stiffness of their spring.
+struct JointTorques {
+    /// Torques of the spring, N cm.
+    sprung: Vector3<f64>,
+    /// Stiffness of the spring, N cm/rad.
+    k_theta: Matrix3<f64>,
+    /// All torques, N m.
+    all: Vector3<f64>,
+}
+
 /// The dither of the tensions, N, and its rate, N/s.
 struct Shake {
     tensions: Vector4<f64>,
@@ -66,15 +76,15 @@ impl StateFeedback {
         }
         let reference = self.follow(state, &spring.joints, motion);
         let inertia = self.dynamics.inertia_at(&state.joints, pose);
-        let (sprung, torques) =
+        let JointTorques { sprung, k_theta, all } =
             self.joint_torques(state, &now, (spring, joint_spring), &reference, &inertia, (limits, gravity));
-        let joint_torques = torques * 100.0;
+        let joint_torques = all * 100.0;
         let DistributedTensions { tensions: distributed, scale: torque_scale } =
             distribution.distribute(&joint_torques);
         if begins {
             state.transition.begin(&now.tensions, &distributed);
         }
-        let shake = self.shake(state, (&distributed, &now.tensions), (&reference.rates, &sprung));
+        let shake = self.shake(state, (&distributed, &now.tensions), (&reference.rates, &sprung, &k_theta));
         let phase = self.dither.phase(&state.dither);
         now.disturbances +=
             self.periodic_disturbance.advance(&mut state.periodic_disturbance, &now.disturbances, &phase);
@@ -128,9 +138,8 @@ impl StateFeedback {
         reference
     }
 
-    /// Returns the joint torques of the spring, N cm, and all joint torques, N m. These are the sum of the torques of
-    /// the spring, the soft limits, gravity compensation and the damper, and of the feed-forward for friction and for
-    /// the motion of the reference.
+    /// Returns the joint torques: the sum of the torques of the spring, the soft limits, gravity compensation and the
+    /// damper, and of the feed-forward for friction and for the motion of the reference.
     fn joint_torques(
         &self,
         state: &mut StateFeedbackState,
@@ -139,7 +148,7 @@ impl StateFeedback {
         reference: &ReferenceMotion,
         inertia: &Matrix3<f64>,
         (limits, (compensation, gravity)): (&SoftLimits, (&GravityCompensation, &Option<Vector3<f64>>)),
-    ) -> (Vector3<f64>, Vector3<f64>) {
+    ) -> JointTorques {
         let push = limits.push(&now.joints);
         let pose = JointSines::of(&now.joints);
         let posed = self.joint_stiffness.posed_at(spring, &now.joints, &pose);
@@ -149,22 +158,22 @@ impl StateFeedback {
             k_theta += joint_spring.k_theta;
             sprung += joint_spring.torques(&(reference.joints - now.joints));
         }
-        let k_theta = (k_theta + Matrix3::from_diagonal(&push.stiffness)) * 0.01;
+        let held_stiffness = (k_theta + Matrix3::from_diagonal(&push.stiffness)) * 0.01;
         let apparent = self.apparent_motors + inertia;
         let damped = self.damped_motors + inertia;
-        let damping = self.damping.damping(&damped, inertia, &k_theta, spring.damping);
+        let damping = self.damping.damping(&damped, inertia, &held_stiffness, spring.damping);
         let joint_friction = self.joint_friction(state, &now.rates, &reference.rates, &damping);
         let held = sprung + push.torque + compensation.torques(gravity, &now.joints);
         let rubbing = self.pulleys.as_ref().map_or_else(Vector3::zeros, |pulleys| {
             self.r * pulleys.tensions(&self.r.tr_mul(&reference.rates), &now.tensions)
         });
-        let torques = held * 0.01 - damping * (now.rates - reference.rates)
+        let all = held * 0.01 - damping * (now.rates - reference.rates)
             + rubbing
             + apparent * reference.accelerations
             + self.dynamics.coriolis_at(&now.joints, &pose, &reference.rates)
             + self.joint_viscous.component_mul(&reference.rates)
             + joint_friction;
-        (sprung, torques)
+        JointTorques { sprung, k_theta, all }
     }
 
     /// Returns the feed-forward of the joints' Coulomb friction, N m. Its slope is limited to a fraction of the
@@ -185,17 +194,17 @@ impl StateFeedback {
     }
 
     /// Returns the dither of the joints and of the tensions. `desired` are the tensions without it, `now` the present
-    /// ones, N. `rates` are the joint rates of the reference, rad/s, and `sprung` is the joint torque of the spring,
-    /// N cm.
+    /// ones, N. `spring` has the joint rates of the reference, rad/s, the joint torque of the spring, N cm, and its
+    /// stiffness, N cm/rad.
     fn shake(
         &self,
         state: &mut StateFeedbackState,
         (desired, now): (&Vector4<f64>, &Vector4<f64>),
-        (rates, sprung): (&Vector3<f64>, &Vector3<f64>),
+        spring: (&Vector3<f64>, &Vector3<f64>, &Matrix3<f64>),
     ) -> Shake {
         let (shake, leading) = self.dither.advance(&mut state.dither);
         let phase = self.dither.phase(&state.dither);
-        let amplitude = self.tension_dither.advance(&mut state.tension_dither, (desired, now), &phase, (rates, sprung));
+        let amplitude = self.tension_dither.advance(&mut state.tension_dither, (desired, now), &phase, spring);
         Shake {
             tensions: self.pseudo_inverse * shake + amplitude * phase.x,
             rates: (self.pseudo_inverse * leading + amplitude * phase.y) * self.dither.frequency,

@@ -62,6 +62,11 @@ impl DitherBurst {
         }
     }
 
+    /// Returns whether the spring has so much torque, N cm, that the finger touches something.
+    pub fn touches(&self, sprung: &Vector3<f64>) -> bool {
+        (0..3).any(|joint| sprung[joint].abs() > self.held[joint])
+    }
+
     /// Returns the envelope. `rates` are the joint rates of the reference, rad/s. `sprung` is the joint torque of the
     /// spring, N cm. `slack` is true if a tendon is almost slack. In this case the burst ends, because the tensions
     /// must recover first.
@@ -74,7 +79,7 @@ impl DitherBurst {
     ) -> f64 {
         let rate = rates.amax();
         state.awaited |= rate >= FAST;
-        let begins = state.awaited && rate < SLOW && (0..3).all(|joint| sprung[joint].abs() <= self.held[joint]);
+        let begins = state.awaited && rate < SLOW && !self.touches(sprung);
         if slack {
             (state.envelope, state.staying) = (0.0, 0.0);
         } else if begins || state.staying > 0.0 {

@@ -117,7 +117,7 @@ const DRIFT_BANDWIDTH: f64 = 60.0;
 
 /// See [`Numbers::pulley_share`]. If the whole friction is fed forward and the pulley friction is 5 %, steps overshoot
 /// by 12 %.
-const PULLEY_SHARE: f64 = 0.5;
+const PULLEY_SHARE: f64 = 0.7;
 
 /// See [`Numbers::pulley_creep`].
 const PULLEY_CREEP: f64 = 0.002;

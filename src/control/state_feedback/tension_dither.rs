@@ -7,8 +7,9 @@
 //! mean tension at the gauge. The oscillation is along the null vector n of R, so that it does not move the joints.
 
 use super::dither_burst::{DitherBurst, DitherBurstState};
+use super::dither_scale::{DitherScale, DitherScaleState};
 use super::numbers::Numbers;
-use nalgebra::{Vector2, Vector3, Vector4};
+use nalgebra::{Matrix3, Vector2, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
 /// Largest amplitude as a fraction of each tension, so that no tendon becomes slack.
@@ -64,6 +65,8 @@ pub(crate) struct TensionDither {
     /// Largest b, N. See [`Numbers::dither_rise`].
     risen: f64,
     burst: DitherBurst,
+    /// For a finger whose configured pulley friction requires a larger dither.
+    scaling: Option<DitherScale>,
     /// Largest b of a burst, N. The limit [`TensionDither::risen`] does not apply to it. It does not grow with
     /// the tensions: at hard walls, the dither of loaded fingers would make tendons slack.
     burst_amplitude: f64,
@@ -78,15 +81,18 @@ pub(crate) struct TensionDitherState {
     scale: f64,
     #[serde(default)]
     burst: DitherBurstState,
+    #[serde(default)]
+    scaling: DitherScaleState,
 }
 
 impl TensionDither {
-    /// Constructs the dither. `common` is n. `pulley` is the friction of the pulleys. `lowest` is the lowest desired
+    /// Constructs the dither. `common` is n. `pulley` is the friction of the pulleys. `torques` has, for each joint, the
+    /// sum of the magnitudes of the torques of the four tendons at the pretension, N cm. `lowest` is the lowest desired
     /// tension in a burst, `most` is the largest tension of each tendon, and `minimum` is t_min, N.
     pub fn new(
         common: Vector4<f64>,
         numbers: &Numbers,
-        (pulley, burst): (&Vector4<f64>, DitherBurst),
+        (pulley, torques): (&Vector4<f64>, &Vector3<f64>),
         (lowest, most): (f64, Vector4<f64>),
         minimum: f64,
         rate: f64,
@@ -112,7 +118,8 @@ impl TensionDither {
             measuring: 1.0 / (MEASURING * rate),
             adjusting: 1.0 / (ADJUSTING * rate),
             reserve: numbers.dither_reserve,
-            burst,
+            burst: DitherBurst::new(torques, rate),
+            scaling: rubs.then(|| DitherScale::new(torques, rate)),
             burst_amplitude: if least > 0.0 { burst_part * pretension } else { 0.0 },
         }
     }
@@ -127,7 +134,12 @@ impl TensionDither {
     }
 
     pub fn start(&self) -> TensionDitherState {
-        TensionDitherState { measured: Vector2::zeros(), scale: 1.0, burst: DitherBurstState::default() }
+        TensionDitherState {
+            measured: Vector2::zeros(),
+            scale: 1.0,
+            burst: DitherBurstState::default(),
+            scaling: DitherScaleState::default(),
+        }
     }
 
     /// Returns the largest b with which no tension changes by more than `room`, N.
@@ -137,17 +149,21 @@ impl TensionDither {
 
     /// Returns the amplitude of each tendon, N. `desired` are the tensions without dither, `now` the present ones, N.
     /// `phase` contains the sine and the cosine of omega t. `rates` are the joint rates of the reference, rad/s,
-    /// and `sprung` is the joint torque of the spring, N cm.
+    /// `sprung` is the joint torque of the spring, N cm, and `k_theta` is its stiffness, N cm/rad.
     pub fn advance(
         &self,
         state: &mut TensionDitherState,
         (desired, now): (&Vector4<f64>, &Vector4<f64>),
         phase: &Vector2<f64>,
-        (rates, sprung): (&Vector3<f64>, &Vector3<f64>),
+        (rates, sprung, k_theta): (&Vector3<f64>, &Vector3<f64>, &Matrix3<f64>),
     ) -> Vector4<f64> {
         let slack = now.min() < self.low;
         let burst = self.burst.advance(&mut state.burst, rates, sprung, slack);
-        let wanted = self.part.component_mul(desired).max();
+        let factor = self
+            .scaling
+            .as_ref()
+            .map_or(1.0, |scaling| scaling.advance(&mut state.scaling, k_theta, self.burst.touches(sprung)));
+        let wanted = factor * self.part.component_mul(desired).max();
         let room = self.within(&(desired * LARGEST).inf(&(self.most - desired)));
         let wanted = wanted.min(room).min(self.risen);
         if wanted <= 0.0 {
@@ -184,9 +200,8 @@ mod tests {
     fn dither(least: f64, pulley: f64) -> TensionDither {
         let configured = ConfiguredController { tension_dither: Some(least), ..ConfiguredController::default() };
         let numbers = Numbers::new(&configured, RATE).expect("usable numbers");
-        let burst = DitherBurst::new(&Vector3::repeat(20.0), RATE);
-        let pulley = Vector4::repeat(pulley);
-        TensionDither::new(home().normalize(), &numbers, (&pulley, burst), (5.0, Vector4::repeat(60.0)), 5.0, RATE)
+        let (pulley, torques) = (Vector4::repeat(pulley), Vector3::repeat(20.0));
+        TensionDither::new(home().normalize(), &numbers, (&pulley, &torques), (5.0, Vector4::repeat(60.0)), 5.0, RATE)
     }
 
     /// Runs the dither for `time` (s) on tensions that follow it with the gain `response`, with a reference of this
@@ -205,7 +220,8 @@ mod tests {
         for cycle in 0..cycles {
             phasor.advance(&mut phase);
             let phase = phasor.phase(&phase);
-            let moving = (&Vector3::repeat(rate), &Vector3::zeros());
+            let firm = Matrix3::from_diagonal_element(40.0);
+            let moving = (&Vector3::repeat(rate), &Vector3::zeros(), &firm);
             let amplitude = dither.advance(state, (desired, &now), &phase, moving);
             now = desired + amplitude * (response * phase.x);
             if cycle + 100 >= cycles {
