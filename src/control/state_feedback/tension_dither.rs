@@ -86,9 +86,9 @@ pub(crate) struct TensionDitherState {
 }
 
 impl TensionDither {
-    /// Constructs the dither. `common` is n. `pulley` is the friction of the pulleys. `torques` has, for each joint, the
-    /// sum of the magnitudes of the torques of the four tendons at the pretension, N cm. `lowest` is the lowest desired
-    /// tension in a burst, `most` is the largest tension of each tendon, and `minimum` is t_min, N.
+    /// Constructs the dither. `common` is n. `pulley` is the friction of the pulleys. `torques` has, for each joint,
+    /// the sum of the magnitudes of the torques of the four tendons at the pretension, N cm. `lowest` is the lowest
+    /// desired tension in a burst, `most` is the largest tension of each tendon, and `minimum` is t_min, N.
     pub fn new(
         common: Vector4<f64>,
         numbers: &Numbers,
