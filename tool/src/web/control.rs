@@ -131,7 +131,9 @@ impl Executor {
             let result = self.stopper.carry_out(&command, stops, || self.execute(&command));
             let (done, text) = result.unwrap_or_else(dropped);
             // The page may have left.
-            let _ = answers.map(|answers| answers.send(Answer::new(command, done, text)));
+            if let Some(answers) = answers {
+                let _ = answers.send(Answer::new(command, done, text));
+            }
         }
     }
 
