@@ -2,8 +2,8 @@
 //!
 //! Each new set point adds a smooth step to the motion, and the steps overlap. The rate of a step is a quadratic
 //! B-spline, whose three parts each last as long as a period of the planner. The sum of the steps is therefore
-//! continuous up to its acceleration, and set points at equal intervals of time and distance give a constant rate.
-//! Nothing overshoots: the sum stays between the set points that were sent. The price is a delay of one and a half
+//! continuous up to its acceleration, and set points at equal distances give a constant rate if they arrive once a
+//! period. Nothing overshoots: the sum stays between the set points that were sent. The price is a delay of one and a half
 //! periods of the planner.
 //!
 //! A polynomial to each new set point with an estimated final rate would have a smaller delay. It was rejected, because
@@ -52,8 +52,8 @@ pub struct InterpolationState {
 #[derive(Clone, Copy, Debug, Default)]
 struct Step {
     way: Vector3<f64>,
-    /// Period of the planner when the step began, s. The step keeps it, so that a change of the period does not move
-    /// the set point.
+    /// Period of the planner when the step began, s, or longer. The step keeps it, so that a change of the period does
+    /// not move the set point.
     time: f64,
     /// Time since the step began, s.
     age: f64,
@@ -79,7 +79,8 @@ impl Interpolation {
                 state.admitted = before + (state.admitted - before) * share;
             }
             if share > 0.0 {
-                state.steps[state.count] = Step { way: state.admitted - before, time: self.time, age: 0.0 };
+                let time = self.time_of_new_step(state);
+                state.steps[state.count] = Step { way: state.admitted - before, time, age: 0.0 };
                 state.count += 1;
                 state.wait = self.spacing;
             }
@@ -111,6 +112,13 @@ impl Interpolation {
             state.base = state.admitted;
         }
         (joints, Some(motion))
+    }
+
+    /// Returns the period with which a new step does not end before the steps that run. A step that is faster than an
+    /// older one would overtake it after the planner's period became shorter. If the two had opposite directions, the
+    /// sum would leave the range of the set points that were sent.
+    fn time_of_new_step(&self, state: &InterpolationState) -> f64 {
+        state.steps[..state.count].iter().map(|step| step.time - step.age / 3.0).fold(self.time, f64::max)
     }
 
     /// Returns the share of the speed limit that a new step may use, 0 to 1. It is below 1 only while steps with
@@ -210,6 +218,27 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn a_change_of_the_period_keeps_the_motion_within_its_set_points(
+            places in prop::collection::vec(-1.0..1.0f64, 1..20), every in 1u32..150,
+            periods in (-2.0..0.0f64, -2.0..0.0f64), changed in 0u32..3000,
+        ) {
+            let interpolations = [periods.0, periods.1].map(|power| Interpolation::new(10f64.powf(power), 5.0, RATE));
+            let mut state = InterpolationState::at_rest(Vector3::zeros());
+            let least = places.iter().copied().fold(0.0, f64::min);
+            let most = places.iter().copied().fold(0.0, f64::max);
+            let last = places[places.len() - 1];
+            for cycle in 0..20 * every + 5000 {
+                let place = places[places.len().min((cycle / every) as usize + 1) - 1];
+                let interpolation = &interpolations[usize::from(cycle >= changed)];
+                let (joints, _) = interpolation.advance(&mut state, &(Vector3::x() * place));
+                prop_assert!((least - 1e-9..=most + 1e-9).contains(&joints.x), "{}", joints.x);
+                if cycle + 1 == 20 * every + 5000 {
+                    prop_assert!((joints.x - last).abs() < 1e-9);
+                }
+            }
+        }
+
         #[test]
         fn any_stream_is_smooth_and_stays_within_its_set_points(
             places in prop::collection::vec(-1.0..1.0f64, 1..40), every in 1u32..150,
