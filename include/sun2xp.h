@@ -985,14 +985,14 @@ struct sun2xp_set_point {
                 every command, and set members that are not used to 0
 
  Each command has the effect of sun2xp_send_position or sun2xp_send_tip, sun2xp_send_stiffness and
- sun2xp_send_damping. All fingers of the group follow their commands from the same cycle on, also if
- different threads serve them: the periods of the servos are numbered for the whole hand, and the group
- takes effect in the same period for every finger, within two periods. If the call is refused, no finger
- gets its command.
+ sun2xp_send_damping. All fingers of the group follow their commands from the same cycle on, even if
+ different threads serve them. The periods of the servos are numbered for the whole hand, and the group
+ takes effect in the same period for every finger, at most two periods after the call. If the call is
+ refused, no finger gets its command.
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
  "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
- This happens about once for every period by which two of the clocks drift apart.
+ This happens about once each time that two of the clocks have drifted apart by one period.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1504,7 +1504,7 @@ int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
 
  All keys take effect together, within a cycle and without a jump in torque; other keys stay as they are.
  The change lasts until sun2xp_close: the file is not written. A new controller.law applies from the next
- sun2xp_send_position on. These keys cannot change while the hand is open: port, board, baud,
+ set point or path in joint angles on. These keys cannot change while the hand is open: port, board, baud,
  reconnect, address, thread, core, priority, base, turn_degrees, encoder, motor.sign,
  motor.torque_limit, motor.torque_constant, stiffness.initial, touch and simulation.
 

@@ -49,8 +49,8 @@ fn step_responses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
 }
 
 /// Draws the forces for a deflection of 1 mm in every direction of a coordinate plane: those of Kx = diag(1, 5, 2) in
-/// black, and those of the apparent stiffness, measured with friction, in red. They are sections of the two ellipsoids.
-/// There is one row per controller and one column per pose.
+/// black, and those of the apparent stiffness, measured with friction, in red. Only the components of the forces in the
+/// plane are drawn. There is one row per controller and one column per pose.
 fn ellipses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
     const PLANE: [usize; 2] = [0, 1];
     let kx = Matrix3::from_diagonal(&Vector3::new(1.0, 5.0, 2.0));
@@ -79,7 +79,7 @@ fn ellipses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns K d for deflections d of 1 mm in all directions of a plane of two axes, N.
+/// Returns the components of K d in the plane of two axes, N, for deflections d of 1 mm in all directions of the plane.
 fn section(stiffness: &Matrix3<f64>, [a, b]: [usize; 2]) -> Vec<(f64, f64)> {
     let of = |row, column| 0.1 * stiffness[(row, column)];
     let plane = Matrix2::new(of(a, a), of(a, b), of(b, a), of(b, b));

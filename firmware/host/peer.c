@@ -2,8 +2,8 @@
 
        peer ADDRESS...
 
-   The first line of output is the path of the port. For each line on standard input it prints the true joint angles,
-   rad: three for each finger. The end of standard input ends the program. */
+   The first line of output is the path of the port. For each line on standard input the program prints the true joint
+   angles, rad: three for each finger. The end of standard input ends the program. */
 
 #define _XOPEN_SOURCE 700
 

@@ -14,7 +14,7 @@
 #define ADDRESS 1
 #endif
 
-/* Change these values with the motors, drivers and gauges. */
+/* Adapt these values to the motors, drivers and gauges of the finger. */
 static const struct finger_traits common = {
     .address = ADDRESS,
     .firmware_version = {1, 0, 0},

@@ -1,4 +1,4 @@
-"""The C interface from Python, without this package: cffi reads the whole header sun2xp.h, and loads the shared library.
+"""The C interface from Python, without this package: cffi reads the whole header sun2xp.h and loads the shared library.
 This is how any language with a foreign function interface drives the hand.
 
     python c_interface.py include/sun2xp.h target/release/libsun2xp.so
@@ -11,7 +11,7 @@ import cffi
 
 
 def declarations(header: str) -> str:
-    """The declarations of the header, and the constants, without comments and the lines of the preprocessor."""
+    """The declarations and constants of the header, without comments and without other lines of the preprocessor."""
     text = re.sub(r"/\*.*?\*/", "", header, flags=re.DOTALL)
     # cffi knows size_t, and computes the sizes of structs itself.
     text = re.sub(r"#ifdef __(cplusplus|LP64__)\n.*?#endif", "", text, flags=re.DOTALL)

@@ -14,8 +14,8 @@ use sun2xp::control::events::Arrival;
 use sun2xp::{Fault, FaultKind, Hand, HandError};
 use sun2xp_remote_protocol::{Answer, ClientName, Code, Counts, DecodeError, FINGERS, Target};
 
-/// If an ownership ends because its owner is silent, the desk stops the fingers that still move after this time, ns.
-/// The servos also measure the silence, and normally stop their fingers before.
+/// If an ownership ends because its owner is silent, the desk stops every finger after this time, ns, in case one still
+/// moves. The servos also measure the silence, and normally stop their fingers earlier.
 const GRACE: u64 = 20 * MILLISECOND;
 
 /// The desk of a hand.
@@ -31,7 +31,7 @@ pub struct Desk {
     clients: BTreeSet<ClientName>,
     /// Whether a finger was caught (see [`crate::silence`]) at the last call of [`Desk::look`].
     caught: bool,
-    /// The time at which fingers that still move are stopped, ns.
+    /// The time at which every finger is stopped because one may still move, ns.
     stop_at: Option<u64>,
     stops: Stops,
 }
@@ -193,12 +193,12 @@ impl Desk {
     pub fn abandon(&mut self, now: u64) {
         self.ownership.end();
         // The set point of a finger that is still being recovered has no validity that could end. The desk therefore
-        // stops the fingers that still move after this time.
+        // stops every finger after this time.
         let end = u64::from(self.limits.end_ms) * MILLISECOND + GRACE;
         (self.silence, self.stop_at) = (None, Some(now + end));
     }
 
-    /// Stops this finger, or every finger if it is none, whoever owns the hand.
+    /// Stops `finger`, or every finger if `finger` is none, whoever owns the hand.
     ///
     /// # Errors
     /// Returns an error if the hand does not have the finger. Then nothing has stopped.

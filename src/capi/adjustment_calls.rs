@@ -16,7 +16,7 @@ use std::ffi::{CStr, c_char, c_int};
 ///
 /// All keys take effect together, within a cycle and without a jump in torque; other keys stay as they are.
 /// The change lasts until sun2xp_close: the file is not written. A new controller.law applies from the next
-/// sun2xp_send_position on. These keys cannot change while the hand is open: port, board, baud,
+/// set point or path in joint angles on. These keys cannot change while the hand is open: port, board, baud,
 /// reconnect, address, thread, core, priority, base, turn_degrees, encoder, motor.sign,
 /// motor.torque_limit, motor.torque_constant, stiffness.initial, touch and simulation.
 ///

@@ -12,7 +12,7 @@ use std::fmt;
 pub struct Fingers([bool; FINGERS]);
 
 impl Fingers {
-    /// Every finger that the hand has.
+    /// All three fingers. At open it selects every finger that the hand has.
     pub const ALL: Self = Self([true; FINGERS]);
 
     /// Selects one finger.

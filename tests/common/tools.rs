@@ -51,7 +51,7 @@ pub fn available(name: &str, part: &str) -> bool {
 /// of the current test is listed as skipped. With CI=true the test fails instead.
 pub fn python(part: &str) -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("python");
-    // tests/run writes this copy after it has installed the packages.
+    // tests/run copies the list to this folder after it has installed the packages.
     if fs::read_to_string(folder.join("requirements.txt")).is_ok_and(|installed| installed == PYTHON_PACKAGES) {
         return Some(folder.join("bin/python"));
     }
@@ -92,7 +92,8 @@ fn note(line: &str) {
     }
 }
 
-/// Returns what the children of a process have skipped, in alphabetical order, and deletes the lists of earlier runs.
+/// Returns what the children of the process `parent` have skipped, in alphabetical order. Deletes the list of these
+/// children, and the lists of runs that have ended.
 pub fn take_skipped(parent: u32) -> Vec<String> {
     let folder = folder_of_runs();
     let this = run(parent);

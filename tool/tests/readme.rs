@@ -14,7 +14,7 @@ const README: &str = include_str!("../../README.md");
 /// The tool as README names it.
 const TOOL: &str = "c_examples/build/sun2xp";
 
-/// The indented lines of the section, without their comments.
+/// The indented lines of the section "See it move", without their comments.
 fn commands() -> Vec<&'static str> {
     let (_, section) = README.split_once("\n## See it move\n").expect("the section");
     let section = section.split("\n## ").next().unwrap_or_default();

@@ -51,7 +51,7 @@ fn the_figures_are_those_of_a_calculation_by_hand() {
     );
 }
 
-/// The force was computed from the largest tension, and the tension from the force.
+/// The first run computes the force from the largest tension. The second run computes the tension from this force.
 #[test]
 fn force_and_tension_agree() {
     let (_, of) = figures(SIMULATED, &[]);
@@ -81,7 +81,7 @@ fn wrong_usage_is_refused() {
     assert_eq!(size(Path::new("none.toml"), &[]).status.code(), Some(1));
 }
 
-/// The table of the page is what the command prints.
+/// The table in docs/building-a-hand.md is the output of the command.
 #[test]
 fn the_page_shows_the_table() {
     let file = tempfile::NamedTempFile::with_suffix(".toml").expect("a file");

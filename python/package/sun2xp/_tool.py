@@ -10,7 +10,7 @@ from . import _sun2xp
 
 def main() -> int:
     """Runs the tool with the arguments of the process."""
-    # Python would only note the signal, and raise KeyboardInterrupt after the tool has ended.
+    # Python's own handler would only note SIGINT, and raise KeyboardInterrupt after the tool has ended.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return _sun2xp.run_tool(["sun2xp", *sys.argv[1:]])
 

@@ -40,7 +40,7 @@ pub fn write(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes a certificate that its holder may use at either end of a connection, and its key.
+/// Writes a key and its certificate. The certificate is valid for both ends of a connection.
 fn write_leaf(folder: &Path, name: &str, issuer: &Issuer<'_, KeyPair>) -> Result<(), Failure> {
     let mut parameters = parameters(name, &["127.0.0.1"])?;
     parameters.key_usages = vec![KeyUsagePurpose::DigitalSignature];

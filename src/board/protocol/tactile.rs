@@ -53,7 +53,7 @@ pub enum TactileChange {
     Lost,
     /// 3: an object slips.
     Slip,
-    /// 4: the count changed by more than the board's threshold.
+    /// 4: the count changed by the board's threshold or more.
     Pressure,
     /// 5: the element cannot be read. The count has no meaning.
     Invalid,

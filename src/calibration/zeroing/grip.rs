@@ -10,7 +10,7 @@ use crate::control::signals::Activity;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// The largest angle by which a held joint may yield, rad. A hand that holds a finger is compliant.
+/// The largest angle by which a held joint may yield, rad. A person's hand that holds a finger is compliant.
 const GIVES_WAY: f64 = 0.02;
 /// Duration of each push at the full torque, s.
 const PUSHING: f64 = 0.1;
@@ -65,8 +65,8 @@ impl Grip {
         Ok((self.guide.activity(instruments, sample), done))
     }
 
-    /// Refuses a finger that has moved. `joints` are the joint angles that were read after the pushes, rad. They must
-    /// equal the angles before the pushes.
+    /// Refuses a finger that has moved. `joints` are the joint angles that were read after the pushes, rad. They may
+    /// differ from the angles before the pushes by at most [`TOLERANCE`].
     pub fn returned(&self, joints: &Vector3<f64>) -> Result<(), Obstacle> {
         let (joint, distance) = (joints - self.start).abs().argmax();
         match distance > TOLERANCE {

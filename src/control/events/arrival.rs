@@ -6,8 +6,8 @@ use crate::model::Part;
 use crate::model::configuration::ConfiguredEvents;
 use nalgebra::Vector3;
 
-/// The progress of a finger toward the set point in force. A set point that was sent in this cycle or later is not yet
-/// in force.
+/// The progress of a finger toward the set point in force. A set point that was sent in the cycle of the report, or
+/// later, is not yet in force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {
     /// Whether the joints have reached the angles of the set point.
@@ -101,8 +101,8 @@ mod tests {
         SetPoint::hard_finger(Vector3::repeat(angle), Matrix3::identity())
     }
 
-    /// Returns the kinds of the observations in each of `cycles` cycles in which the joints move toward `target` at
-    /// 0.01 rad per cycle.
+    /// Moves the joints toward `target` for `cycles` cycles, at 0.01 rad per cycle. Returns the cycle and the kind of
+    /// each observation.
     fn moves(state: &mut ArrivalState, joints: &mut f64, target: f64, cycles: usize) -> Vec<(usize, ObservationKind)> {
         let detector = ArrivalDetector::new(&ConfiguredEvents::default(), 1000.0);
         let set_point = at(target);

@@ -2,12 +2,12 @@
 //!
 //! Each new set point adds a smooth step to the motion, and the steps overlap. The rate of a step is a quadratic
 //! B-spline, whose three parts each last as long as a period of the planner. The sum of the steps is therefore
-//! continuous up to its acceleration, and set points at equal distances give a constant rate if they arrive once a
-//! period. Nothing overshoots: the sum stays between the set points that were sent. The price is a delay of one and a half
-//! periods of the planner.
+//! continuous up to its acceleration. Set points that come once in each period and are equally far apart give a
+//! constant rate. Nothing overshoots: the sum stays between the set points that were sent. The price is a delay of one
+//! and a half periods of the planner.
 //!
 //! A polynomial to each new set point with an estimated final rate would have a smaller delay. It was rejected, because
-//! it overshoots the last set point before a planner stops sending.
+//! it overshoots the last set point when a planner stops sending.
 
 use crate::control::motion::Motion;
 use crate::control::spring::slew::Slew;

@@ -1,4 +1,4 @@
-//! Feed-forward of the friction of the pulleys, which the gauges do not measure, while the reference moves.
+//! Feed-forward of the friction of the pulleys while the reference moves. The gauges do not measure this friction.
 
 use nalgebra::Vector4;
 

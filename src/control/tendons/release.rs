@@ -17,7 +17,8 @@ impl Release {
         Self { from, elapsed: 0.0 }
     }
 
-    /// Converts the ramp for other motor radii, with which the pulls are multiplied by `ratio`.
+    /// Converts the ramp to other motor radii. `ratio` contains the factors by which the pulls change at the same motor
+    /// torques.
     pub fn scale(&mut self, ratio: &Vector4<f64>) {
         self.from.component_mul_assign(ratio);
     }

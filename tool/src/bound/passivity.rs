@@ -36,7 +36,7 @@ pub struct Passivity {
 #[derive(Debug, Serialize)]
 struct Pose {
     joints_degrees: [f64; 3],
-    /// The passivity at every frequency. `None` if the finger does not come to rest in the pose.
+    /// The passivity at every frequency. `None` if the finger does not come to rest in the pose, or a tendon is slack.
     passivity: Option<Vec<f64>>,
 }
 
@@ -61,7 +61,7 @@ pub fn compute(arguments: &Arguments, searched: &Searched, progress: &Progress) 
     Ok((stiffness, Passivity { frequencies, poses: computed }))
 }
 
-/// Returns the number of poses for one finger, which are the steps of the progress.
+/// Returns the number of poses for one finger. Each pose is one step of the progress.
 pub fn number_of_poses(arguments: &Arguments) -> usize {
     arguments.samples.unwrap_or(POSES)
 }

@@ -1,4 +1,4 @@
-//! The thread that reads the messages of a hand, so that the keys never wait for them.
+//! The thread that reads the messages of a hand, so that the reaction to a key never waits for them.
 
 use std::io;
 use std::sync::Arc;
@@ -90,7 +90,7 @@ impl Wanted {
     }
 }
 
-/// Returns an error if nobody receives the news.
+/// Reads one hand after the other until `ended` is set. Returns an error if nobody receives the news.
 fn run(wanted: &Wanted, news: &Sender<News>, ended: &AtomicBool) -> Result<(), ()> {
     let send = |piece| news.send(piece).map_err(|_| ());
     let mut missing = String::new();

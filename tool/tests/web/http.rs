@@ -16,7 +16,7 @@ pub struct Response {
 }
 
 impl Response {
-    /// Returns the value of a header, whose name is in lower case.
+    /// Returns the value of the header `name`, which must be in lower case.
     pub fn header(&self, name: &str) -> Option<&str> {
         self.headers.iter().find(|(key, _)| key == name).map(|(_, value)| value.as_str())
     }
