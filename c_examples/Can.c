@@ -84,7 +84,7 @@ static int start(void *user, const struct sun2xp_io_terms *terms, struct sun2xp_
     int control[4] = {1, (int)(terms->watchdog * 1000), 0, 0};
     int tries;
 
-    /* The far end may still be starting. */
+    /* CanDrives may still be starting. */
     for (tries = 0; tries < 100; tries++) {
         discard(drives);
         if (can_send(&drives->bus, 0, CAN_CONTROL + drives->finger, control) == 0

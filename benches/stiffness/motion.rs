@@ -1,4 +1,4 @@
-//! Measurements of how the tip follows the spring's anchor, for rows of the table.
+//! Measurements of how the tip follows the spring's anchor, for the tables of docs/stiffness.md.
 
 use crate::cases::{Case, Friction};
 use crate::closed_loop::{ClosedLoop, Held, Senses};

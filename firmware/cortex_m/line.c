@@ -15,7 +15,7 @@ static struct {
     volatile uint32_t arrived_at[INPUT_ROOM];
 } input;
 
-/* The main loop writes `written`; `taken` is written by uart_transmit only. */
+/* The main loop writes `written`; only line_next, which uart_transmit calls, writes `taken`. */
 static struct {
     volatile size_t written, taken; /* Never reset, like those of the input. */
     uint8_t bytes[OUTPUT_ROOM];

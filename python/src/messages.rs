@@ -15,7 +15,7 @@ use sun2xp::realtime::{Severity, offer_messages_to};
 /// Largest number of messages that wait. Further ones go to standard error.
 const CAPACITY: usize = 1000;
 
-/// Longest time for which an opened hand waits until its messages are in the log.
+/// Longest time for which the opening of a hand waits until the messages are in the log.
 const LONGEST_FLUSH: Duration = Duration::from_secs(1);
 
 /// The process that has the thread of Python: the value of `fork::generation` in it. No process has the initial value.
@@ -96,7 +96,7 @@ pub fn next_message(py: Python<'_>) -> PyResult<Option<(i32, String)>> {
     }
 }
 
-/// Ends `next_message` as soon as it has returned all messages. Later messages go to standard error.
+/// Makes `next_message` return None after the messages that still wait. Later messages go to standard error.
 #[pyfunction]
 pub fn end_messages() {
     if has_thread() {

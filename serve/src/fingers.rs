@@ -17,7 +17,7 @@ use sun2xp::motion::{Pose, Validity};
 use sun2xp::{Hand, HandError, OutOfRange, Stage};
 use sun2xp_remote_protocol::{FINGERS, Part};
 
-/// The distance from the end of a path at which the path has ended, rad. It covers the rounding.
+/// A path has ended when the reference is within this distance of its end, rad. The distance covers rounding errors.
 const AT_END: f64 = 1e-6;
 
 /// The fingers of the hand, and what the owner wants of them.
@@ -83,8 +83,8 @@ impl Fingers {
         }
     }
 
-    /// Begins the epoch of a new owner, who has not commanded any finger yet. The acquire counts as a Target, so
-    /// fingers that were caught first follow their set points again.
+    /// Begins the epoch of a new owner, who has not commanded any finger yet. The acquire counts as a Target, so before
+    /// the epoch begins, fingers that were caught follow their set points again.
     pub fn begin_epoch(&mut self, silence: &Silence) {
         self.keep_valid(silence);
         self.goals.iter_mut().for_each(Goal::begin_epoch);
@@ -147,8 +147,8 @@ impl Fingers {
         }
     }
 
-    /// Keeps the set points of fingers valid that wait until an acquire has recovered other fingers. A finger that was
-    /// caught keeps its place, and does not go to its end state.
+    /// Keeps the set points of running fingers valid while an acquire recovers other fingers. A finger that was caught
+    /// keeps its place, and does not go to its end state.
     pub fn keep_waiting(&self, silence: &Silence) {
         for number in self.numbers() {
             if self.hand.report(number).is_ok_and(|report| report.stage == Stage::Running) {
@@ -180,7 +180,7 @@ impl Fingers {
                     // The finger follows the end of the path as a set point that it has reached.
                     (self.goals[index].destination, self.goals[index].whole) = (Destination::Joints(end), true);
                 } else if self.admitted(number, &goal, &report, &report.reference.joints) < 1.0 {
-                    // The finger lags behind its path. Instead it moves straight to the last pose.
+                    // The finger lags behind its path. It leaves the path and moves straight to the last pose.
                     (self.goals[index].destination, self.goals[index].whole) = (Destination::Joints(end), false);
                     self.send(number, &report, silence.of_commanded(), false);
                 }

@@ -1,4 +1,4 @@
-//! The reference of a finger: the joint angles that its moving set point has reached, and its motion there.
+//! The reference of a finger: the joint angles that its moving set point has reached, and their derivatives.
 
 use crate::control::Motion;
 use nalgebra::Vector3;

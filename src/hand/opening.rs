@@ -43,7 +43,7 @@ pub(super) struct Reached {
     pub events: EventLog,
     /// The finger's tactile elements.
     pub touch: Elements,
-    /// The rules of the finger.
+    /// The planners' end of the reflexes.
     pub reflexes: Reflexes,
 }
 
@@ -53,7 +53,7 @@ pub(super) struct Connected {
     pub lines: Vec<Line>,
     /// The planners' side, in the order of the fingers.
     pub reached: Vec<Reached>,
-    /// The gate of the servos.
+    /// The gate that lets a group of set points take effect in the same period in every servo.
     pub gate: GroupGate,
     /// The data for repairing the ports.
     pub repairs: Vec<PortRepair>,

@@ -25,8 +25,8 @@ pub(super) struct PortRepair {
     released: bool,
     /// The released link or a new one; `None` while the port is gone.
     link: Option<Link<Connection>>,
-    /// Whether the boards are known to be those of open. Either the link has not failed, or the boards have answered
-    /// after its failure and are the same as at open.
+    /// Whether the boards are known to be the same as at open. Either the link has not failed, or the boards have
+    /// answered after its failure, and their identities were the same as at open.
     pub checked: bool,
     /// Place of the finger that was last given to the servo while other fingers of the port ran.
     given: Option<usize>,
@@ -40,7 +40,8 @@ pub(super) struct KnownBoard {
     pub terms: Terms,
     pub identity: Identity,
     pub zero_valid: bool,
-    /// Whether the board is hardware of the program. It keeps its terms until the hand is closed.
+    /// Whether the program itself drives the hardware of this finger (`FingerIo`). Such hardware keeps its terms until
+    /// the hand is closed.
     pub has_io: bool,
     /// Whether the board was found without terms after open. This means that it has restarted.
     pub restarted: bool,
@@ -111,7 +112,7 @@ impl PortRepair {
         outcome
     }
 
-    /// Opens the port, which is gone.
+    /// Opens the port again after it has gone.
     fn open(&self) -> Result<Link<Connection>, HandError> {
         let finger = self.boards.first().map_or(FingerNumber::ONE, |board| board.finger);
         if !self.reconnect {
@@ -129,7 +130,8 @@ impl PortRepair {
             self.released = false;
             let board =
                 |place: usize| configured[place].map(|configured| RestoredBoard { configured, stops: stops[place] });
-            // The ring has room for one link. The servo has released `link`, so it has taken the link of the last push.
+            // The ring has room for one link. The servo has released its link, so it has already taken the link of the
+            // last push.
             let _ = self.handover.repaired.push(RepairedLink { link, boards: [board(0), board(1), board(2)] });
         }
     }
@@ -208,8 +210,8 @@ impl KnownBoard {
         }
     }
 
-    /// Stops the board and agrees on the terms with it. Its zeros must be those of open. Call [`KnownBoard::compare`]
-    /// first, because only the board of open may receive a Stop and terms.
+    /// Stops the board and agrees on the terms with it. Its zeros must be the same as at open. Call
+    /// [`KnownBoard::compare`] first, because another board than the one at open must not receive a Stop or terms.
     fn configure<T: Transport>(&mut self, link: &mut Link<T>) -> Result<Configured, HandError> {
         // A board whose port failed has not received a Stop. If cable and power are back before its watchdog trips, the
         // board still executes its last command. If another board of the port does not answer `compare_all`, this one

@@ -162,7 +162,8 @@ fn scaled(stiffness: &Matrix6<f64>, factor: f64) -> Matrix6<f64> {
     Matrix6::from_fn(|row, column| stiffness[(row, column)] * scale(row) * scale(column))
 }
 
-/// Returns a stiffness of any rank, made exactly symmetric, and its smallest and largest eigenvalue.
+/// Returns the stiffness `asked`, made exactly symmetric, and its smallest and largest eigenvalue. The stiffness need
+/// not have full rank.
 ///
 /// # Errors
 /// Returns an error if an entry is NaN or infinite, if the asymmetry exceeds a thousandth of the largest entry, or if

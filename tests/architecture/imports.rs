@@ -31,7 +31,7 @@ pub fn all(tree: &CrateTree) -> BTreeSet<Import> {
 
 fn of(file: &SourceFile, tree: &CrateTree) -> Vec<Import> {
     let mut reader = Reader { module: &file.module, brought: BTreeMap::new(), found: BTreeSet::new() };
-    // The names come first, because a path in the code may begin with one of them.
+    // The imported names are collected first, because a path in the code may begin with one of them.
     for item in &file.items {
         if let Item::Use(import) = item {
             reader.brought.extend(paths(&import.tree, &file.module));
@@ -55,7 +55,8 @@ struct Reader<'a> {
 impl<'a> Visit<'a> for Reader<'_> {
     fn visit_item_use(&mut self, import: &'a ItemUse) {
         if matches!(import.vis, Visibility::Inherited) {
-            // An imported module counts as used only where a path takes a name from it.
+            // A `use` of a module counts as an import of the module's file. A path that begins with this module may add
+            // an import of another file, from which the module re-exports the name.
             self.found.extend(paths(&import.tree, self.module).into_iter().map(|(_, path)| path));
         }
     }

@@ -227,8 +227,8 @@ impl FingerReport {
     }
 }
 
-/// Whether two fingers are equal in everything that stability depends on. State feedback depends on the resolution of
-/// the sensors.
+/// Whether two fingers are equal in everything that the results depend on. State feedback depends on the resolution of
+/// the sensors, and the passivity depends on the configured bound.
 fn alike(one: &ConfiguredFinger, other: &ConfiguredFinger) -> bool {
     let parts = |of: &ConfiguredFinger| {
         (of.geometry.clone(), of.motor.clone(), of.tendon.clone(), of.joints.clone(), of.links.clone())

@@ -7,7 +7,7 @@ use tempfile::TempDir;
 
 const TOOL: &str = env!("CARGO_BIN_EXE_sun2xp");
 
-/// A program with its standard input and its lines. It is killed at the end.
+/// A running program, with pipes to its standard input and standard output. Dropping this value kills the program.
 struct Program {
     process: Child,
     input: ChildStdin,
@@ -67,7 +67,7 @@ fn a_fault_ends_the_readings() {
     let (mut board, mut sensors) = board_and_sensors(&folder);
     sensors.reading();
     writeln!(board.input, "unplug").expect("an order");
-    // The lines until the fault. The pipe ends with the program.
+    // The program writes lines until the fault ends it. Its pipe then has no more lines.
     while !sensors.line().is_empty() {}
     assert_eq!(sensors.process.wait().expect("ended").code(), Some(1));
     let mut said = String::new();

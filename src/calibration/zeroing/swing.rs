@@ -18,9 +18,10 @@ const RISE: f64 = 0.8;
 const HARDEST: f64 = 0.6;
 /// Duration of a rise or fall, s. The motors must not be so slow that they stick.
 const RAMP: f64 = 0.3;
-/// Number of rises and falls.
+/// Number of rises. A fall follows each rise.
 const ROUNDS: f64 = 3.0;
-/// Part of the rise that counts. At the beginning of a rise or fall, a tendon may still stick.
+/// Only cycles with a common tension between these fractions of the rise contribute to the reading. At the beginning of
+/// a rise or fall, a tendon may still stick.
 const COUNTS: (f64, f64) = (0.25, 0.75);
 
 #[derive(Clone, Copy, Debug)]

@@ -5,6 +5,9 @@ use nalgebra::Matrix3;
 
 /// D = 2 zeta (W # (K + f^2 W)) + lag sym(H W^-1 K).
 ///
+/// K is the stiffness of the spring, W the inertia on which it acts, and H the inertia of the links alone. sym is the
+/// symmetric part.
+///
 /// W # K = W (W^-1 K)^(1/2) is the geometric mean. In one dimension, without f and lag, D is 2 zeta sqrt(W K). In
 /// general, D gives every mode of the pair (W, K) the same damping ratio zeta. Because of the lowest frequency f, a
 /// finger is also damped if it has no stiffness, or if K does not have full rank. The tensions lag behind the desired

@@ -98,7 +98,7 @@ fn a_folder_that_is_not_there_is_refused_when_the_hand_is_opened() {
     assert!(error.to_string().contains("hand.black_box: /no/such/folder is not a folder"), "{error}");
 }
 
-/// A cycle without a finger. A file must preserve all of its numbers.
+/// The record is not from a finger: its numbers are extreme. A file must preserve all numbers exactly.
 #[test]
 fn numbers_come_back_to_the_last_bit() {
     let third = |sign: f64| sign / 3.0;

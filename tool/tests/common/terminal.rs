@@ -21,12 +21,12 @@ pub fn on_terminal(command: &mut Command, columns: u16, errors: bool) -> (String
     command.env("TERM", "xterm-256color").stdin(Stdio::null()).stdout(end());
     command.stderr(if errors { end() } else { Stdio::null() });
     let mut process = command.spawn().expect("the tool runs");
-    // The terminal ends when no process has it open. `command` still holds descriptors of the terminal, so they are
-    // replaced, and `follower` is closed.
+    // The reading below ends when no process has the terminal open. `command` still holds descriptors of the terminal,
+    // so they are replaced, and `follower` is closed.
     command.stdout(Stdio::null()).stderr(Stdio::null());
     drop(follower);
     let mut written = Vec::new();
-    // A pseudo-terminal ends with an error (EIO).
+    // At the end of a pseudo-terminal, `read` returns the error EIO instead of 0 bytes.
     let _ = leader.read_to_end(&mut written);
     let status = process.wait().expect("the tool ends");
     (String::from_utf8(written).expect("text").replace("\r\n", "\n"), status.code())

@@ -20,7 +20,8 @@ const NOTE_COMMANDS: &str = "
     };
 ";
 
-/// Finds the button with a text. Buttons of another panel may have the same text, so the first one counts.
+/// Returns a JavaScript expression for the first button with this text. A later panel may have a button with the same
+/// text.
 fn button(text: &str) -> String {
     format!("[...document.querySelectorAll('#control button')].find((one) => one.textContent === '{text}')")
 }
@@ -28,7 +29,7 @@ fn button(text: &str) -> String {
 /// The button that pushes the fingertip along x.
 const PUSH: &str = "document.querySelector('#control button[title^=\"Push the fingertip along +x\"]')";
 
-/// Opens the page of a hand that it may move; none without a browser. Nothing else uses a browser meanwhile.
+/// Opens a page that may move its hand; none without a browser. While the guard lives, no other test uses a browser.
 fn page() -> Option<(MutexGuard<'static, ()>, Program, TempDir, Browser)> {
     if !available("chromium", "the page in a browser") {
         return None;

@@ -12,7 +12,7 @@ from .._errors import ConfigurationError, ErrorNumber
 
 _BLOCK = re.compile(r"-----BEGIN CERTIFICATE-----(.*?)-----END CERTIFICATE-----", re.DOTALL)
 
-#: 2.5.4.3, commonName, with its tag and length.
+#: The object identifier of commonName, 2.5.4.3, in DER with its tag and length.
 _COMMON_NAME = bytes([0x06, 0x03, 0x55, 0x04, 0x03])
 
 
@@ -20,7 +20,7 @@ def common_name(path: Union[str, os.PathLike[str]]) -> str:
     """Returns the common name of the subject of the first certificate of a PEM file.
 
     Raises:
-        ConfigurationError: the file cannot be read, or it has no such certificate.
+        ConfigurationError: the file cannot be read, or has no certificate, or the certificate has no common name.
     """
     try:
         block = _BLOCK.search(pathlib.Path(path).read_text("ascii"))

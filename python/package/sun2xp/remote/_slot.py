@@ -16,7 +16,7 @@ class _Command:
     change: Part
     #: The part that was sent for it, which also has the values of earlier commands that were not confirmed.
     part: Part
-    #: The first Target with this part.
+    #: Sequence number of the first Target with this part.
     sequence: int
 
 
@@ -25,7 +25,7 @@ class Slot:
 
     def __init__(self) -> None:
         #: The part that Targets repeat; None if there was no command, or if the newest one was refused. An earlier part
-        #: must not come back after a refusal, because the server would take its number as a new one.
+        #: must not come back after a refusal, because the server would take its command number for a new one.
         self.part: Optional[Part] = None
         #: Changes that no Target has yet.
         self._waiting: Optional[Part] = None
