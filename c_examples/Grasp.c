@@ -24,8 +24,9 @@
 #define HALF 0.5
 #define SINE 0.8660254                  /* of 60 degrees */
 
-/* Position of the ball on the table, and the contacts around its equator, in the palm's frame, cm. Fingers 1 and 2 are
-   side by side, and finger 3 is the thumb. The palm faces down, so the table is at z = 12 cm. */
+/* Position of the ball on the table, cm, and directions from its axis to the contacts around its equator, in the palm's
+   frame. Fingers 1 and 2 are side by side, and finger 3 is the thumb. The palm faces down: its z axis points down, and
+   the table is at z = 12 cm. */
 static const double Start[3] = {0.0, 0.0, 10.5};
 static const double Contact[3][3] = {{SINE, HALF, 0.0}, {-SINE, HALF, 0.0}, {0.0, -1.0, 0.0}};
 
@@ -64,8 +65,8 @@ static void pass(double seconds)
         nanosleep(&tick, 0);
 }
 
-/* Sets the anchors of all fingertips in one cycle: at the height of the ball plus up, and at the given distance from
-   its axis, cm. */
+/* Sets the anchors of all fingertips in one cycle: higher than the centre of the ball on the table by up, and at the
+   given distance from its axis, cm. */
 static void anchor(double up, double distance)
 {
     struct sun2xp_set_point Group[3] = {{0}};

@@ -1,7 +1,7 @@
-//! Measures the error of the contact estimate if a contact begins about when a motion ends.
+//! Measures the error of the estimated contact torques for contacts that begin near the end of a motion.
 //!
-//! The torques are compared, and not the force at the tip: near a singular pose the estimate of the force along the
-//! finger goes to zero after any motion.
+//! The torques are compared, and not the force at the tip. Near a singular pose, the estimate of the force along the
+//! finger goes to zero, whatever the motion was.
 
 use crate::finger::{Finger, RATE};
 use crate::hands::Hand;
@@ -22,7 +22,7 @@ const PUSH: f64 = 0.5;
 /// Duration of the last part of a push, in which the estimate is compared, s.
 const COMPARED: f64 = 0.2;
 
-/// Time before the first motion, and longest rest between a push and the next motion, s.
+/// Duration of the rest at the beginning of a run, and longest additional rest before each motion, s.
 const REST: f64 = 1.0;
 
 /// Shortest and longest motion, s.
@@ -39,13 +39,13 @@ type Push = (usize, bool, f64);
 pub struct After {
     pub pushes: usize,
     pub noticed: usize,
-    /// Sum of the errors of the pushes, and the largest of them, N cm. The error of a push is the largest error of a
-    /// joint torque.
+    /// Sum of the errors of the pushes, and the largest of them, N cm. The error of a push is the largest of the mean
+    /// errors of the joint torques.
     pub sum: f64,
     pub worst: f64,
 }
 
-/// Moves a finger at up to `speed`, rad/s, and pushes it after each motion.
+/// Moves a finger at up to `speed`, rad/s, and pushes it shortly before or after the end of each motion.
 pub fn measure(hand: &Hand, contact: &ConfiguredContact, seeds: u64, speed: f64) -> Result<Vec<After>, Box<dyn Error>> {
     let seeds: Vec<u64> = (0..seeds).collect();
     let runs = each(&seeds, |_, &seed| pushes(hand, contact, seed, speed).map_err(|error| error.to_string()));
@@ -89,7 +89,8 @@ fn rest(run: &mut Finger, motion: &Motion, seconds: f64) {
     }
 }
 
-/// Moves for `seconds`, and pushes `delay` after the end. Returns whether the push was detected, and the error.
+/// Moves for `seconds`, and begins the push `delay` seconds after the end of the motion, or before it if `delay` is
+/// negative. Returns whether the push was detected, and the error.
 fn push_after(
     run: &mut Finger,
     motion: &mut Motion,

@@ -14,13 +14,13 @@ pub const SPEEDS: [f64; 3] = [1.0, 3.0, f64::INFINITY];
 /// The result of a run.
 pub struct Alarms {
     pub count: u32,
-    /// Fraction of the time for which a contact was reported.
+    /// Fraction of the time for which a contact was reported, with contacts at mechanical stops included.
     pub share: f64,
     /// Time of the first alarm, s.
     pub first: Option<f64>,
 }
 
-/// Moves a finger for `seconds`. The finger touches nothing.
+/// Moves a finger for `seconds`. The finger touches nothing but its mechanical stops.
 pub fn count(hand: &Hand, contact: &ConfiguredContact, seconds: f64, seed: u64) -> Result<Alarms, Box<dyn Error>> {
     let (finger, own) = hand.finger(contact, seed);
     let start = Vector3::from(finger.simulation.start_degrees.map(f64::to_radians));
@@ -35,7 +35,7 @@ pub fn count(hand: &Hand, contact: &ConfiguredContact, seconds: f64, seed: u64) 
     for cycle in 0..cycles {
         let speed = SPEEDS[cycle * SPEEDS.len() / cycles];
         let contact = run.cycle(motion.set_point(speed, 1.0 / RATE)).contact;
-        // A joint that reaches its mechanical stop touches something.
+        // A contact that is reported while a joint is at its mechanical stop is no false alarm.
         let joints = run.plant.joints();
         let stopped = joints.sup(&low).inf(&high) != joints;
         if contact.touching && !touching && !stopped {

@@ -1,5 +1,5 @@
-//! Measures the cases of a row in parallel. Every case has its own finger and its own random numbers, so the order does
-//! not matter.
+//! Measures the cases of a table row in parallel. Every case has its own finger and its own random numbers, so the
+//! order does not matter.
 
 use std::num::NonZero;
 use std::sync::Mutex;

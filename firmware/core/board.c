@@ -84,7 +84,7 @@ void board_poll(struct board *board)
         }
     }
     /* A time-out must not overtake a Command that arrived before it and waits in the buffer. If no input is left,
-       everything that arrived before `now` was read has been taken. Otherwise, only what arrived before the last frame
+       everything that arrived until the time `now` has been taken. Otherwise, only what arrived before the last frame
        has certainly been taken. */
     if (taken > 0 || (int32_t)(arrived_at - now) > 0)
         now = arrived_at;

@@ -3,9 +3,9 @@
        noise STREAMS SEED
 
    Each stream is a sequence of random bytes, or a sequence of frames, some of which are damaged. A pause follows some
-   of the streams. After each stream the program checks that answers are whole frames of this board, that no frame with
-   a wrong checksum passes, that no motor has torque unless it is enabled or holding, and that the next good frame is
-   found. */
+   of the streams. The program always checks that answers are whole frames of this board, that no frame with a wrong
+   checksum passes, and that no motor has torque unless it is enabled or holding. After some of the streams it also
+   checks that the next good frame is answered, and that the watchdog trips in a long silence. */
 
 #include "fake_hardware.h"
 #include "../core/protocol.h"

@@ -30,7 +30,8 @@ static struct {
 } *const uart = (void *)0x4000C000u;
 
 enum { RECEIVE_EMPTY = 1 << 4, TRANSMIT_FULL = 1 << 5 };
-/* Receive FIFO at its level; transmit FIFO below its level; silence after bytes below the receive level. */
+/* The causes of the interrupts: the receive FIFO has filled to its level; the transmit FIFO has drained to its level;
+   the line is silent, and the receive FIFO holds fewer bytes than its level. */
 enum { INTERRUPT_RECEIVED = 1 << 4, INTERRUPT_ROOM = 1 << 5, INTERRUPT_SILENCE = 1 << 6 };
 
 enum { CLOCK_MEGAHERTZ = 50, WAKE_UP_MICROSECONDS = 500, BAUD = 1000000 };

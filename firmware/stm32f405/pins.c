@@ -22,8 +22,8 @@ static void set_field(volatile uint32_t *address, unsigned pin, unsigned width, 
 void pins_start(void)
 {
     RCC->AHB1ENR |= RCC_AHB1ENR_GPIOA | RCC_AHB1ENR_GPIOB | RCC_AHB1ENR_GPIOC;
-    /* A port that was just enabled needs two clock cycles before the first access (7.3.10, and the errata of the
-       processor). This read takes them. */
+    /* A port that was just enabled needs two clock cycles before the first access (RM0090, 7.3.10, and the errata of
+       the processor). This read takes these two cycles. */
     (void)RCC->AHB1ENR;
     GPIOB->BSRR = 1u << PIN_GAUGE_SELECT;
     for (unsigned i = 0; i < sizeof pins / sizeof pins[0]; i++) {
@@ -32,8 +32,9 @@ void pins_start(void)
         set_field(&pin->port->PUPDR, pin->number, 2, pin->pull);
         set_field(&pin->port->MODER, pin->number, 2, pin->mode);
     }
-    /* The converter's clock has 10.5 MHz. At the speed after a reset, a pin follows only to 4 MHz with a load of 50 pF
-       (data sheet, I/O AC characteristics). The converter would then shift wrong bits, which nothing would reveal. The
-       medium speed suffices for 25 MHz. All other outputs are slow, and slow edges disturb less. */
+    /* The clock of the gauge converter has 10.5 MHz. With the speed setting after a reset and a load of 50 pF, a pin
+       follows only up to 4 MHz (data sheet, I/O AC characteristics). The converter would then shift wrong bits, and
+       nothing would reveal it. The medium speed suffices for 25 MHz. All other outputs switch at lower rates. They
+       keep the slow setting, because slow edges disturb less. */
     set_field(&GPIOB->OSPEEDR, PIN_GAUGE_CLOCK, 2, GPIO_OSPEEDR_MEDIUM);
 }

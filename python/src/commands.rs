@@ -15,7 +15,7 @@ use sun2xp::{Contact, ContactError, HandError, SetPointError};
 #[pymethods]
 impl Hand {
     /// Sends the desired angles of joints 0, 1 and 2 of a finger, rad: shape (3,). They take effect within a cycle.
-    /// `valid` is the time for which they are valid, s; without it the configured time.
+    /// `valid` is the time for which they are valid, s. Without it, the configured time `motion.valid_ms` applies.
     #[pyo3(signature = (finger, position, *, valid=None))]
     fn send_position(
         &self,
@@ -73,7 +73,7 @@ impl Hand {
         self.quick(py, |hand| hand.send_joint_torque(finger, torque))
     }
 
-    /// Sends the damping of a finger, relative to the damping that the controller chooses: 1 after open.
+    /// Sends the damping of a finger, relative to the damping that the controller chooses. The ratio is 1 after open.
     fn send_damping(&self, py: Python<'_>, finger: i32, ratio: f64) -> PyResult<()> {
         self.quick(py, |hand| hand.send_damping(finger, ratio))
     }
@@ -140,7 +140,7 @@ impl Hand {
     }
 }
 
-/// Returns the contact with this stiffness. The inner error lacks the finger: the caller adds it.
+/// Returns the contact with this stiffness. The inner error does not name the finger: the caller adds its number.
 fn contact(
     py: Python<'_>,
     stiffness: &Bound<'_, PyAny>,

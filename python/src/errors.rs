@@ -125,10 +125,10 @@ impl Refusal {
         }
     }
 
-    /// What the caller should do. A text of the library ends with the remedy. Returns the part of the text after its
-    /// last colon, which in some texts begins with a part of the cause.
+    /// Returns what the caller should do. A text of the library ends with the remedy, so this is the part of the text
+    /// after its last colon. In some texts, this part begins with a part of the cause.
     fn remedy(&self) -> String {
-        // The text about wrong wiring has a remedy for the wrong connection that was found.
+        // The text about wrong wiring ends with the remedy for the wrong connection that was found.
         if let Some((_, fault)) = self.fault()
             && fault != FaultKind::WrongWiring
         {

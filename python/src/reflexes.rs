@@ -31,7 +31,7 @@ impl Hand {
         self.quick(py, |hand| hand.install_reflex(finger, reflex))
     }
 
-    /// Removes a reflex of a finger; without a number all of them.
+    /// Removes a reflex of a finger. Without a number, removes all of its reflexes.
     #[pyo3(signature = (finger, number=None))]
     fn remove_reflex(&self, py: Python<'_>, finger: i32, number: Option<u32>) -> PyResult<()> {
         self.quick(py, |hand| match number {

@@ -1,5 +1,5 @@
-//! Converts the measurements of a finger to physical units, for every routine. The configured sensors and tendons give
-//! the factors.
+//! Converts the measurements of a finger to physical units, for every calibration routine. The configured sensors and
+//! tendons give the factors.
 
 use crate::control::sensing::sensors::SensorScales;
 use crate::control::signals::Feedback;
@@ -96,8 +96,8 @@ impl Instruments {
         self.tendons.joints_from_travel() * (travel - stretch)
     }
 
-    /// Returns the travel of the motors, cm, at joint angles `joints` and `tensions`, from the true zero. This is the
-    /// inverse of [`joints`](Self::joints).
+    /// Returns the travel of the motors from the true zero, cm, at the joint angles `joints`, rad, and the tensions
+    /// `tensions`, N. This is the inverse of [`joints`](Self::joints).
     pub fn travel_at(&self, joints: &Vector3<f64>, tensions: &Vector4<f64>) -> Vector4<f64> {
         self.tendons.r.tr_mul(joints) + (tensions - self.pretension).component_mul(&self.compliance)
     }

@@ -1,4 +1,4 @@
-//! Root: opens and closes a hand, and owns its threads and ports.
+//! Opens and closes a hand, and owns its threads and ports.
 
 use crate::finger::{FingerReport, Losses, Stage};
 use crate::hand::board_search::find_boards;

@@ -152,7 +152,7 @@ mod tests {
         }
     }
 
-    /// The periods are as long as the numbers permit, so every time of a single thread is within its period.
+    /// The periods are so long that each of these threads meets its period if it is alone.
     #[test]
     fn sums_that_are_too_large_have_no_bound() {
         const TENTH: u64 = u64::MAX / 10;

@@ -61,8 +61,8 @@ impl Drop for Planner {
 }
 
 /// Returns whether the firmware reports that its watchdog ended all fingers. After a pause of the machine, the planner
-/// may instead detect a fault and stop the fingers itself. Its frames may reach the firmware after the planner was
-/// killed.
+/// may instead detect a fault and stop the fingers itself. The frames that stop them may reach the firmware after the
+/// planner was killed.
 fn ended_by_watchdog(machine: &Machine) -> bool {
     let ports = machine.ports();
     let fingers_a_port = machine.fingers().len() / ports.len();
@@ -84,8 +84,8 @@ fn reports_watchdog(port: &Path, address: u8) -> bool {
     status.is_some_and(|status| status.has(Status::WATCHDOG_TRIPPED))
 }
 
-/// Kills a planner. Returns the time from the arrival of its last command until the watchdog set the currents, for each
-/// finger, us in the firmware's time.
+/// Kills a planner. Returns a time for each finger, us of the firmware's clock: from the arrival of the planner's last
+/// command until the watchdog set the currents.
 fn kill_a_planner(
     machine: &Machine,
     planner: &mut Planner,
@@ -97,8 +97,8 @@ fn kill_a_planner(
     let begun: Vec<u32> = asked().map(|asked| asked.samples).collect();
     let moved_on = || asked().zip(&begun).all(|(asked, begun)| asked.samples > begun + 200);
     let ran = wait_until(PATIENCE / 2, || moved_on() && running());
-    // The kill may take longer than the watchdog's time, so the currents are not checked after it. `ended_by_watchdog`
-    // detects a finger that the planner stopped itself.
+    // The kill may take longer than the watchdog's time, so it is not checked afterwards that the fingers were running
+    // until the kill. `ended_by_watchdog` detects a finger that the planner stopped itself.
     planner.kill();
     // Commands in transit still arrive. 400 ms after the last of them, the slowest watchdog has had time to trip.
     let long_ago = |asked: Asked| asked.now.saturating_sub(asked.arrived_at) > 400_000;

@@ -128,7 +128,7 @@ class JointTorques:
 
     #: From the measured tensions: shape (3,).
     measured: Array
-    #: What the controller commands, scaled by what the tension bounds permit: shape (3,).
+    #: Commanded by the controller, scaled down to what the tension bounds permit: shape (3,).
     commanded: Array
 
 

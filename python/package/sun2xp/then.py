@@ -1,4 +1,5 @@
-"""Reactions of reflexes, for `Hand.install_reflex`. They are in force until the planner sends another set point."""
+"""Reactions of reflexes, for `Hand.install_reflex`. The set point of a reaction is in force until the planner sends
+another one."""
 
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ def stop() -> Reaction:
 
 
 def hold() -> Reaction:
-    """The finger holds the pose in which it is."""
+    """The finger holds its present pose."""
     return ("hold",)
 
 

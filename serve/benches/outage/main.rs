@@ -1,6 +1,6 @@
-//! Lets the planner or the line fail many times. Prints when the fingers were caught and when they were in their end
-//! states, as seen at the board, and the threads and descriptors that the server has not released. Needs root, because
-//! it makes network namespaces.
+//! Lets the planner or the line fail many times. Prints how long after a failure the fingers were caught and when they
+//! went to their end states, as the telemetry of the hand shows it. Also prints the threads, descriptors and memory of
+//! the server before and after the failures. Needs root, because it makes network namespaces.
 
 #[path = "../../tests/network/line.rs"]
 mod line;
@@ -59,7 +59,8 @@ fn main() -> ExitCode {
     let Arguments { repetitions, failure: only, .. } = Arguments::parse();
     let wanted = |failure: &Failure| only.as_ref().is_none_or(|only| *only == format!("{failure:?}"));
     let begin = Instant::now();
-    // One after the other, because several hands at once need more processors than a small machine has.
+    // Measures one failure after the other, because several hands at once need more processors than a small machine
+    // has.
     let failures = Failure::ALL.into_iter().filter(wanted);
     let measured: Vec<_> = failures.map(|failure| repeated(failure, repetitions)).collect();
     println!(
@@ -86,11 +87,11 @@ struct Measured {
     freed: Duration,
 }
 
-/// Lets something fail many times.
+/// Measures one failure: lets it happen `repetitions` times.
 fn repeated(failure: Failure, repetitions: usize) -> Measured {
     let line = Line::new(1).unwrap_or_else(|error| panic!("namespaces and tun interfaces need root: {error}"));
     let mut rig = Rig::new(line, &format!("{failure:?}"), CATCH_MS);
-    // The first planners make the server's threads and buffers.
+    // The server creates threads and buffers when the first planners connect.
     for _ in 0..3 {
         rig.fail(failure);
     }

@@ -11,7 +11,7 @@ use sun2xp::nalgebra::Vector3;
 /// A set point on the way to a destination is not sent if it would move the one in force by less than this, rad.
 const SMALLEST_STEP: f64 = 1e-4;
 
-/// A place to which a set point may be sent.
+/// A place that may be sent as a set point.
 #[derive(Clone, Copy)]
 pub(super) struct LedPlace {
     /// The place as it is sent.
@@ -43,8 +43,8 @@ impl Fingers {
     }
 
     /// Returns the goal of a finger whose Kx is about to be sent. If the owner has not commanded the place of the
-    /// finger, the new Kx pulls it to the set point in force, which may be far ahead of it. Then this set point becomes
-    /// the destination, so that the lead bounds the force.
+    /// finger, the new Kx pulls it to the set point in force. If this set point is farther ahead of the finger than the
+    /// lead admits, it becomes the destination, so that the lead bounds the force.
     pub(super) fn pulled(&self, number: i32, goal: Goal, report: &FingerReport) -> Result<Goal, HandError> {
         if goal.destination != Destination::None {
             return Ok(goal);

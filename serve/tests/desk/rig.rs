@@ -47,7 +47,8 @@ impl Rig {
         Self { hand, desk, owner: "nobody".parse().expect("a name"), epoch: 0, sequence: 0, refusal: None }
     }
 
-    /// Makes this client the owner, as an acquire does that recovers fingers. The recovery does not end.
+    /// Makes this client the owner, but does not begin the time limit for its silence. This is the state of the desk
+    /// while an acquire recovers fingers.
     pub fn acquire_only(&mut self, client: &str) {
         self.owner = client.parse().expect("a name");
         (self.epoch, self.sequence) = (self.epoch + 1, 0);
@@ -88,12 +89,12 @@ impl Rig {
         }
     }
 
-    /// Waits while the owner is silent.
+    /// Waits until `holds` returns true. The owner is silent meanwhile.
     pub fn wait_in_silence(&mut self, what: &str, holds: impl Fn(&Self) -> bool) {
         self.wait_for(what, |rig| holds(rig).then_some(()));
     }
 
-    /// Waits while the owner repeats a Target with these parts.
+    /// Waits until `holds` returns true. Meanwhile, the owner repeats a Target with these parts.
     pub fn wait_until(&mut self, what: &str, parts: &[Part], holds: impl Fn(&Self) -> bool) {
         self.wait_for(what, |rig| {
             rig.send(parts);

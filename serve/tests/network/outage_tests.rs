@@ -16,7 +16,7 @@ const LEASE: Duration = Duration::from_secs(14);
 fn every_failure_is_caught_and_the_next_planner_gets_the_hand() {
     let Some(line) = permitted_line(10) else { return };
     let mut rig = Rig::new(line, "outage", CATCH_MS);
-    // The first planners make the server's threads and buffers.
+    // The server creates threads and buffers when the first planners connect.
     for failure in Failure::ALL {
         rig.fail(failure);
     }

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 /// continuous torque.
 const WARM: f64 = 0.8;
 
-/// h' = (tau^2 - h) / T. The heat of a winding is the filtered mean square of its torque, because the torque is
-/// proportional to the current.
+/// The heat of a winding depends on the square of its current, and the torque tau is proportional to the current. So
+/// the model computes the heat h as the low-pass filtered square of the torque: h' = (tau^2 - h) / T.
 #[derive(Clone, Debug)]
 pub(crate) struct MotorHeating {
     /// Largest pull of each motor, N.
@@ -64,7 +64,7 @@ impl MotorHeating {
 }
 
 impl Heat {
-    /// Converts the heat for other motor radii, with which the pulls are multiplied by `ratio`.
+    /// Converts the heat to other motor radii. With these radii, all pulls are multiplied by `ratio`.
     pub fn scale(&mut self, ratio: &Vector4<f64>) {
         self.0.component_mul_assign(&ratio.component_mul(ratio));
     }

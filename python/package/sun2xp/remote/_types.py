@@ -21,7 +21,7 @@ class Tls:
     authority: _Path
     #: Certificate of this client.
     certificate: _Path
-    #: Its private key.
+    #: Private key of this certificate.
     key: _Path
 
 
@@ -120,10 +120,9 @@ class Status:
     owner: Optional[str]
     #: The status of each finger that the hand has, by the number of the finger.
     fingers: Dict[int, FingerStatus]
-    #: Time when it was made.
+    #: Time at which the server made this status.
     time: int
-    #: Ages of the newest target, s. At the first, the server holds the fingers. At the second, they go to their end
-    #: state.
+    #: Ages of the newest target, s: at `catch` the server holds the fingers, and at `end` they go to their end state.
     catch: float
     end: float
     #: Rate of the servos, Hz.
