@@ -23,13 +23,13 @@ def common_name(path: Union[str, os.PathLike[str]]) -> str:
         ConfigurationError: the file cannot be read, or has no certificate, or the certificate has no common name.
     """
     try:
-        block = _BLOCK.search(pathlib.Path(path).read_text("ascii"))
+        block = _BLOCK.search(pathlib.Path(path).read_text("utf-8", "replace"))
         if block is not None:
             return _subject_name(base64.b64decode(block.group(1)))
         reason = "it has no certificate in PEM"
     except OSError as error:
         reason = str(error)
-    except (ValueError, IndexError):
+    except (ValueError, IndexError, StopIteration):
         reason = "its certificate has no common name"
     raise ConfigurationError(f"{path} is not the certificate of a client: {reason}", number=ErrorNumber.CONFIGURATION)
 
