@@ -20,8 +20,22 @@ pub(super) fn not_negative(key: &'static str, value: f64) -> Result<(), Unusable
 
 /// Returns an error unless every value is +1 or -1.
 pub(super) fn signs(key: &'static str, values: &[i8]) -> Result<(), Unusable> {
-    match values.iter().find(|value| value.abs() != 1) {
+    match values.iter().find(|value| !matches!(value, 1 | -1)) {
         Some(value) => Err(Unusable { key, reason: format!("is {value}; a sign is 1 or -1") }),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_plus_and_minus_one_are_signs() {
+        assert!(signs("encoder.sign", &[1, -1, 1, 1]).is_ok());
+        for wrong in [0, 2, i8::MIN, i8::MAX] {
+            let unusable = signs("encoder.sign", &[1, wrong]).expect_err("no sign");
+            assert_eq!(unusable.reason, format!("is {wrong}; a sign is 1 or -1"));
+        }
     }
 }
