@@ -42,8 +42,8 @@ const LAST: Duration = Duration::from_secs(120);
 #[derive(Parser)]
 struct Arguments {
     /// Repetitions of each failure.
-    #[arg(long, default_value_t = 100)]
-    repetitions: usize,
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    repetitions: u32,
     /// Only this failure, for example Unplugged.
     #[arg(long)]
     failure: Option<String>,
@@ -88,7 +88,7 @@ struct Measured {
 }
 
 /// Measures one failure: lets it happen `repetitions` times.
-fn repeated(failure: Failure, repetitions: usize) -> Measured {
+fn repeated(failure: Failure, repetitions: u32) -> Measured {
     let line = Line::new(1).unwrap_or_else(|error| panic!("namespaces and tun interfaces need root: {error}"));
     let mut rig = Rig::new(line, &format!("{failure:?}"), CATCH_MS);
     // The server creates threads and buffers when the first planners connect.

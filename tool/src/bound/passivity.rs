@@ -92,7 +92,8 @@ impl Passivity {
             writeln!(out, "    {letter}: {}, least {least:.4} of |Y| at {frequency:.1} Hz", pose(joints))?;
         }
         for unsettled in self.poses.iter().filter(|pose| pose.passivity.is_none()) {
-            writeln!(out, "    {}: the finger does not come to rest", pose(&unsettled.joints_degrees))?;
+            let pose = pose(&unsettled.joints_degrees);
+            writeln!(out, "    {pose}: the finger does not come to rest, or a tendon is slack")?;
         }
         Ok(())
     }
