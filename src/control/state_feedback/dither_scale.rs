@@ -3,9 +3,13 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Stiffness of a joint, divided by the sum of the magnitudes of the torques of its four tendons at the pretension,
-/// for which the amplitude is not changed, 1/rad.
+/// Firmness of the softest joint for which the amplitude is not changed, 1/rad. The firmness is the stiffness of a joint
+/// divided by the sum of the magnitudes of the torques of its four tendons at the pretension.
 const FIRMNESS: f64 = 2.0;
+
+/// The same for the firmness of a joint while the other joints are free. It is small if the finger is nearly straight.
+/// With this value the amplitude is smallest if joint 2 is bent by 32 degrees or more, and as configured at 21 degrees.
+const FREE_FIRMNESS: f64 = 0.2;
 
 /// Range of the factor on the amplitude. With a factor of up to 2.5 the softest poses are more exact, but they creep
 /// for up to 0.76 s after a step.
@@ -18,10 +22,10 @@ const TOUCHING: f64 = 0.7;
 const CHANGING: f64 = 0.05;
 
 /// Pulleys that dither keeps sliding act like viscous friction. A finger that was pushed therefore approaches its rest
-/// position with a time constant that is proportional to the friction of the pulleys, and inversely proportional to the
-/// stiffness of the joints and to the amplitude of the dither. In a pose in which the tip is close to the axis of a
-/// joint, this joint is soft. There the amplitude is larger. In poses with stiff joints a smaller amplitude suffices,
-/// and the tip, which has a long lever, moves less.
+/// position with a time constant that is inversely proportional to the stiffness of the joints and to the amplitude of
+/// the dither. In a pose in which the tip is close to the axis of a joint, this joint is soft. A nearly straight finger
+/// is soft along its links. There the amplitude is larger. In poses with stiff joints a smaller amplitude suffices, and
+/// the tip, which has a long lever, moves less.
 #[derive(Clone, Debug)]
 pub(super) struct DitherScale {
     /// For each joint, 1 / the sum of the magnitudes of the torques of the four tendons at the pretension, 1/(N cm).
@@ -44,16 +48,31 @@ impl DitherScale {
     /// the spring exerts so much torque that the finger touches something.
     pub fn advance(&self, state: &mut DitherScaleState, k_theta: &Matrix3<f64>, touches: bool) -> f64 {
         state.0 += (f64::from(touches) - state.0) * self.changing;
-        let firmness = k_theta.diagonal().component_mul(&self.inverse_torques).min();
-        // A spring that is not positive has the largest factor too.
-        let factor = (FIRMNESS / firmness.max(f64::MIN_POSITIVE)).sqrt().clamp(FACTORS[0], FACTORS[1]);
+        let softness = (FIRMNESS * self.most_per(&k_theta.diagonal()))
+            .max(FREE_FIRMNESS * self.most_per(&stiffness_with_free_joints(k_theta)));
+        let factor = if softness > 0.0 { softness.sqrt().clamp(FACTORS[0], FACTORS[1]) } else { 1.0 };
         factor * (1.0 - (1.0 - TOUCHING) * state.0)
     }
+
+    /// Returns the reciprocal of the smallest firmness, or zero if no joint has a spring. Joints without a spring do
+    /// not count, because they have no rest position.
+    fn most_per(&self, stiffness: &Vector3<f64>) -> f64 {
+        let firmness = stiffness.component_mul(&self.inverse_torques);
+        firmness.iter().filter(|firmness| **firmness > 0.0).fold(0.0, |most, firmness| firmness.recip().max(most))
+    }
+}
+
+/// Returns, for each joint, 1 / the diagonal entry of K_theta^-1: its stiffness while the other joints are free.
+fn stiffness_with_free_joints(k: &Matrix3<f64>) -> Vector3<f64> {
+    let minor = |a: usize, b: usize| k[(a, a)] * k[(b, b)] - k[(a, b)] * k[(b, a)];
+    Vector3::new(minor(1, 2), minor(0, 2), minor(0, 1)).map(f64::recip) * k.determinant()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::configuration::ConfiguredFinger;
+    use proptest::prelude::*;
 
     const RATE: f64 = 1000.0;
 
@@ -77,9 +96,41 @@ mod tests {
     }
 
     #[test]
-    fn the_factor_is_limited_for_every_spring() {
-        for (firmness, expected) in [([0.0; 3], 2.0), ([-1.0, 1.0, 1.0], 2.0), ([1e9; 3], 0.7)] {
-            assert_eq!(after_a_second(firmness, false), expected);
+    fn the_factor_is_limited_for_every_spring_and_joints_without_a_spring_do_not_count() {
+        let nan = f64::NAN;
+        for (firmness, expected) in [
+            ([0.0; 3], 1.0),
+            ([nan; 3], 1.0),
+            ([1e-300; 3], 2.0),
+            ([1e9; 3], 0.7),
+            ([0.0, 2.0, 9.0], 1.0),
+            ([-1.0, 2.0, 9.0], 1.0),
+        ] {
+            assert_eq!(after_a_second(firmness, false), expected, "{firmness:?}");
+        }
+    }
+
+    #[test]
+    fn a_nearly_straight_finger_has_a_larger_amplitude() {
+        let finger = ConfiguredFinger::default();
+        let tendons = finger.tendons().expect("the default tendons");
+        let scale = DitherScale::new(&(tendons.r.abs() * tendons.pretension(5.0)), RATE);
+        let factor = |degrees: f64| {
+            let jacobian = finger.links().jacobian(&Vector3::new(0.0, 0.0, degrees.to_radians()));
+            scale.advance(&mut DitherScaleState::default(), &(jacobian.transpose() * jacobian * 3.0), false)
+        };
+        assert_eq!((factor(5.0), factor(10.0), factor(45.0)), (2.0, 2.0, 0.7));
+        assert!((1.0..1.2).contains(&factor(20.0)), "{}", factor(20.0));
+    }
+
+    proptest! {
+        #[test]
+        fn the_stiffness_with_free_joints_is_that_of_the_inverse(entries in prop::array::uniform9(-1.0..1.0f64)) {
+            let root = Matrix3::from_row_slice(&entries) + Matrix3::identity() * 2.0;
+            let k = root * root.transpose();
+            let inverse = k.try_inverse().expect("a positive definite matrix");
+            let found = stiffness_with_free_joints(&k).component_mul(&inverse.diagonal());
+            prop_assert!((found - Vector3::repeat(1.0)).amax() < 1e-6, "{found}");
         }
     }
 

@@ -52,6 +52,8 @@ pub(crate) struct TensionDither {
     inverse_common: Vector4<f64>,
     /// Wanted amplitude of each tendon as a fraction of its tension, divided by n.
     part: Vector4<f64>,
+    /// The same for the smallest amplitude, which no factor reduces.
+    least: Vector4<f64>,
     /// Largest tension of each tendon, N.
     most: Vector4<f64>,
     /// Tension below which the amplitude falls quickly, N.
@@ -111,6 +113,7 @@ impl TensionDither {
             common,
             inverse_common,
             part,
+            least: inverse_common * least,
             risen: if rubs { f64::INFINITY } else { numbers.dither_rise * unloaded },
             most,
             low: LOW * minimum,
@@ -164,6 +167,7 @@ impl TensionDither {
             .as_ref()
             .map_or(1.0, |scaling| scaling.advance(&mut state.scaling, k_theta, self.burst.touches(sprung)));
         let wanted = factor * self.part.component_mul(desired).max();
+        let wanted = wanted.max(self.least.component_mul(desired).max());
         let room = self.within(&(desired * LARGEST).inf(&(self.most - desired)));
         let wanted = wanted.min(room).min(self.risen);
         if wanted <= 0.0 {
