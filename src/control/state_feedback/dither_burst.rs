@@ -15,8 +15,8 @@ const FAST: f64 = 0.4;
 const SLOW: f64 = 0.2;
 /// Largest torque of the spring with which a burst begins. It is a fraction of the sum of the magnitudes of the torques
 /// that the four tendons exert on the joint at the pretension. Pulleys whose friction is this fraction of the tension
-/// hold the finger against such a torque. A larger torque means that the finger touches something. At walls, bursts of
-/// fingers with rotors of half the inertia caused motions of 2 mm.
+/// hold the finger against such a torque. A larger torque usually means that the finger touches something. At walls,
+/// bursts of fingers with rotors of half the inertia caused motions of 2 mm.
 const HELD: f64 = 0.1;
 
 /// Time constant with which the envelope rises, s. With 0.005 s, fingers with static friction overshoot by 7 %.
@@ -62,7 +62,7 @@ impl DitherBurst {
         }
     }
 
-    /// Returns whether the spring has so much torque, N cm, that the finger touches something.
+    /// Returns whether the spring has so much torque, N cm, that the finger probably touches something.
     pub fn touches(&self, sprung: &Vector3<f64>) -> bool {
         (0..3).any(|joint| sprung[joint].abs() > self.held[joint])
     }

@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Firmness of the softest joint for which the amplitude is not changed, 1/rad. The firmness is the stiffness of a joint
-/// divided by the sum of the magnitudes of the torques of its four tendons at the pretension.
+/// Firmness of the softest joint for which the amplitude is not changed, 1/rad. The firmness is the stiffness of a
+/// joint divided by the sum of the magnitudes of the torques of its four tendons at the pretension.
 const FIRMNESS: f64 = 2.0;
 
 /// The same for the firmness of a joint while the other joints are free. It is small if the finger is nearly straight.

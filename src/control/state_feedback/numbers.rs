@@ -116,7 +116,7 @@ const DITHER_RISE: f64 = 2.0;
 const DRIFT_BANDWIDTH: f64 = 60.0;
 
 /// See [`Numbers::pulley_share`]. If the whole friction is fed forward and the pulley friction is 5 %, steps overshoot
-/// by 12 %. With 0.6, the slowest steps of identified fingers settle in 281 instead of 187 ms.
+/// by 12 %. With 0.6, the slowest steps of identified "sheathed" fingers settle in 281 instead of 164 ms.
 const PULLEY_SHARE: f64 = 0.7;
 
 /// See [`Numbers::pulley_creep`].
