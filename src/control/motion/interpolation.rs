@@ -222,8 +222,8 @@ mod tests {
 
         #[test]
         fn a_change_of_the_period_keeps_the_motion_within_its_set_points(
-            places in prop::collection::vec(-1.0..1.0f64, 1..20), every in 1u32..150,
-            periods in (-2.0..0.0f64, -2.0..0.0f64), changed in 0u32..3000,
+            places in prop::collection::vec(-1.0..1.0f64, 1..4), every in 1u32..150,
+            periods in (-1.0..0.0f64, -2.0..0.0f64), changed in 0u32..450,
         ) {
             let interpolations = [periods.0, periods.1].map(|power| Interpolation::new(10f64.powf(power), 5.0, RATE));
             let mut state = InterpolationState::at_rest(Vector3::zeros());
@@ -231,7 +231,7 @@ mod tests {
             let most = places.iter().copied().fold(0.0, f64::max);
             let (last, mut end) = (places[places.len() - 1], 0.0);
             // Steps with the old period take up to 3 s, and so does the last step after them.
-            for cycle in 0..changed.max(20 * every) + 7000 {
+            for cycle in 0..changed.max(4 * every) + 7000 {
                 let place = places[places.len().min((cycle / every) as usize + 1) - 1];
                 let interpolation = &interpolations[usize::from(cycle >= changed)];
                 let (joints, _) = interpolation.advance(&mut state, &(Vector3::x() * place));
