@@ -194,7 +194,7 @@ impl<T: Transport> Link<T> {
         self.handshake_sequence = self.handshake_sequence.wrapping_add(1);
         let sequence = self.handshake_sequence;
         let request = Message { address, sequence, frame: request };
-        let wire = WireFrame::new(&request);
+        let (asked, wire) = (Asked::by(&request), WireFrame::new(&request));
         let mut bytes = [0; 1 + MAX_WIRE];
         let length = 1 + wire.as_bytes().len();
         bytes[1..length].copy_from_slice(wire.as_bytes());
@@ -204,7 +204,7 @@ impl<T: Transport> Link<T> {
 
         let mut allowance = Allowance::until(deadline.min(self.transport.now() + PATIENCE));
         while let Some(message) = self.next_message(&mut allowance)? {
-            if Asked::by(&request).is_answered_by(&message) {
+            if asked.is_answered_by(&message) {
                 return Ok(Some(message));
             }
             self.foreign += 1;

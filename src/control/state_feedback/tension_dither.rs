@@ -162,12 +162,11 @@ impl TensionDither {
     ) -> Vector4<f64> {
         let slack = now.min() < self.low;
         let burst = self.burst.advance(&mut state.burst, rates, sprung, slack);
-        let factor = self
-            .scaling
-            .as_ref()
-            .map_or(1.0, |scaling| scaling.advance(&mut state.scaling, k_theta, self.burst.touches(sprung)));
-        let wanted = factor * self.part.component_mul(desired).max();
-        let wanted = wanted.max(self.least.component_mul(desired).max());
+        let mut wanted = self.part.component_mul(desired).max();
+        if let Some(scaling) = &self.scaling {
+            wanted *= scaling.advance(&mut state.scaling, k_theta, self.burst.touches(sprung));
+            wanted = wanted.max(self.least.component_mul(desired).max());
+        }
         let room = self.within(&(desired * LARGEST).inf(&(self.most - desired)));
         let wanted = wanted.min(room).min(self.risen);
         if wanted <= 0.0 {
