@@ -114,6 +114,12 @@ impl LinkWatch {
         (self.in_a_row >= self.lost).then_some(self.in_a_row)
     }
 
+    /// Returns the number of lost replies in a row if they explain why the watchdog of the board has tripped. The servo
+    /// has then sent commands in at least half of the periods of the watchdog's time.
+    pub fn explains_watchdog(&self) -> Option<u32> {
+        (2 * self.in_a_row >= self.lost).then_some(self.in_a_row)
+    }
+
     /// Returns the fade of the next command; none while the command is held, and for a simulation that runs in step.
     pub fn fading(&self) -> Option<Fading> {
         if self.in_a_row <= self.held || self.in_step() {
@@ -157,6 +163,17 @@ mod tests {
         // With the shortest watchdog, two periods, one lost reply is still not a fault.
         let mut slow = LinkWatch::new(&ConfiguredHand { rate: 500.0, watchdog_ms: 4, ..Default::default() }, false);
         assert_eq!((slow.missed(), slow.missed()), (None, Some(2)));
+    }
+
+    #[test]
+    fn a_watchdog_that_trips_after_mostly_lost_replies_is_explained_by_them() {
+        let mut watch = LinkWatch::new(&ConfiguredHand::default(), false);
+        for lost in 1..=16 {
+            assert_eq!(watch.missed(), None);
+            assert_eq!(watch.explains_watchdog(), (lost >= 9).then_some(lost), "{lost} of 17");
+        }
+        watch.answered();
+        assert_eq!(watch.explains_watchdog(), None);
     }
 
     #[test]

@@ -290,8 +290,7 @@ impl FingerServo {
         }
         self.report.losses.lost_replies += 1;
         if let Some(lost) = self.link.missed() {
-            let milliseconds = f64::from(lost) * self.limits.period_ms;
-            self.fault(self.supervision.silence(milliseconds));
+            self.fault_silence(lost);
         }
     }
 }

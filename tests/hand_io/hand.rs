@@ -93,10 +93,11 @@ fn lost_exchanges_fault_the_finger_and_it_recovers() {
     let switches = &switches[0];
     switches.lock().exchange_fails = Some(libc::EIO);
     let (fault, losses) = (fault(&hand, 2), hand.losses(2).expect("losses"));
-    if losses.skipped_periods == 0 {
+    // A servo that skips periods faults after the watchdog has tripped. Even so, lost replies are the cause, unless the
+    // servo has skipped half of the 200 periods.
+    if losses.skipped_periods < 100 {
         assert_eq!(fault, FaultKind::LostReplies);
     } else {
-        // The finger faults one period before the watchdog trips, and the servo was late by a period or more.
         println!("the servo has skipped {} periods", losses.skipped_periods);
         assert!(matches!(fault, FaultKind::LostReplies | FaultKind::Watchdog), "{fault:?}");
     }

@@ -123,9 +123,19 @@ impl FingerServo {
         let zero_lost = self.status.has(Status::ZERO_VALID) && !reply.status.has(Status::ZERO_VALID);
         self.status = reply.status;
         if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
-            self.fault(Fault::stopped(reply.status));
+            let fault = Fault::stopped(reply.status);
+            // Commands that had no replies did not reach the board, so the servo was not too late.
+            match self.link.explains_watchdog().filter(|_| fault.kind == FaultKind::Watchdog) {
+                Some(lost) => self.fault_silence(lost),
+                None => self.fault(fault),
+            }
         } else if zero_lost {
             self.fault(Fault::of(FaultKind::ZeroLost, f64::from(reply.status.0)));
         }
+    }
+
+    /// Stops the finger because this many replies in a row were lost.
+    pub(super) fn fault_silence(&mut self, lost: u32) {
+        self.fault(self.supervision.silence(f64::from(lost) * self.limits.period_ms));
     }
 }
