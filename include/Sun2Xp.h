@@ -4,9 +4,9 @@
 
        SUN2XP_WRITE_HEADER=1 cargo test --test header
 
-   This file is the interface and the manual for planners of 1990: five calls and HandError. sun2xp.h
-   has everything else for new programs. Both may be used together. The report is COINS Technical
-   Report 90-48 (1990), which describes the controller.
+   This file is the interface and the manual for planners of 1990: five calls and HandError. sun2xp.h is
+   the interface for new programs, and has all other calls. Both may be used together. The report is
+   COINS Technical Report 90-48 (1990), which describes the controller.
 
        1. Quick start             5. Planners of 1990
        2. Return values, errno    6. Threads, signals, fork, exit
@@ -61,11 +61,11 @@
        EINVAL     no such finger; NaN or infinity; an unusable configuration
        ERANGE     angles outside the joint limits; Kx stiffer than the bound
        EDOM       Kx not symmetric, or with a negative eigenvalue
-       EIO        the finger is faulted: it has stopped by itself. CloseHand and OpenHand start it again,
-                  and so does sun2xp_recover of sun2xp.h
+       EIO        the finger is faulted: a fault or a stop call of sun2xp.h has stopped it. CloseHand and
+                  OpenHand start it again, and so does sun2xp_recover of sun2xp.h
        ESHUTDOWN  the process is exiting, and the hand is closed (chapter 6)
-       others     the errno of the system, or the errno that describes the reason best: configuration
-                  file, port, enforced real time
+       others     a configuration file, a port or enforced real time: the errno of the system, or the
+                  errno that describes the reason best
 
    If several reasons apply, a call reports the one that its entry lists first. A call that succeeds
    changes neither errno nor the text of HandError(). Arrays are read and written only during the call. An
@@ -121,13 +121,13 @@
        no include at all          the plain symbols take float; for double compile with
                                   -DSendPos=SendPosD -DSendKx=SendKxD -DGetPos=GetPosD
        return values ignored      see the line on standard error (chapter 2)
-       own functions named like   This header declares only OpenHand, SendPos, SendKx, GetPos, CloseHand
-       other calls                and HandError, and SendPosD, SendKxD and GetPosD for double. The other
-                                  names of the library begin with sun2xp_, Sun2Xp or SUN2XP_
+       functions of its own       no conflict: this header declares only OpenHand, SendPos, SendKx, GetPos,
+                                  CloseHand and HandError, and SendPosD, SendKxD and GetPosD for double. The
+                                  other names of the library begin with sun2xp_, Sun2Xp or SUN2XP_
 
-   Macros: with gcc and clang this header saves the planner's macros and restores them at its end.
-   So a planner may have macros named i, K or Pos, and macros named like C keywords, such as const,
-   volatile, int or float. The exceptions are
+   Macros: with clang, and with gcc 4.6 or newer, this header saves the planner's macros and restores
+   them at its end. So a planner may have macros named i, K or Pos, and macros named like C keywords,
+   such as const, volatile, int or float. The exceptions are
 
        SendPos, SendKx, GetPos, SendPosD, SendKxD, GetPosD
        names that begin with SUN2XP_ or Sun2Xp
@@ -140,12 +140,12 @@
 
    6. THREADS, SIGNALS, FORK, EXIT
 
-   Any thread may make any call, also while other threads make calls. A signal handler must make none.
-   A child that is forked after OpenHand has no hand: each call but HandError is refused with EPERM.
-   When a planner exits with its hand open, the library brings the fingers to their end state, as
-   CloseHand does. The servo threads block all signals and run under SCHED_FIFO if the system permits it.
-   Chapters 5 and 6 of sun2xp.h have the details. sun2xp.h also has the calls for status, faults and
-   everything else.
+   Any thread may make any call, also while other threads make calls. A signal handler must make no call
+   of this header. A child that is forked after OpenHand has no hand: each call but HandError is refused
+   with EPERM. When a planner exits with its hand open, the library brings the fingers to their end
+   state, as CloseHand does. The servo threads block all signals and run under SCHED_FIFO if the system
+   permits it. Chapters 5 and 6 of sun2xp.h have the details. sun2xp.h also has the calls for status,
+   faults and everything else.
 
 
    7. CONFIGURATION
@@ -160,8 +160,9 @@
        5. no file: the simulated hand, announced in one line on standard error
 
    The file must be a regular file of at most 1 MiB. If it names neither a port nor a board for a finger,
-   the finger is simulated, and announced too; with port = "simulated" it is not announced. OpenHand
-   refuses a file that names a real port or board for one finger, and neither of the two for another.
+   the finger is simulated, and one line on standard error says so. There is no such line for a finger
+   with port = "simulated". OpenHand refuses a file that names a real port or board for one finger, and
+   neither of the two for another.
 
    If a program is setuid or setgid, or if its file has capabilities, its environment and its working
    directory belong to its caller, and the library does not trust them. It then reads only
@@ -180,9 +181,9 @@
 
    If the file has a table [remote], OpenHand opens a hand that sun2xp serve offers on another machine.
    The keys "endpoint" and "hand" of that table select the hand, for example with the values
-   "tls/cell:7447" and "left" (docs/installation.md).
-   OpenHand then needs libsun2xp_remote.so, and EBUSY also means that another planner commands the hand.
-   SendPos does not wait for the network. GetPos is refused with ETIMEDOUT if its data are too old.
+   "tls/cell:7447" and "left" (docs/remote.md). OpenHand then needs libsun2xp_remote.so
+   (docs/installation.md), and EBUSY also means that another planner commands the hand. SendPos does not
+   wait for the network. GetPos is refused with ETIMEDOUT if its data are too old.
 
 
    8. THE CALLS: below, each with its manual. The examples are statements of a function that has opened

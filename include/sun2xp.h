@@ -63,7 +63,7 @@
        EINVAL     SUN2XP_ERROR_CONFIGURATION   an unusable configuration
        ERANGE     SUN2XP_ERROR_LIMIT           outside the limits of the finger
        EDOM       SUN2XP_ERROR_LIMIT           a matrix that is not symmetric, or has a negative eigenvalue
-       EIO        SUN2XP_ERROR_FAULTED         the finger has stopped by itself
+       EIO        SUN2XP_ERROR_FAULTED         a fault, sun2xp_stop or sun2xp_stop_all has stopped the finger
        EBUSY      SUN2XP_ERROR_BUSY            hand or finger is being opened, closed, calibrated or recovered
        ETIMEDOUT  SUN2XP_ERROR_TIMED_OUT       a time limit has expired
        ENOTSUP    SUN2XP_ERROR_NOT_SUPPORTED   the call needs a simulated finger or object, or a hand of this machine
@@ -96,7 +96,8 @@
    The first member of every struct is size. Set it to the sizeof of the struct before the call. A size
    below that of the struct's first version is refused, and so is one above 4096. Later versions of the
    library add members at the end. If a program was compiled with a newer header and runs with an older
-   library, the result members that this library does not know are zero. The library never changes size.
+   library, the result members that this library does not know are zero. The library never changes size. In
+   the structs that it passes to functions of the program, the library sets size.
 
 
    5. THREADS, SIGNALS, FORK, EXIT
@@ -131,25 +132,26 @@
    then continues to its end. If a handler jumps out of sun2xp_wait_event, that call takes no event. If it
    jumps out of a call that opens a hand, that call writes no handle, and the hand stays open until exit.
 
-   Undefined behaviour: the behaviour is undefined if a signal handler jumps out of any other call
-   (longjmp, siglongjmp). The same holds if a handler interrupts a call and then calls pthread_exit or, in
-   C++, lets an exception escape.
+   Undefined behaviour: the behaviour is undefined if a signal handler jumps (longjmp, siglongjmp) out of a
+   call that is not slow. The same holds if a handler interrupts any call and then calls pthread_exit or,
+   in C++, lets an exception escape.
 
    Memory: opening allocates the memory for the servos, for closing and for all calls that are not slow,
-   except sun2xp_send_path. These calls work even if malloc later returns NULL. The other calls are refused
-   with ENOMEM if too little memory is free:
+   except sun2xp_send_path. So closing and these calls work even if malloc later returns NULL. Each call of
+   the following table is refused with ENOMEM if less memory is free than the table says:
 
        12 MiB   the calls that open a hand
         4 MiB   sun2xp_recover, sun2xp_zero, sun2xp_identify, sun2xp_adjust, sun2xp_write_black_box
         1 MiB   sun2xp_send_path
        64 KiB   sun2xp_wait, sun2xp_on_event, sun2xp_event_descriptor, sun2xp_wait_event
 
-   These calls test the free memory directly after EPERM, even if their entries do not list ENOMEM there.
-   There are two exceptions: sun2xp_send_path tests it after EFAULT, and sun2xp_wait_event after its other
-   reasons, if there is no event. If memory runs out while one of these calls runs, the process is aborted,
-   and the boards' watchdogs end the motion. If less than 4 MiB are free when a finger faults, no black box
-   is written, and a message says so. If the library was loaded with dlopen, the first call of a thread
-   needs memory for the thread-local data of the library. If there is none, the C library aborts the process.
+   The calls of the table test the free memory directly after EPERM, even if their entries do not list
+   ENOMEM there. There are two exceptions: sun2xp_send_path tests it after EFAULT, and sun2xp_wait_event
+   after its other reasons, if there is no event. If memory runs out while one of these calls runs, the
+   process is aborted, and the boards' watchdogs end the motion. If less than 4 MiB are free when a finger
+   faults, no black box is written, and a message says so. If the library was loaded with dlopen, the first
+   call of a thread needs memory for the thread-local data of the library. If there is none, the C library
+   aborts the process.
 
    Cancellation: pthread_cancel does not interrupt a call. It takes effect at the program's next
    cancellation point or, with asynchronous cancellation, when the call returns.
@@ -157,15 +159,15 @@
    Floating point: the library computes in the default environment. A call leaves the program's rounding
    mode, traps, treatment of denormals and exception flags as they were.
 
-   Fork: a child process has no servo threads. Once a process has opened a hand, every call in a child
-   forked from it is refused with EPERM, except sun2xp_error, sun2xp_error_text, sun2xp_version,
-   sun2xp_version_number, sun2xp_abi_version, sun2xp_default_hand, sun2xp_fault_text and sun2xp_stop_all;
-   the parent is not affected. This applies to children of fork, of _Fork and of the system calls fork and
-   clone. It also applies while handlers of pthread_atfork run. Before Linux 4.14 it applies only to
-   children of fork, and only after these handlers have run. A child that shares the memory of its parent
-   (vfork) may only call exec. A child that calls exec starts afresh. A hand that is closed releases its
-   ports even if forked children are alive. If the program ends without closing, its ports stay locked
-   until those children have ended too.
+   Fork: a child process has no servo threads. Once a process has opened a hand, or has tried to open one,
+   every call in a child forked from it is refused with EPERM, except sun2xp_error, sun2xp_error_text,
+   sun2xp_version, sun2xp_version_number, sun2xp_abi_version, sun2xp_default_hand, sun2xp_fault_text and
+   sun2xp_stop_all; the parent is not affected. This applies to children of fork, of _Fork and of the
+   system calls fork and clone. It also applies while handlers of pthread_atfork run. Before Linux 4.14 it
+   applies only to children of fork, and only after these handlers have run. A child that shares the memory
+   of its parent (vfork) may only call exec. A child that calls exec starts afresh. A hand that is closed
+   releases its ports even if forked children are alive. If the program ends without closing, its ports
+   stay locked until those children have ended too.
 
    Descriptors: a daemon must detach before it opens a hand. The library's descriptors close at exec.
    Their numbers are 512 or more if the limit (ulimit -n) permits it. A program that closes only lower
@@ -187,9 +189,9 @@
 
    6. SERVO AND REAL TIME
 
-   By default each finger has its own servo thread, which runs 1000 times a second under SCHED_FIFO, with
-   locked memory and on the configured core. If the system does not permit that, opening follows
-   hand.real_time:
+   By default each finger has its own servo thread, which runs 1000 times a second under SCHED_FIFO and
+   with locked memory. If finger.core is configured, the thread runs on this core. If the system does not
+   permit one of these, opening follows hand.real_time:
 
        "try"      the hand works without it, with the jitter of an ordinary process; a message and
                   sun2xp_status report that
@@ -424,8 +426,8 @@ int sun2xp_open(const char *path, sun2xp_hand **hand);
    configuration   the text, as in a configuration file (TOML, UTF-8)
    hand            result: the handle of the hand
 
- A finger for which the text names neither a port nor a board is simulated. A text that leaves one
- finger simulated in this way must not name a real port or board for another finger; it is refused.
+ A finger for which the text names neither a port nor a board is simulated. A text is refused if it
+ leaves one finger simulated in this way and names a real port or board for another finger.
  Calibration results are in force until the hand is closed, and are not stored.
 
  Returns 0, or a negative number with
@@ -514,8 +516,7 @@ struct sun2xp_io_terms {
                                                state by itself, s. */
     double hold_time;                       /* Duration of "hold", s. */
     double hold_torque;                     /* Largest torque that "hold" keeps, N cm. */
-    double torque_limits[4];                /* Largest torque of each motor, N cm. The commanded torques are within
-                                               it. */
+    double torque_limits[4];                /* Largest torque of each motor, N cm. No commanded torque is larger. */
     double torque_constants[4];             /* Torque constant of each motor, N cm/A. */
 };
 
@@ -533,8 +534,8 @@ struct sun2xp_io_sample {
 /* The command of one exchange. The library sets all members. */
 struct sun2xp_io_command {
     size_t size;                            /* sizeof (struct sun2xp_io_command) in the library. */
-    unsigned long number;                   /* Number of the command since the start. A repeated exchange has the
-                                               same number again. */
+    unsigned long number;                   /* Number of the command, counted from the start. An exchange that is
+                                               repeated after an error (in_step) has the same number again. */
     int enable;                             /* 0: the motors are off, and the torques are zero. */
     double torques[4];                      /* Torques of motors 1 to 4, N cm. */
     double deadline;                        /* Time by which the exchange should return, s of CLOCK_MONOTONIC. */
@@ -544,7 +545,7 @@ struct sun2xp_io_command {
 struct sun2xp_io {
     size_t size;                            /* sizeof (struct sun2xp_io), the same in every element of an array. */
     int finger;                             /* Finger, 1 to 3. */
-    int holds;                              /* 1: the hardware has the end state "hold". */
+    int holds;                              /* 1: the hardware supports the end state "hold". */
     int in_step;                            /* 1: a simulation that advances by one period in each exchange. The
                                                servo waits for it. */
     double shortest_watchdog;               /* Shortest watchdog time of the hardware, s. */
@@ -571,15 +572,17 @@ struct sun2xp_io {
 
    start     in a thread of the library that is not real-time, at opening and at every recovery; may take
              seconds. An error refuses the call.
-   exchange  in the servo thread of the finger. An error counts as a lost reply. If it returns
-             after the deadline, the cycle is late, and possibly an overrun.
+   exchange  in the servo thread of the finger. An error counts as a lost reply. If exchange returns
+             after the deadline, the cycle is late. If the next period has begun by then, the cycle
+             also counts as an overrun.
    stop      in the servo thread or at a recovery. After an error, the library calls it again. Every
              start that has succeeded is followed by a stop.
 
- Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a servo
- thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery, may overlap
- with the exchange of another finger. In a cycle, these fingers have the same command->deadline. The
- deadline of the next cycle is later. A finger that is faulted or stopped gets no exchange.
+ Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a
+ servo thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery,
+ may overlap with the exchange of another finger. In one cycle, these fingers get the same
+ command->deadline. The next cycle has a later one, so a new deadline marks the first exchange of a
+ cycle. A finger that is faulted or stopped gets no exchange.
 
  exchange and stop must not allocate memory, wait for locks, write files or call the library. The behaviour
  is undefined if one of the functions does not return: longjmp, pthread_exit, exceptions.
@@ -724,14 +727,15 @@ int sun2xp_position(sun2xp_hand *hand, int finger, double *position);
 /*
  Result of sun2xp_tip. Vectors are in the finger's frame.
 
- The member force is computed from the measured tensions, so it includes friction, weight and inertia of
- the finger. It is never NaN. Near singular poses there are directions that the joints cannot measure.
- Along these, the members force and stiffness are zero. The member contact_force does not contain constant
- errors of the gauges. The member stiffness is the part of Kx that the finger applies at present, plus
- three other springs: the soft joint limits, the spring of joint 0 while the tip is near its axis, and the
- rotational stiffness of a contact. The members contact_force and stiffness are zero while the finger is
- not running. The member slide_speed is 0 while the member touching is 0. While touching is 1, the tip
- slides on the object at this speed, or tip and object move together at this speed.
+ The member force is computed from the measured tensions, so it includes friction, weight and inertia
+ of the finger. It is never NaN. Near singular poses there are directions that the joints cannot
+ measure. Along these, the members force and stiffness are zero. The member contact_force does not
+ contain constant errors of the gauges. The member stiffness is the part of Kx, or of the joint
+ stiffness, that the finger applies at present, plus three other springs: the soft joint limits, the
+ spring of joint 0 while the tip is near its axis, and the rotational stiffness of a contact. The
+ members contact_force and stiffness are zero while the finger is not running. The member slide_speed
+ is 0 while the member touching is 0. While touching is 1, the tip slides on the object at this speed,
+ or tip and object move together at this speed.
  */
 struct sun2xp_tip {
     size_t size;                            /* sizeof (struct sun2xp_tip), set before the call. */
@@ -802,7 +806,7 @@ int sun2xp_tip(sun2xp_hand *hand, int finger, struct sun2xp_tip *tip);
  sun2xp_send_contact - make a fingertip the spring of a contact type
 
    finger       1 to 3
-   dimensions   of the contact (section 4.2 of the report):
+   dimensions   number of dimensions of the contact (section 4.2 of the report):
                 1   frictionless point: a force along the normal
                 3   hard finger with friction: three forces; the same as sun2xp_send_stiffness
                 4   soft finger: three forces and a moment about the normal
@@ -829,7 +833,7 @@ int sun2xp_tip(sun2xp_hand *hand, int finger, struct sun2xp_tip *tip);
    EPERM    forked child
    EFAULT   stiffness is null; normal is null for 1 or 4 dimensions
    ENODEV   no such hand
-   EINVAL   no such finger; no such dimensions; an entry is NaN or infinite
+   EINVAL   no such finger; dimensions is not 1, 3 or 4; an entry is NaN or infinite
    EDOM     stiffness is not symmetric, or has a negative eigenvalue; normal is zero
    ERANGE   stiffness is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
    EIO      the finger is faulted
@@ -1032,9 +1036,9 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
  that an object blocks settles without arriving. If the set point is a position of the tip, the finger
  arrives at the joint angles that were computed for it. If a reflex has replaced the set point that was
  sent last, the condition must hold for the set point of the reflex. The same applies if the finger
- ignored the set point because of an inhibition, and the call then returns only after the inhibition has
- ended. The event SUN2XP_EVENT_REFLEX_FIRED says that a rule has reacted. Other calls work meanwhile.
- sun2xp_close works too, and this call is then refused.
+ ignored the set point because a reflex inhibits set points for some time. The wait then returns only
+ after this time. The event SUN2XP_EVENT_REFLEX_FIRED says that a reflex has reacted. Other calls work
+ during the wait. sun2xp_close works too, and then the wait is refused.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1082,14 +1086,15 @@ struct sun2xp_path_pose {
  and it continues the anchor's motion. It passes every pose at its time and rests at the last one.
  Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only
  pose is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
- continuous, with one exception: a path that would be refused if it continued the motion first brakes
- for 0.15 s. It begins with the present speed, but without acceleration and jerk. State feedback smooths
- this step. Speed, acceleration and jerk are fed forward, so the finger follows without the lag of
- sun2xp_send_position.
+ continuous, with one exception: if a path that continues the motion would be refused, the finger first
+ brakes for 0.15 s. The braking begins with the present speed, but without acceleration and jerk. State
+ feedback smooths this step. Speed, acceleration and jerk are fed forward, so the finger follows without
+ the lag of sun2xp_send_position.
+
  Between two poses that have a Kx, Kx changes linearly. Until the first pose that has a Kx, Kx changes
  linearly from its value at the beginning of the path. After sun2xp_send_joint_stiffness this value is 0,
- and the joint stiffness ends when a path with a Kx begins. So send Kx before such a path. A path without a
- Kx leaves the joint stiffness as it is.
+ and the joint stiffness ends when a path with a Kx begins. So call sun2xp_send_stiffness before such a
+ path. A path without a Kx leaves the joint stiffness as it is.
 
  The whole path is checked before anything moves: against the joint limits, and against speed,
  acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -1111,7 +1116,8 @@ struct sun2xp_path_pose {
             path must be slower
    EIO      the finger is faulted
    EBUSY    the finger is being opened or calibrated, or is limp
-   EAGAIN   the finger has become a spring again during the call
+   EAGAIN   during the call the finger has left its pose, because it was recovered or calibrated, its set
+            point expired, or a reflex reacted
    ERANGE   a Kx is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio instead)
 
  Threads: any. Never waits for a servo. Takes about 1 ms, depending on the number of poses.

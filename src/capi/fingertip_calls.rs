@@ -86,7 +86,7 @@ pub unsafe extern "C" fn sun2xp_tip(hand: *mut sun2xp_hand, finger: c_int, tip: 
 /// sun2xp_send_contact - make a fingertip the spring of a contact type
 ///
 ///   finger       1 to 3
-///   dimensions   of the contact (section 4.2 of the report):
+///   dimensions   number of dimensions of the contact (section 4.2 of the report):
 ///                1   frictionless point: a force along the normal
 ///                3   hard finger with friction: three forces; the same as sun2xp_send_stiffness
 ///                4   soft finger: three forces and a moment about the normal
@@ -113,7 +113,7 @@ pub unsafe extern "C" fn sun2xp_tip(hand: *mut sun2xp_hand, finger: c_int, tip: 
 ///   EPERM    forked child
 ///   EFAULT   stiffness is null; normal is null for 1 or 4 dimensions
 ///   ENODEV   no such hand
-///   EINVAL   no such finger; no such dimensions; an entry is NaN or infinite
+///   EINVAL   no such finger; dimensions is not 1, 3 or 4; an entry is NaN or infinite
 ///   EDOM     stiffness is not symmetric, or has a negative eigenvalue; normal is zero
 ///   ERANGE   stiffness is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
 ///   EIO      the finger is faulted

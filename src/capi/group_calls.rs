@@ -117,9 +117,9 @@ pub unsafe extern "C" fn sun2xp_send_group(
 /// that an object blocks settles without arriving. If the set point is a position of the tip, the finger
 /// arrives at the joint angles that were computed for it. If a reflex has replaced the set point that was
 /// sent last, the condition must hold for the set point of the reflex. The same applies if the finger
-/// ignored the set point because of an inhibition, and the call then returns only after the inhibition has
-/// ended. The event SUN2XP_EVENT_REFLEX_FIRED says that a rule has reacted. Other calls work meanwhile.
-/// sun2xp_close works too, and this call is then refused.
+/// ignored the set point because a reflex inhibits set points for some time. The wait then returns only
+/// after this time. The event SUN2XP_EVENT_REFLEX_FIRED says that a reflex has reacted. Other calls work
+/// during the wait. sun2xp_close works too, and then the wait is refused.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -26,15 +26,17 @@ use std::path::PathBuf;
 ///
 ///   start     in a thread of the library that is not real-time, at opening and at every recovery; may take
 ///             seconds. An error refuses the call.
-///   exchange  in the servo thread of the finger. An error counts as a lost reply. If it returns
-///             after the deadline, the cycle is late, and possibly an overrun.
+///   exchange  in the servo thread of the finger. An error counts as a lost reply. If exchange returns
+///             after the deadline, the cycle is late. If the next period has begun by then, the cycle
+///             also counts as an overrun.
 ///   stop      in the servo thread or at a recovery. After an error, the library calls it again. Every
 ///             start that has succeeded is followed by a stop.
 ///
-/// Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a servo
-/// thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery, may overlap
-/// with the exchange of another finger. In a cycle, these fingers have the same command->deadline. The
-/// deadline of the next cycle is later. A finger that is faulted or stopped gets no exchange.
+/// Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a
+/// servo thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery,
+/// may overlap with the exchange of another finger. In one cycle, these fingers get the same
+/// command->deadline. The next cycle has a later one, so a new deadline marks the first exchange of a
+/// cycle. A finger that is faulted or stopped gets no exchange.
 ///
 /// exchange and stop must not allocate memory, wait for locks, write files or call the library. The behaviour
 /// is undefined if one of the functions does not return: longjmp, pthread_exit, exceptions.

@@ -45,7 +45,7 @@ pub struct sun2xp_io_terms {
     pub hold_time: f64,
     /// Largest torque that "hold" keeps, N cm.
     pub hold_torque: f64,
-    /// Largest torque of each motor, N cm. The commanded torques are within it.
+    /// Largest torque of each motor, N cm. No commanded torque is larger.
     pub torque_limits: [f64; 4],
     /// Torque constant of each motor, N cm/A.
     pub torque_constants: [f64; 4],
@@ -57,7 +57,8 @@ pub struct sun2xp_io_terms {
 pub struct sun2xp_io_command {
     /// sizeof (struct sun2xp_io_command) in the library.
     pub size: usize,
-    /// Number of the command since the start. A repeated exchange has the same number again.
+    /// Number of the command, counted from the start. An exchange that is repeated after an error (in_step) has the
+    /// same number again.
     pub number: c_ulong,
     /// 0: the motors are off, and the torques are zero.
     pub enable: c_int,
@@ -93,7 +94,7 @@ pub struct sun2xp_io {
     pub size: usize,
     /// Finger, 1 to 3.
     pub finger: c_int,
-    /// 1: the hardware has the end state "hold".
+    /// 1: the hardware supports the end state "hold".
     pub holds: c_int,
     /// 1: a simulation that advances by one period in each exchange. The servo waits for it.
     pub in_step: c_int,

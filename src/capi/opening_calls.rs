@@ -66,8 +66,8 @@ pub unsafe extern "C" fn sun2xp_open(path: *const c_char, hand: *mut *mut sun2xp
 ///   configuration   the text, as in a configuration file (TOML, UTF-8)
 ///   hand            result: the handle of the hand
 ///
-/// A finger for which the text names neither a port nor a board is simulated. A text that leaves one
-/// finger simulated in this way must not name a real port or board for another finger; it is refused.
+/// A finger for which the text names neither a port nor a board is simulated. A text is refused if it
+/// leaves one finger simulated in this way and names a real port or board for another finger.
 /// Calibration results are in force until the hand is closed, and are not stored.
 ///
 /// Returns 0, or a negative number with

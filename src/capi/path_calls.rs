@@ -47,14 +47,15 @@ pub struct sun2xp_path_pose {
 /// and it continues the anchor's motion. It passes every pose at its time and rests at the last one.
 /// Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only
 /// pose is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
-/// continuous, with one exception: a path that would be refused if it continued the motion first brakes
-/// for 0.15 s. It begins with the present speed, but without acceleration and jerk. State feedback smooths
-/// this step. Speed, acceleration and jerk are fed forward, so the finger follows without the lag of
-/// sun2xp_send_position.
+/// continuous, with one exception: if a path that continues the motion would be refused, the finger first
+/// brakes for 0.15 s. The braking begins with the present speed, but without acceleration and jerk. State
+/// feedback smooths this step. Speed, acceleration and jerk are fed forward, so the finger follows without
+/// the lag of sun2xp_send_position.
+///
 /// Between two poses that have a Kx, Kx changes linearly. Until the first pose that has a Kx, Kx changes
 /// linearly from its value at the beginning of the path. After sun2xp_send_joint_stiffness this value is 0,
-/// and the joint stiffness ends when a path with a Kx begins. So send Kx before such a path. A path without a
-/// Kx leaves the joint stiffness as it is.
+/// and the joint stiffness ends when a path with a Kx begins. So call sun2xp_send_stiffness before such a
+/// path. A path without a Kx leaves the joint stiffness as it is.
 ///
 /// The whole path is checked before anything moves: against the joint limits, and against speed,
 /// acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
@@ -76,7 +77,8 @@ pub struct sun2xp_path_pose {
 ///            path must be slower
 ///   EIO      the finger is faulted
 ///   EBUSY    the finger is being opened or calibrated, or is limp
-///   EAGAIN   the finger has become a spring again during the call
+///   EAGAIN   during the call the finger has left its pose, because it was recovered or calibrated, its set
+///            point expired, or a reflex reacted
 ///   ERANGE   a Kx is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio instead)
 ///
 /// Threads: any. Never waits for a servo. Takes about 1 ms, depending on the number of poses.
