@@ -1377,8 +1377,8 @@ int sun2xp_limits(sun2xp_hand *hand, int finger, struct sun2xp_limits *limits);
  */
 struct sun2xp_touch {
     size_t size;                            /* sizeof (struct sun2xp_touch), set before the call. */
-    int valid;                              /* 1: the board has reported this element since its last reset, and could
-                                               read it. */
+    int valid;                              /* 1: the board has reported this element since its last reset, and its
+                                               newest report has a reading. */
     int pressed;                            /* 1 if something presses the element, otherwise 0. */
     unsigned int count;                     /* The raw count of the element. */
     double force;                           /* Force on the element, N. */
@@ -1459,8 +1459,8 @@ struct sun2xp_object {
 
    object   result, at most some milliseconds old; set object->size before the call
 
- All simulated fingers touch one object if hand.simulated_object is configured: a ball or a box with
- mass and friction. It can lie on a table. hand.gravity also acts on the object.
+ If hand.simulated_object is configured, the hand has one object that all simulated fingers can touch: a
+ ball or a box with mass and friction. It can lie on a table. hand.gravity also acts on the object.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1564,8 +1564,8 @@ int sun2xp_adjust(sun2xp_hand *hand, int finger, const char *keys);
  servo does not run. The delays cover the cycles since sun2xp_open or sun2xp_reset_timing. The member
  torque_scale applies to all joints alike, so the torque keeps its direction. The member
  stiffness_scale is below 1 in poses in which the tendons cannot provide the whole Kx, for example near
- the straight pose. A joint beyond its limit can reduce it too, because the spring of the limit needs a
- part of what the tendons provide. sun2xp_tip gives the stiffness that results.
+ the straight pose. A joint beyond its limit can reduce it too, because the spring that pushes the joint
+ back needs a part of what the tendons provide. sun2xp_tip gives the stiffness that results.
  */
 struct sun2xp_status {
     size_t size;                            /* sizeof (struct sun2xp_status), set before the call. */
@@ -1833,9 +1833,10 @@ const char *sun2xp_fault_text(int number);
 
  With hand.end_state = "release", the default, the torque goes to zero at once. With "hold" the motors
  keep their last torque, up to hand.hold_torque_limit, for hand.hold_time_ms, by default 2 s and at most
- a minute. Configure "hold" only for objects that must not be dropped. Three things release the torque
- earlier: the emergency stop input of the board, cutting the board's power, and configuring the board again.
- sun2xp_recover configures the board again, and so do sun2xp_close and sun2xp_open together.
+ a minute. Configure "hold" only for objects that must not be dropped. The torque ends earlier in three
+ cases: the board detects a fault (emergency stop input, supply, driver or sensor), the board is reset or
+ loses its power, or the board is configured again. sun2xp_recover configures the board again, and so does
+ sun2xp_open after sun2xp_close.
 
  sun2xp_stop_all is not a safety function: it needs this process, this machine and the cable.
 
@@ -1924,9 +1925,9 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
  Slackens the tendons and reads the gauges. Then finds the zero of the encoders by finger.zeroing.method:
 
    "pose"   The finger stands in finger.zeroing.pose_degrees. It must stand still from the start of
-            the call until it has been read: 0.3 s for a finger that is a spring, some seconds for a
-            limp one, which a jig or a hand must hold. A finger that moves, or that nothing holds,
-            is refused.
+            the call until its encoders have been read. This takes 0.3 s for a finger that is a
+            spring, and some seconds for a limp finger. A jig or a person must hold a limp finger.
+            A finger that moves is refused, and so is a limp finger that nothing holds.
    "stops"  Each joint moves slowly against both of its stops. The finger needs room for that.
    "kept"   The configured zero stays, if the board reports that its counts are still valid.
 
@@ -2095,8 +2096,8 @@ int sun2xp_wait_event(sun2xp_hand *hand, struct sun2xp_event *event, double seco
  The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 
  When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
- called again. If a callback makes one of these calls, the call does not wait. If the previous
- callback is then still running, it is not called again after it has returned.
+ called again. If a callback makes one of these calls, the call does not wait. The previous callback may
+ then still be running, but it is not called again.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -2177,7 +2178,8 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
  If the member refractory is 0, the rule fires again only after its condition was false. After a reaction,
  the finger ignores set points of the planner for the time in the member inhibition. For SUN2XP_THEN_GRIP,
  the member position is the direction in the finger's frame in which the tip presses harder; 0, 0, 0 is the
- direction in which its spring presses.
+ direction in which its spring presses. If the spring presses with less than 0.05 N in this direction, the
+ reaction changes no set point.
  */
 struct sun2xp_reflex {
     size_t size;                            /* sizeof (struct sun2xp_reflex), set before the call. */
@@ -2334,9 +2336,10 @@ int sun2xp_record(sun2xp_hand *hand, int finger, unsigned long cycle, struct sun
  describes the file, and `sun2xp replay path` recomputes its cycles. If hand.black_box is set, the
  library also writes such a file whenever a finger faults.
 
- The library writes a temporary file in the same folder, whose name begins with ".sun2xp-", and renames
- it when it is complete and on the disk. So the folder must be writable, and a refused call leaves an old
- file unchanged. Exception: if only the flush of the folder after the renaming fails, the new file is in place.
+ The library writes a temporary file with a name that begins with ".sun2xp-" into the same folder, and
+ renames it when it is complete and on the disk. So the folder must be writable, and a refused call leaves
+ an old file unchanged. There is one exception: after the renaming, the library flushes the folder to the
+ disk. If this flush fails, the call is refused although the new file is in its place.
  The call takes about 50 ms plus the time that the disk needs for some MB. The servos continue.
 
  Returns 0, or a negative number with

@@ -114,9 +114,10 @@ pub unsafe extern "C" fn sun2xp_record(
 /// describes the file, and `sun2xp replay path` recomputes its cycles. If hand.black_box is set, the
 /// library also writes such a file whenever a finger faults.
 ///
-/// The library writes a temporary file in the same folder, whose name begins with ".sun2xp-", and renames
-/// it when it is complete and on the disk. So the folder must be writable, and a refused call leaves an old
-/// file unchanged. Exception: if only the flush of the folder after the renaming fails, the new file is in place.
+/// The library writes a temporary file with a name that begins with ".sun2xp-" into the same folder, and
+/// renames it when it is complete and on the disk. So the folder must be writable, and a refused call leaves
+/// an old file unchanged. There is one exception: after the renaming, the library flushes the folder to the
+/// disk. If this flush fails, the call is refused although the new file is in its place.
 /// The call takes about 50 ms plus the time that the disk needs for some MB. The servos continue.
 ///
 /// Returns 0, or a negative number with

@@ -16,9 +16,9 @@ use std::ffi::c_int;
 /// Slackens the tendons and reads the gauges. Then finds the zero of the encoders by finger.zeroing.method:
 ///
 ///   "pose"   The finger stands in finger.zeroing.pose_degrees. It must stand still from the start of
-///            the call until it has been read: 0.3 s for a finger that is a spring, some seconds for a
-///            limp one, which a jig or a hand must hold. A finger that moves, or that nothing holds,
-///            is refused.
+///            the call until its encoders have been read. This takes 0.3 s for a finger that is a
+///            spring, and some seconds for a limp finger. A jig or a person must hold a limp finger.
+///            A finger that moves is refused, and so is a limp finger that nothing holds.
 ///   "stops"  Each joint moves slowly against both of its stops. The finger needs room for that.
 ///   "kept"   The configured zero stays, if the board reports that its counts are still valid.
 ///

@@ -115,8 +115,8 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
 /// The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 ///
 /// When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
-/// called again. If a callback makes one of these calls, the call does not wait. If the previous
-/// callback is then still running, it is not called again after it has returned.
+/// called again. If a callback makes one of these calls, the call does not wait. The previous callback may
+/// then still be running, but it is not called again.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

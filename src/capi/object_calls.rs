@@ -42,8 +42,8 @@ pub struct sun2xp_object {
 ///
 ///   object   result, at most some milliseconds old; set object->size before the call
 ///
-/// All simulated fingers touch one object if hand.simulated_object is configured: a ball or a box with
-/// mass and friction. It can lie on a table. hand.gravity also acts on the object.
+/// If hand.simulated_object is configured, the hand has one object that all simulated fingers can touch: a
+/// ball or a box with mass and friction. It can lie on a table. hand.gravity also acts on the object.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

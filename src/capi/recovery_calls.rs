@@ -21,9 +21,10 @@ use std::ffi::c_int;
 ///
 /// With hand.end_state = "release", the default, the torque goes to zero at once. With "hold" the motors
 /// keep their last torque, up to hand.hold_torque_limit, for hand.hold_time_ms, by default 2 s and at most
-/// a minute. Configure "hold" only for objects that must not be dropped. Three things release the torque
-/// earlier: the emergency stop input of the board, cutting the board's power, and configuring the board again.
-/// sun2xp_recover configures the board again, and so do sun2xp_close and sun2xp_open together.
+/// a minute. Configure "hold" only for objects that must not be dropped. The torque ends earlier in three
+/// cases: the board detects a fault (emergency stop input, supply, driver or sensor), the board is reset or
+/// loses its power, or the board is configured again. sun2xp_recover configures the board again, and so does
+/// sun2xp_open after sun2xp_close.
 ///
 /// sun2xp_stop_all is not a safety function: it needs this process, this machine and the cable.
 ///
