@@ -65,8 +65,8 @@ static void pass(double seconds)
         nanosleep(&tick, 0);
 }
 
-/* Sets the anchors of all fingertips in one cycle: higher than the centre of the ball on the table by up, and at the
-   given distance from its axis, cm. */
+/* Sets the anchors of all fingertips in one cycle. up is their height above the centre of the ball on the table, and
+   distance is their distance from the axis of the ball, cm. */
 static void anchor(double up, double distance)
 {
     struct sun2xp_set_point Group[3] = {{0}};

@@ -120,8 +120,8 @@ pub struct Watchers {
     threads: Vec<JoinHandle<Vec<Pause>>>,
 }
 
-/// Interval between two wake-ups of a watch thread, ns. It is shorter than the run time available to a cycle, so that
-/// every pause that makes a cycle late is detected.
+/// Interval between two wake-ups of a watch thread, ns. Every pause longer than this interval plus [`PAUSE`] is
+/// detected. At 1000 Hz, this sum is the run time available to a cycle.
 const CHECK_INTERVAL: u64 = 100_000;
 
 /// A wake-up that is later than this counts as a pause, ns.

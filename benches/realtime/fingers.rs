@@ -18,7 +18,7 @@ pub struct Finger {
     pub start: u64,
     /// The board. It runs until this value is dropped.
     pub board: SimulatedPort,
-    /// The receivers of the servo's timings and records, which are not read.
+    /// The receivers of the servo's timings and records. They must outlive the servo, even if nothing reads them.
     pub uncollected: (Consumer<CycleTiming>, BlackBox),
 }
 

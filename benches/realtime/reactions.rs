@@ -1,5 +1,6 @@
-//! Measures how soon fingers react to a contact, in real time: from the contact at a tactile element of a simulated
-//! fingertip to the first changed motor command, of the touched finger and of the fingers in other threads.
+//! Measures in real time how soon fingers react to a contact. The delay is the time from the contact at a tactile
+//! element of a simulated fingertip to the first changed motor command. It is measured for the touched finger, and for
+//! the fingers in other threads.
 //!
 //! The board tells which motor command is in force when the contact begins. The records of the servos tell which
 //! command is the first one with the set point of the reaction. Both commands have the numbers of their periods, so a

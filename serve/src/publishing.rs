@@ -1,5 +1,5 @@
-//! What the server publishes by itself: a State every 5 ms, Events, and a Status every second. All of this runs in one
-//! ordinary thread, because a reader whose line is full can hold up a message for a millisecond.
+//! What the server publishes by itself: a State every 5 ms, Events, and a Status every second. One thread does all of
+//! this. It is not real-time, because a subscriber whose connection is full can delay a message by a millisecond.
 
 use crate::ServeError;
 use crate::cycles::{Cycles, Taken};
@@ -109,8 +109,9 @@ impl Publishing {
         }
     }
 
-    /// Returns false for an arrival at a place that is not the owner's destination. Such a place is a set point on the
-    /// way, which the bound of the lead makes, or the place where the finger was caught.
+    /// Returns false for an arrival at a place that is not the owner's destination. Such a place is either a set point
+    /// on the way, which the bound of the lead (see [`crate::lead`]) makes, or the place where the finger was caught
+    /// (see [`crate::silence`]).
     fn is_of_destination(&self, event: &Event) -> bool {
         if event.kind != EventKind::Arrived {
             return true;

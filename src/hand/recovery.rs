@@ -54,7 +54,7 @@ impl Recovering {
     /// waits until the servo has done so. That takes a cycle.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger, or if its servo does not run.
+    /// Returns an error if there is no such finger, or if a servo does not carry out a request to stop within 5 s.
     pub fn begin(hand: &Hand, finger: i32) -> Result<Self, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let begun = Instant::now();
@@ -85,8 +85,8 @@ impl Recovering {
             task.recoveries[place] = report.recoveries;
             task.beside_others |= !faulted;
         }
-        // The faulted fingers of the port have counted their faults. If the fingers stop together, a finger that faults
-        // later stops this one again.
+        // This count includes the faults of the faulted fingers of the port. If the fingers stop together, a later
+        // fault of any finger stops the recovered finger again.
         let faults = hand.recovery.alarm.faults();
         task.stops.iter_mut().for_each(|stops| stops.faults = faults);
         Ok(Self { task: Some(task), polled: OnceLock::new() })
@@ -182,7 +182,8 @@ impl Recovering {
     }
 }
 
-/// Returns the last report, once the servo has carried out the requests to stop; none if it does not run.
+/// Returns the last report after the servo has carried out the requests to stop. Returns none if the servo does not
+/// carry them out within [`STALL_LIMIT`] after `begun`.
 fn report_after_stops(mailbox: &Mailbox, begun: Instant) -> Option<FingerReport> {
     loop {
         // The report is read after the requests, so it is not older than they are.

@@ -55,9 +55,9 @@ fn slowest(samples: &[DVector<f64>], drift: f64) -> f64 {
     mean_change(window)
 }
 
-/// Returns whether the samples in `follows` contradict a root. A root that counts contributes at least `LEAST_SHARE` of
-/// the sample before `follows`, which is above `rounding`. If this contribution would have grown above `rounding`
-/// within `follows`, but no sample of `follows` is above `rounding`, the samples contradict the root.
+/// Returns whether the samples in `follows` contradict a root. The sample before `follows` is above `rounding`, and a
+/// root that counts contributes at least the fraction `LEAST_SHARE` of it. The samples contradict the root if this
+/// contribution would grow above `rounding` within `follows`, but no sample of `follows` is above `rounding`.
 fn has_decayed(follows: &[DVector<f64>], root: f64, rounding: f64) -> bool {
     root.powi(follows.len() as i32) * LEAST_SHARE > 1.0 && follows.iter().all(|sample| sample.norm() <= rounding)
 }

@@ -24,7 +24,7 @@ const LIMIT: Duration = Duration::from_secs(20);
 pub fn turn() -> MutexGuard<'static, ()> {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     crate::pauses::name_pauses();
-    // A failed test leaves nothing behind.
+    // The lock is poisoned if an earlier test has failed. That test has left nothing behind, so the lock is used.
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -46,7 +46,8 @@ pub struct State {
     pub tensions: Vec<f64>,
     /// N cm.
     pub torques: Vec<f64>,
-    /// By the board's clock, ms: now, the last Command that was obeyed, the end state.
+    /// Times on the board's clock, ms: the present time, the arrival of the last Command that was obeyed, and the
+    /// beginning of the end state. NaN: not since the last Configure.
     pub times: Vec<f64>,
     pub status: Status,
 }

@@ -51,7 +51,7 @@ pub struct Configured {
     pub status: Status,
 }
 
-/// Offset of the end state in a Configure and a Configured, counted from the header.
+/// Offset of the end state in a Configure and in a Configured, bytes from the beginning of the header.
 const END_STATE_OFFSET: u8 = 5;
 
 impl Configure {

@@ -22,8 +22,8 @@ pub(crate) struct Gains {
 /// this speed the finger did not settle in two poses, and a tendon became slack.
 const SET_POINT_SPEED: f64 = 2.0;
 
-/// Speed of the set point with state feedback from 1000 Hz up, rad/s. The finger follows its reference, which may
-/// therefore move as fast as the tensions permit.
+/// Speed of the set point with state feedback at 1000 Hz and above, rad/s. Below 1000 Hz the speed is proportional to
+/// the rate. The finger follows its reference, which may therefore move as fast as the tensions permit.
 const STATE_FEEDBACK_SET_POINT_SPEED: f64 = 5.0;
 
 /// Bandwidth of the adaptation of Figure 11, 1/s.

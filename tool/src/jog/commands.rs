@@ -211,7 +211,7 @@ fn move_all(
             let mut joints = [0.0; 3];
             for (joint, next) in joints.iter_mut().enumerate() {
                 let target = degrees[joint].to_radians().clamp(low[joint], high[joint]);
-                // The finger may hold a pose beyond its limits. The limits must not make the step larger.
+                // The finger may hold a pose beyond its limits. A hand that clamps the angle makes the step larger.
                 let angle = towards(desired[joint], target, most);
                 if !(low[joint]..=high[joint]).contains(&angle) {
                     return Err(Refused::BeyondLimits { finger, joint, angle: desired[joint].to_degrees() });
@@ -228,7 +228,8 @@ fn move_all(
     Ok(format!("the hand {verb}"))
 }
 
-/// Returns the angles that the hand uses for these joint angles, rad: those within the limits, if it clamps.
+/// Returns the joint angles that the hand uses if these are sent, rad. A hand that clamps uses the nearest angles
+/// within the limits.
 fn admitted(configuration: &Configuration, finger: i32, joints: [f64; 3]) -> [f64; 3] {
     let index = usize::try_from(finger).ok().and_then(|number| number.checked_sub(1));
     match index.and_then(|index| configuration.fingers.get(index)) {

@@ -10,7 +10,8 @@ use std::thread::{self, JoinHandle};
 use sun2xp::Hand;
 use sun2xp::model::configuration::Configuration;
 
-/// Largest number of commands that wait. The end of a push may always wait, because the push would otherwise go on.
+/// Largest number of commands that are not carried out yet, including the one in progress. The end of a push is sent in
+/// any case, because the push would otherwise go on.
 const MOST_WAITING: usize = 4;
 
 /// What became of a command that was sent.
@@ -31,8 +32,8 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// Starts the thread. It ends when this value is dropped, after the present command, and then no longer holds the
-    /// hand. Waiting commands are dropped.
+    /// Starts the thread. When this value is dropped, the thread finishes the present command, drops the waiting ones,
+    /// and ends. Then it no longer holds the hand.
     ///
     /// # Errors
     /// Returns an error if the system cannot start a thread.
