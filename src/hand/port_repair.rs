@@ -200,11 +200,11 @@ fn shake_hands(
 }
 
 impl KnownBoard {
-    /// Asks the board for its identity, which must be the same as at open. Changes nothing on the board.
+    /// Asks the board for its identity, which must agree with the one at open. Changes nothing on the board.
     fn compare<T: Transport>(&self, link: &mut Link<T>) -> Result<(), HandError> {
         let deadline = link.transport().now() + ANSWER;
         let identity = link.identity(self.address, deadline).map_err(|error| self.failed(error))?;
-        match identity == self.identity {
+        match identity.agrees_with(&self.identity) {
             true => Ok(()),
             false => Err(self.faulted(Fault::new(FaultKind::IdentityChanged))),
         }

@@ -55,6 +55,15 @@ pub struct Identity {
     pub capabilities: Capabilities,
 }
 
+impl Identity {
+    /// Returns whether two identities are those of the same board with the same properties. Kind and firmware version
+    /// are only information for people.
+    #[must_use]
+    pub fn agrees_with(&self, other: &Self) -> bool {
+        Self { board_kind: other.board_kind, firmware: other.firmware, ..*self } == *other
+    }
+}
+
 /// Major, minor, patch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FirmwareVersion(pub [u8; 3]);

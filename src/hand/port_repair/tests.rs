@@ -56,6 +56,15 @@ fn a_board_with_another_number_is_not_the_one_of_open_and_gets_no_terms() {
 }
 
 #[test]
+fn a_board_with_another_firmware_version_is_the_one_of_open() {
+    let (mut link, mut known) = opened(board(), true);
+    known.identity.firmware.0[2] += 1;
+    known.compare(&mut link).expect("the firmware version is only information");
+    known.identity.gauge_bits -= 1;
+    assert_eq!(kind(&known.compare(&mut link).expect_err("other gauges")), Some(FaultKind::IdentityChanged));
+}
+
+#[test]
 fn only_terms_end_a_hold() {
     let (mut link, mut known) = opened(board(), true);
     let command = Command { enable: true, torques: [1000; 4], ..Command::default() };
