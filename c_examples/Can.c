@@ -35,6 +35,10 @@ static void start_far_end(const char *program, const char *place, pid_t *process
 
     snprintf(path, sizeof path, "%.*sCanDrives", end != NULL ? (int)(end - program) + 1 : 0, program);
     *process = fork();
+    if (*process < 0) {
+        perror("fork");
+        exit(1);
+    }
     if (*process == 0) {
         execl(path, path, place, (char *)NULL);
         perror(path);

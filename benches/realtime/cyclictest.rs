@@ -8,7 +8,7 @@ use std::process::{Child, Command, Stdio};
 const LONGEST: u64 = 1_000_000;
 
 /// cyclictest with three threads, staggered over the period like servo threads.
-pub struct Cyclictest(Child);
+pub struct Cyclictest(Option<Child>);
 
 /// The measurements of one thread.
 pub struct Measured {
@@ -31,12 +31,12 @@ impl Cyclictest {
             .stdout(Stdio::piped())
             .spawn()
             .map_err(|error| format!("cannot run cyclictest ({error}): install rt-tests"))?;
-        Ok(Self(child))
+        Ok(Self(Some(child)))
     }
 
     /// Waits for the end of the run.
-    pub fn finish(self) -> Result<Vec<Measured>, Failure> {
-        let output = self.0.wait_with_output()?;
+    pub fn finish(mut self) -> Result<Vec<Measured>, Failure> {
+        let output = self.0.take().expect("it runs until this call").wait_with_output()?;
         if !output.status.success() {
             return Err("cyclictest failed: it needs the permission for SCHED_FIFO (root, or an rtprio limit)".into());
         }
@@ -65,5 +65,15 @@ impl Cyclictest {
             }
         });
         Ok(measured.collect())
+    }
+}
+
+/// A run that fails must not leave cyclictest behind: its real-time threads would disturb other measurements.
+impl Drop for Cyclictest {
+    fn drop(&mut self) {
+        if let Some(mut child) = self.0.take() {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
     }
 }

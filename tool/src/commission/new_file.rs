@@ -36,7 +36,7 @@ fn place(file: &Path, text: &str) -> Result<(), Failure> {
 }
 
 fn text(finger: FingerNumber, answer: &Answer, ports: &[String]) -> String {
-    let search = if ports.is_empty() { String::new() } else { format!("search_ports = {ports:?}\n") };
+    let search = if ports.is_empty() { String::new() } else { search_ports(ports) };
     let (number, address) = (answer.number(), answer.found.address);
     let counts = answer.counts_per_revolution().map_or(String::new(), |counts| {
         format!("\n[finger.{finger}.encoder]\ncounts_per_revolution = [{counts}, {counts}, {counts}, {counts}]\n")
@@ -45,6 +45,12 @@ fn text(finger: FingerNumber, answer: &Answer, ports: &[String]) -> String {
         "# Created by sun2xp commission. docs/sun2xp.toml describes every key.\n[hand]\nfingers = [{finger}]\n\
          {search}\n[finger.{finger}]\nboard = \"{number}\"\naddress = {address}\n{counts}"
     )
+}
+
+/// Returns the line for these ports. Escapes of TOML and of Rust differ.
+fn search_ports(ports: &[String]) -> String {
+    let listed: toml_edit::Array = ports.iter().collect();
+    format!("search_ports = {listed}\n")
 }
 
 #[cfg(test)]
@@ -60,5 +66,14 @@ mod tests {
         let refused = place(&file, "second").expect_err("there is a file").to_string();
         assert!(refused.ends_with("meanwhile: run the tool again"), "{refused}");
         assert_eq!(fs::read_to_string(&file).expect("a file"), "first");
+    }
+
+    #[test]
+    fn ports_with_control_characters_are_valid_toml() {
+        let ports = ["/dev/ttyUSB*".to_string(), "\u{1b}\"\u{0}".to_string()];
+        let line = search_ports(&ports);
+        let read: toml_edit::DocumentMut = line.parse().expect("TOML");
+        let read = read["search_ports"].as_array().expect("an array").iter().map(|port| port.as_str().expect("text"));
+        assert_eq!(read.collect::<Vec<_>>(), ports, "{line}");
     }
 }
