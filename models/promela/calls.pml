@@ -206,8 +206,8 @@ proctype Grouper(byte first)
         fi
     };
     read(admission[first]);
-    lock(planners[first]);
     read(admission[second]);
+    lock(planners[first]);
     lock(planners[second]);
     unlock(planners[first]);
     unlock(planners[second]);

@@ -14,7 +14,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub(super) enum Refusal {
     #[error(
-        "this process was forked from the process that has opened the hand, and only that process has the servo \
+        "this process was forked from a process that has called the library, and only that process has the servo \
          threads: make the call in that process, or call exec first"
     )]
     Forked,

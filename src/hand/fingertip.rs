@@ -20,8 +20,8 @@ pub struct FingerTip {
     pub felt: usize,
     /// Measured tendon tensions, N.
     pub tensions: [f64; 4],
-    /// Stiffness of the tip in the present pose, in the finger's frame, N/cm. It is the part of the sent stiffness that
-    /// is in force. Three other springs add to it: a rotational stiffness of the contact, the soft joint limits, and
+    /// Stiffness of the tip in the present pose, in the finger's frame, N/cm. It is the part of the sent stiffness of
+    /// tip and joints that is in force. Three other springs add to it: a rotational stiffness of the contact, the soft joint limits, and
     /// the spring of joint 0 near its axis. A force that displaces the tip also turns it, because the joints turn. The
     /// stiffness is zero in a direction that the joints do not feel, and while the finger is not a spring.
     pub stiffness: [[f64; 3]; 3],

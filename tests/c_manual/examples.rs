@@ -5,7 +5,7 @@ use super::manual::{Example, HANDLES, Manual, OF_1990};
 use std::os::unix::fs::symlink;
 use std::process::Command;
 
-/// The headers that chapter 9 names for examples that consist of statements.
+/// The headers that examples need which consist of statements.
 const INCLUDED: &[&str] = &["errno.h", "poll.h", "signal.h", "stdio.h", "stdlib.h", "unistd.h"];
 
 /// For some examples: the call that the example belongs to, statements that run before it to prepare it, and statements

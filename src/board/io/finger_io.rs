@@ -89,7 +89,7 @@ pub struct IoTerms {
     pub hold_time_ms: u16,
     /// The largest torque that *hold* keeps, N cm.
     pub hold_torque_limit: f64,
-    /// The largest torque of each motor, N cm. The commanded torques are within it.
+    /// The largest torque of each motor, N cm. No commanded torque exceeds it.
     pub torque_limits: Vector4<f64>,
     /// Torque constant of each motor, N cm/A.
     pub torque_constants: Vector4<f64>,
@@ -125,7 +125,7 @@ pub struct IoSample {
     pub faults: IoFaults,
 }
 
-/// Faults that the hardware reports. Each bit faults the finger.
+/// Faults that the hardware reports. Each bit faults the finger, except [`IoFaults::ZERO_LOST`] in the first sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct IoFaults(pub u32);
 
