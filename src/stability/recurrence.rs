@@ -116,7 +116,10 @@ fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>, drift: f64
         DMatrix::from_fn(window.len(), window[0].len(), |k, channel| Complex::from(window[k][channel] * weights[k]));
     let Ok(parts) = powers.clone().svd(true, true).solve(&samples, 1e-12) else { return f64::NAN };
     let last = window.len() - 1;
-    let has_part = |root: usize| powers[(last, root)].norm() * parts.row(root).norm() >= LEAST_SHARE;
+    let share = |k: usize, root: usize| powers[(k, root)].norm() * parts.row(root).norm();
+    // Rounding errors excite every mode at every instant. So a root whose share of the first sample is smaller than a
+    // rounding error is no mode: it fits only the end of the window.
+    let has_part = |root: usize| share(last, root) >= LEAST_SHARE && share(0, root) >= f64::EPSILON;
     let counts = |root: &usize| has_part(*root) && (roots[*root] - 1.0).norm() >= drift;
     (0..order).filter(counts).map(|root| roots[root].norm()).fold(0.0, f64::max)
 }
@@ -140,5 +143,16 @@ mod tests {
         assert!((growing(61, &[0.0; 30]) - 0.8).abs() < 0.05);
         let grows: Vec<f64> = (61..91).map(|k| 1e-14 * 1.3f64.powi(k)).collect();
         assert!((growing(61, &grows) - 1.3).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_root_that_fits_only_the_last_samples_does_not_count() {
+        let with_end = |end: f64| -> Vec<_> {
+            let samples = (0..80).map(|k| 0.99f64.powi(k) * if k == 79 { 1.0 + end } else { 1.0 });
+            samples.map(|sample| DVector::repeat(2, sample)).collect()
+        };
+        assert!((growth(&with_end(0.0)) - 0.99).abs() < 1e-6);
+        let found = growth(&with_end(0.02));
+        assert!(found < 1.0, "{found}");
     }
 }
