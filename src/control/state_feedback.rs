@@ -124,6 +124,9 @@ pub(super) struct StateFeedbackState {
     along: Option<ReferenceState>,
     /// Joint rates minus the rates of the reference, low-pass filtered, rad/s.
     drift: Vector3<f64>,
+    /// Speed of each tendon at the joints while the reference is at rest, low-pass filtered, m/s.
+    #[serde(default)]
+    creep: Vector4<f64>,
     dither: DitherState,
     tension_dither: TensionDitherState,
     #[serde(default)]
@@ -150,6 +153,7 @@ impl StateFeedback {
             reference: self.reference.start(&joints),
             along: None,
             drift: Vector3::zeros(),
+            creep: Vector4::zeros(),
             dither: self.dither.start(),
             tension_dither: self.tension_dither.start(),
             periodic_disturbance: PeriodicDisturbanceState::default(),

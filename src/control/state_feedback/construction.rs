@@ -199,7 +199,7 @@ impl StateFeedback {
             upper_reserve,
             tension_dither,
             friction: FrictionFeedForward { friction, share: numbers.friction_share },
-            pulleys: PulleyFeedForward::new(&finger.friction.pulley.into(), numbers.pulley_share, numbers.pulley_creep),
+            pulleys: PulleyFeedForward::new(&finger.friction.pulley.into(), numbers, rate),
             r,
             pseudo_inverse,
             common: tendons.pretension(1.0).normalize(),

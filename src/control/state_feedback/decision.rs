@@ -100,6 +100,7 @@ impl StateFeedback {
         state.reference = self.reference.start(&state.joints);
         state.along = None;
         state.drift = Vector3::zeros();
+        state.creep = Vector4::zeros();
         state.dither = self.dither.start();
         state.tension_dither = self.tension_dither.start();
     }
@@ -165,7 +166,8 @@ impl StateFeedback {
         let joint_friction = self.joint_friction(state, &now.rates, &reference.rates, &damping);
         let held = sprung + push.torque + compensation.torques(gravity, &now.joints);
         let rubbing = self.pulleys.as_ref().map_or_else(Vector3::zeros, |pulleys| {
-            self.r * pulleys.tensions(&self.r.tr_mul(&reference.rates), &now.tensions)
+            let speeds = (&self.r.tr_mul(&reference.rates), &self.r.tr_mul(&now.rates));
+            self.r * pulleys.tensions(&mut state.creep, speeds, &now.tensions)
         });
         let all = held * 0.01 - damping * (now.rates - reference.rates)
             + rubbing

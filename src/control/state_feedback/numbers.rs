@@ -81,6 +81,11 @@ pub struct Numbers {
     /// feed-forward is proportional to the speed. The speed is the one that the tendon would have if the joints
     /// followed the reference exactly.
     pub pulley_creep: f64,
+    /// Additional tension of a tendon that creeps while the reference is at rest, divided by the friction p t of its
+    /// pulleys and by its speed, s/m.
+    pub creep_slope: f64,
+    /// Bandwidth of the low-pass filter on this speed, rad/s. Dither and noise are above this bandwidth.
+    pub creep_bandwidth: f64,
 }
 
 /// Lowest frequency for which the damping is designed, rad/s. It determines the damping of a finger without stiffness.
@@ -121,6 +126,13 @@ const PULLEY_SHARE: f64 = 0.7;
 
 /// See [`Numbers::pulley_creep`].
 const PULLEY_CREEP: f64 = 0.002;
+
+/// See [`Numbers::creep_slope`]. With 40, fingers are more exact, but a finger whose friction has vanished since it was
+/// identified moves by up to 104 um rms at walls.
+const CREEP_SLOPE: f64 = 25.0;
+
+/// See [`Numbers::creep_bandwidth`].
+const CREEP_BANDWIDTH: f64 = 20.0;
 
 /// See [`Numbers::friction_share`]. With half of the configured friction, no finger hunted, although the friction of
 /// the fingers was 0 to 3 times the configured one.
@@ -254,6 +266,8 @@ impl Numbers {
             drift_bandwidth: DRIFT_BANDWIDTH,
             pulley_share: PULLEY_SHARE,
             pulley_creep: PULLEY_CREEP,
+            creep_slope: CREEP_SLOPE,
+            creep_bandwidth: CREEP_BANDWIDTH,
         };
         positive("controller.inertia_gain", &[numbers.inertia_gain])?;
         positive("controller.damping_ratio", &[numbers.damping_ratio])?;
