@@ -21,9 +21,10 @@ pub struct FingerTip {
     /// Measured tendon tensions, N.
     pub tensions: [f64; 4],
     /// Stiffness of the tip in the present pose, in the finger's frame, N/cm. It is the part of the sent stiffness of
-    /// tip and joints that is in force. Three other springs add to it: a rotational stiffness of the contact, the soft joint limits, and
-    /// the spring of joint 0 near its axis. A force that displaces the tip also turns it, because the joints turn. The
-    /// stiffness is zero in a direction that the joints do not feel, and while the finger is not a spring.
+    /// tip and joints that is in force. Three other springs add to it: a rotational stiffness of the contact, the soft
+    /// joint limits, and the spring of joint 0 near its axis. A force that displaces the tip also turns it, because the
+    /// joints turn. The stiffness is zero in a direction that the joints do not feel, and while the finger is not a
+    /// spring.
     pub stiffness: [[f64; 3]; 3],
     /// Force on the touched object in the finger's frame, N, without the friction, weight and acceleration of the
     /// finger, and without constant errors of the gauges: from the momentum observer of docs/contact.md. It is zero

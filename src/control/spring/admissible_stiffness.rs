@@ -5,9 +5,9 @@ use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Scheme};
 use nalgebra::{Matrix3, Matrix3x4, Vector3};
 
-/// Returns the fraction of R k R^T that K_theta may use; see [`AdmissibleStiffness`]. It is somewhat
-/// smaller than the largest fraction with which the loop was stable. The fraction is smaller below 750 Hz than above. With Figure 11, which has no
-/// gain on the tension error, the small fraction applies at every rate.
+/// Returns the fraction of R k R^T that K_theta may use; see [`AdmissibleStiffness`]. It is somewhat smaller than the
+/// largest fraction with which the loop was stable. The fraction is smaller below 750 Hz than above. With Figure 11,
+/// which has no gain on the tension error, the small fraction applies at every rate.
 fn share(scheme: Scheme, rate: f64) -> f64 {
     match scheme {
         Scheme::Figure11 => 0.7,

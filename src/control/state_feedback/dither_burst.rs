@@ -19,9 +19,9 @@ const SLOW: f64 = 0.2;
 /// bursts of fingers with rotors of half the inertia caused motions of 2 mm.
 const HELD: f64 = 0.1;
 
-/// Time constant with which the envelope rises, s. With 0.01 s, the first oscillation is so large that a tension falls to
-/// 3.8 N after a reach of 30 mm, because the tensions are still low after the motion. With 0.025 s, "worn" and
-/// "sheathed" fingers settle later.
+/// Time constant with which the envelope rises, s. The tensions are still low directly after a motion. With 0.01 s, the
+/// first oscillation is therefore so large that a tension falls to 3.8 N after a reach of 30 mm. With 0.025 s, "worn"
+/// and "sheathed" fingers settle later.
 const RISING: f64 = 0.02;
 /// Value from which the envelope counts as risen.
 const RISEN: f64 = 0.8;
