@@ -13,9 +13,9 @@ use std::ffi::c_int;
 /// contain constant errors of the gauges. The member stiffness is the part of Kx, or of the joint
 /// stiffness, that the finger applies at present, plus three other springs: the soft joint limits, the
 /// spring of joint 0 while the tip is near its axis, and the rotational stiffness of a contact. The
-/// members contact_force and stiffness are zero while the finger is not running. The member slide_speed
-/// is 0 while the member touching is 0. While touching is 1, the tip slides on the object at this speed,
-/// or tip and object move together at this speed.
+/// members contact_force, stiffness and touching are zero while the finger is not running. The member
+/// slide_speed is 0 while the member touching is 0. While touching is 1, the tip slides on the object at
+/// this speed, or tip and object move together at this speed.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_tip {

@@ -1,5 +1,6 @@
 //! The state of a fingertip: position, force and tendon tensions.
 
+use crate::control::ContactEstimate;
 use crate::finger::{FingerReport, FingertipState, Stage};
 use crate::hand::admission::Admission;
 use crate::hand::{Hand, HandError};
@@ -23,14 +24,15 @@ pub struct FingerTip {
     /// Stiffness of the tip in the present pose, in the finger's frame, N/cm. It is the part of the sent stiffness of
     /// tip and joints that is in force. Three other springs add to it: a rotational stiffness of the contact, the soft
     /// joint limits, and the spring of joint 0 near its axis. A force that displaces the tip also turns it, because the
-    /// joints turn. The stiffness is zero in a direction that the joints do not feel, and while the finger is not a
-    /// spring.
+    /// joints turn. The stiffness is zero in a direction that the joints do not feel, and while the finger is not in
+    /// the stage `Running`.
     pub stiffness: [[f64; 3]; 3],
     /// Force on the touched object in the finger's frame, N, without the friction, weight and acceleration of the
     /// finger, and without constant errors of the gauges: from the momentum observer of docs/contact.md. It is zero
-    /// while the finger does not follow a set point.
+    /// while the finger is not in the stage `Running`.
     pub contact: [f64; 3],
-    /// Whether the finger touches something, as far as tensions and motion show it.
+    /// Whether the finger touches something, as far as tensions and motion show it. It is false while the finger is
+    /// not in the stage `Running`.
     pub touching: bool,
     /// Speed of the tip perpendicular to `contact`, cm/s, while the finger touches something. A speed above 0 means
     /// that the tip slides on the object, or moves it.
@@ -53,6 +55,8 @@ impl Hand {
 impl FingerTip {
     fn new(admission: &Admission, report: &FingerReport) -> Self {
         let running = report.stage == Stage::Running;
+        // A calibration that begins at rest leaves the finger a spring at first, so there is an estimate of a contact.
+        let contact = if running { report.cycle.contact } else { ContactEstimate::default() };
         let springs = admission.springs.as_ref().filter(|_| running);
         let spring = springs.map(|springs| (springs, &report.set_point));
         let state = FingertipState::new(admission.links, &admission.r, &report.cycle, spring);
@@ -63,9 +67,35 @@ impl FingerTip {
             tensions: report.cycle.tensions.into(),
             // The matrix is symmetric, so its rows are its columns.
             stiffness: state.stiffness.into(),
-            contact: (-report.cycle.contact.force).into(),
-            touching: report.cycle.contact.touching,
-            slide: report.cycle.contact.slide,
+            contact: (-contact.force).into(),
+            touching: contact.touching,
+            slide: contact.slide,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::SetPoint;
+    use crate::hand::opening::admission;
+    use crate::model::configuration::Configuration;
+    use nalgebra::{Matrix3, Vector3};
+
+    #[test]
+    fn only_a_running_finger_reports_a_contact() {
+        let admission = admission(&Configuration::default(), FingerNumber::ONE);
+        let joints = Vector3::new(0.2, 0.6, 1.1);
+        let mut report = FingerReport::opening(SetPoint::hard_finger(joints, Matrix3::identity()));
+        report.cycle.joints = joints;
+        report.cycle.contact =
+            ContactEstimate { force: Vector3::x(), touching: true, slide: 2.0, ..ContactEstimate::default() };
+        let touched = ([-1.0, 0.0, 0.0], true, 2.0);
+        let none = ([0.0; 3], false, 0.0);
+        for (stage, expected) in [(Stage::Running, touched), (Stage::Calibrating, none), (Stage::Limp, none)] {
+            report.stage = stage;
+            let tip = FingerTip::new(&admission, &report);
+            assert_eq!((tip.contact, tip.touching, tip.slide), expected, "{stage:?}");
         }
     }
 }
