@@ -202,6 +202,7 @@ impl FingerServo {
         self.limit_opening(began);
         let controls = self.under_control() && (self.answered || !self.link.in_step());
         let control = controls.then(|| self.control(skipped));
+        self.age_warnings(control.is_some());
         if recorded {
             self.record = Some(CycleRecord {
                 cycle: self.report.losses.cycles,

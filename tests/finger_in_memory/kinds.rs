@@ -29,6 +29,23 @@ fn a_joint_that_is_pushed_beyond_its_limit_is_reported_at_its_stop() {
     assert_eq!((bench.stage(), bench.warning()), (Stage::Running, None), "it went on, and the warning went away");
 }
 
+/// The monitors of a faulted finger do not run, but its warnings become older.
+#[test]
+fn a_warning_ends_a_second_after_its_cause_although_the_finger_is_faulted() {
+    let mut bench = Bench::new();
+    bench.with_finger(|finger| finger.inject(&Defect::SlackTendon { tendon: 3, grip: 0.0 }));
+    bench.cycles(6);
+    bench.with_finger(|finger| finger.repair());
+    let warning = bench.warns(FaultKind::SlackInMotion);
+    bench.mailbox.stop();
+    bench.faults(FaultKind::FingerStopCall);
+    bench.cycles(900);
+    assert_eq!(bench.warning(), Some(warning));
+    bench.cycles(200);
+    assert_eq!(bench.warning(), None);
+    bench.faults(FaultKind::FingerStopCall);
+}
+
 #[test]
 fn a_finger_that_reads_an_angle_it_cannot_have_does_not_become_a_spring() {
     let mut bench = Bench::believing(
