@@ -2179,7 +2179,7 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
  the finger ignores set points of the planner for the time in the member inhibition. For SUN2XP_THEN_GRIP,
  the member position is the direction in the finger's frame in which the tip presses harder; 0, 0, 0 is the
  direction in which its spring presses. If the spring presses with less than 0.05 N in this direction, the
- reaction changes no set point.
+ reaction changes no set point, but a path still ends.
  */
 struct sun2xp_reflex {
     size_t size;                            /* sizeof (struct sun2xp_reflex), set before the call. */

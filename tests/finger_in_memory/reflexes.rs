@@ -1,6 +1,7 @@
 //! Reflexes in the servo: how fast the command changes, which set point holds after a reaction, and when no rule fires.
 
 use crate::finger_on_a_cable::{ServedFinger, World};
+use crate::motion::{joints, send};
 use crate::rig::{Bench, Line};
 use nalgebra::{Matrix3, Vector3};
 use sun2xp::board::Transport;
@@ -100,6 +101,29 @@ fn an_inhibited_planner_is_not_followed_for_a_time() {
     bench.mailbox.send(|set_point| set_point.damping = 1.1).expect("not faulted");
     bench.cycles(2);
     assert_eq!((bench.report().set_point.joints, bench.report().set_point.damping), (back, 1.1));
+}
+
+#[test]
+fn a_grip_without_effect_ends_a_path() {
+    let mut bench = Bench::new();
+    bench.goes(Vector3::new(0.1, 0.5, 1.0));
+    let grip = Reaction::Grip { direction: Vector3::x(), by: 1.0, most: 5.0 };
+    let reflex = rule(Condition::JointAbove { joint: 1, angle: 0.6 }, grip);
+    bench.reflexes.install(Reflex { inhibition: 0.1, ..reflex }).expect("a place");
+    // The spring presses against this force, and so not in the direction of the grip.
+    bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(1.0, 0.0, 0.0)));
+    send(&bench, &[joints(2.0, [0.1, 0.9, 1.0])]);
+    let springs = bench.report().springs;
+    bench.until("a reaction", |bench| bench.report().springs > springs);
+    let held = bench.report().set_point;
+    assert_eq!((fired(&mut bench).len(), held.motion), (1, None));
+    assert!((0.5..0.8).contains(&held.joints[1]), "on its way: {}", held.joints);
+    bench.cycles(200);
+    assert_eq!(bench.report().set_point, held);
+    // A change after the inhibition starts from the pose that is held.
+    bench.mailbox.send(|set_point| set_point.damping = 1.1).expect("not faulted");
+    bench.cycles(5);
+    assert_eq!((bench.report().set_point.joints, bench.report().set_point.damping), (held.joints, 1.1));
 }
 
 /// The second rule reacts one cycle after the first. Its shorter inhibition does not end that of the first.

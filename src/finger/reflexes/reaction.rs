@@ -51,8 +51,8 @@ impl ReactionLimits {
         }
     }
 
-    /// Returns the set point after a reaction. Returns none if the reaction changes no set point. `report` is the
-    /// report of the last cycle. `followed` is the set point that the finger follows.
+    /// Returns the set point after a reaction, or none for a stop. A grip without effect leaves the set point where it
+    /// is. `report` is the report of the last cycle. `followed` is the set point that the finger follows.
     pub(in crate::finger) fn react(
         &self,
         reaction: &Reaction,
@@ -74,7 +74,9 @@ impl ReactionLimits {
             }
             Reaction::Retract(joints) => Some(SetPoint { joints: self.within(&joints), ..still }),
             Reaction::Grip { direction, by, most } => {
-                Some(SetPoint { joints: self.grip(&direction, (by, most), report, followed)?, ..rest })
+                // A grip without effect returns a set point too, so that it ends a path as every other reaction does.
+                let joints = self.grip(&direction, (by, most), report, followed).unwrap_or(followed.joints);
+                Some(SetPoint { joints, ..rest })
             }
             Reaction::Damp(ratio) => Some(SetPoint { damping: self.damping(ratio, followed), ..rest }),
         }
@@ -155,7 +157,7 @@ mod tests {
         assert!(pressed.dot(&(before.cross(&Vector3::x()) + before).normalize()) > 0.19, "{pressed}");
         // A spring at rest presses in no direction.
         let at_rest = Report { joints: followed.joints, ..Report::default() };
-        assert_eq!(limits.react(&grip, &at_rest, &followed), None);
+        assert_eq!(limits.react(&grip, &at_rest, &followed), Some(followed));
     }
 
     proptest! {
