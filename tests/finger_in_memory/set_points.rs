@@ -177,6 +177,23 @@ fn a_motion_that_begins_without_a_reply_has_not_arrived() {
     }
 }
 
+/// A planner may wait as soon as the report says that the finger is a spring.
+#[test]
+fn a_finger_that_becomes_a_spring_has_arrived_in_the_same_report() {
+    let mut bench = Bench::new();
+    let there = (true, Arrival { arrived: true, settled: true });
+    let (in_force, report) = bench.mailbox.newest_in_force();
+    assert_eq!((in_force, report.arrival), there);
+    bench.cycles(1);
+    assert_eq!((true, bench.report().arrival), there);
+    bench.mailbox.stop();
+    bench.faults(FaultKind::FingerStopCall);
+    bench.repair();
+    bench.opens();
+    let (in_force, report) = bench.mailbox.newest_in_force();
+    assert_eq!((in_force, report.arrival), there);
+}
+
 /// The gate of a hand keeps only the low bits of group numbers. After 2^23 more groups it takes the group from before
 /// the fault for a group that is not posted yet.
 #[test]

@@ -50,9 +50,11 @@ impl EventOutput {
         self.published = self.writer.publish(next);
     }
 
-    /// Restarts the detectors when the finger enters the stage `Running` and holds this set point.
-    pub fn restart_detectors(&mut self, set_point: SetPoint) {
+    /// Restarts the detectors when the finger enters the stage `Running` and holds this set point. Returns that it has
+    /// arrived there and has settled.
+    pub fn restart_detectors(&mut self, set_point: SetPoint) -> Arrival {
         self.detectors = DetectorState::holding(set_point);
+        self.detectors.arrival()
     }
 
     /// Runs the detectors after a cycle, and writes their observations to the log.

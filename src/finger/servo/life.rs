@@ -59,7 +59,8 @@ impl FingerServo {
                     self.report.expired_phase = None;
                     self.report.expired = false;
                     self.supervision.begin();
-                    self.events.restart_detectors(self.report.set_point);
+                    // The detectors run in the next cycle, but a planner may wait for the arrival before that.
+                    self.report.arrival = self.events.restart_detectors(self.report.set_point);
                     self.enter(Stage::Running);
                 }
             }
