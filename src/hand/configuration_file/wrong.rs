@@ -1,6 +1,6 @@
 //! Errors in a configuration, with their positions.
 
-use crate::model::Shown;
+use crate::model::{Shown, one_line};
 use serde::de::{Error, Expected, Unexpected};
 use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
@@ -77,10 +77,16 @@ impl Display for Wrong {
 impl std::error::Error for Wrong {}
 
 impl Error for Wrong {
-    /// Called for errors that serde finds itself.
+    /// Called with the library's own texts. They quote nothing of the file, and their ends contain the remedy, so they
+    /// are not shortened.
     #[inline(never)]
     fn custom<T: Display>(reason: T) -> Self {
-        Self::at(None, Shown(&reason.to_string()).to_string())
+        Self::at(None, one_line(&reason.to_string()))
+    }
+
+    /// Unlike serde's own text, this one does not quote the value.
+    fn invalid_value(_: Unexpected, expected: &dyn Expected) -> Self {
+        Self::at(None, format!("must be {expected}"))
     }
 
     fn invalid_type(_: Unexpected, expected: &dyn Expected) -> Self {

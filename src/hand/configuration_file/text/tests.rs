@@ -83,10 +83,21 @@ fn a_port_of_a_finger_replaces_the_board_of_all_and_the_reverse() {
 fn a_hand_has_the_listed_fingers() {
     let (hand, _) = parse("[hand]\nfingers = [3, 1]\n[finger.2]\nport = '/dev/later'\n").expect("usable");
     assert_eq!(hand.hand.fingers.numbers().collect::<Vec<_>>(), [1, 3]);
-    for (list, word) in [("[]", "at least one"), ("[4]", "no finger 4"), ("[2, 2]", "twice"), ("2", "must be")] {
+    for (list, word) in [
+        ("[]", "list the numbers of its fingers, for example [2]"),
+        ("[4]", "no finger 4: fingers are 1, 2 and 3"),
+        ("[2, 2]", "twice"),
+        ("2", "must be"),
+    ] {
         let (line, reason) = refusal(&format!("[hand]\nfingers = {list}\n"));
         assert!(line == Some(2) && reason.contains(word), "{list}: {reason}");
     }
+}
+
+#[test]
+fn the_remedy_for_a_wrong_board_is_complete() {
+    let (line, reason) = refusal("[finger.1]\nboard = '00 00'\n");
+    assert!(line == Some(2) && reason.ends_with("as `sun2xp boards` prints it"), "{reason}");
 }
 
 #[test]
