@@ -17,7 +17,10 @@ fn refused_paths_name_the_pose_and_the_remedy() {
         Err(error) => (error.to_string(), error.errno()),
     };
     let tip = |time: f64, tip: [f64; 3]| PathPose { time, pose: Pose::Tip(tip), stiffness: None };
-    let soft = Some([[9.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    let with_kx = |time: f64, kx: [[f64; 3]; 3]| PathPose { stiffness: Some(kx), ..joints(time, [0.3, 0.7, 1.2]) };
+    let stiff = with_kx(1.0, [[9.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    let skew = |time: f64| with_kx(time, [[1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    let no_number = with_kx(2.0, [[1.0, 0.0, 0.0], [0.0, f64::NAN, 0.0], [0.0, 0.0, 1.0]]);
     for (poses, words, errno) in [
         (vec![], "0 poses", libc::EINVAL),
         (vec![joints(0.5, [0.2, 0.6, 1.1]); 2], "time of pose 1", libc::EINVAL),
@@ -28,7 +31,11 @@ fn refused_paths_name_the_pose_and_the_remedy() {
         (vec![joints(0.05, [0.3, 0.7, 1.2])], "multiply all times by", libc::ERANGE),
         (vec![joints(0.8, [0.2, 1.74, 1.1]), joints(1.6, [0.2, 1.74, 1.2])], "outside its limits", libc::ERANGE),
         (vec![tip(1.0, [0.0, 0.0, 20.0])], "pose 0", libc::ERANGE),
-        (vec![PathPose { stiffness: soft, ..joints(1.0, [0.3, 0.7, 1.2]) }], "eigenvalue of Kx", libc::ERANGE),
+        (vec![stiff], "eigenvalue of Kx", libc::ERANGE),
+        // The kind of the error counts, and not the order of the poses.
+        (vec![stiff, skew(2.0)], "symmetric", libc::EDOM),
+        (vec![stiff, no_number], "NaN", libc::EINVAL),
+        (vec![skew(1.0), no_number], "NaN", libc::EINVAL),
     ] {
         let (text, number) = refused(&poses);
         assert!(text.contains(words) && number == errno, "{number}: {text}");

@@ -164,7 +164,9 @@ impl Admission {
         let is_tip = |pose: &PathPose| matches!(pose.pose, Pose::Tip(_));
         for (index, pose) in poses.iter().enumerate() {
             let (Pose::Joints(place) | Pose::Tip(place)) = pose.pose;
-            self.finite("Place", &place).map_err(|source| in_pose(index, source))?;
+            let kx = pose.stiffness.as_slice().as_flattened().as_flattened();
+            let finite = self.finite("Place", &place).and_then(|()| self.finite("Kx", kx));
+            finite.map_err(|source| in_pose(index, source))?;
             if is_tip(pose) != is_tip(&poses[0]) {
                 return Err(PathError::Mixed { finger: self.finger, pose: index });
             }
@@ -172,15 +174,22 @@ impl Admission {
         Ok(())
     }
 
-    /// Returns the stiffness along the path. It is empty if no pose has a stiffness.
+    /// Returns the stiffness along the path. It is empty if no pose has a stiffness. A Kx that is no spring is refused
+    /// before one that is too stiff, whichever pose comes first, so that the reported reason does not depend on the
+    /// order of the poses.
     fn stiffness_along(&self, poses: &[PathPose]) -> Result<Vec<TimedStiffness>, PathError> {
         let mut along: Vec<TimedStiffness> = Vec::new();
+        let mut too_stiff = None;
         for (index, pose) in poses.iter().enumerate() {
-            let given = pose.stiffness.map(|rows| self.kx(rows));
-            let given = given.transpose().map_err(|source| in_pose(index, source))?;
-            along.extend(given.map(|kx| TimedStiffness { time: pose.time, kx }));
+            match pose.stiffness.map(|rows| self.kx(rows)).transpose() {
+                Ok(given) => along.extend(given.map(|kx| TimedStiffness { time: pose.time, kx })),
+                Err(source @ SetPointError::TooStiff { .. }) => {
+                    too_stiff = too_stiff.or(Some(in_pose(index, source)));
+                }
+                Err(source) => return Err(in_pose(index, source)),
+            }
         }
-        Ok(along)
+        too_stiff.map_or(Ok(along), Err)
     }
 
     /// Computes the pieces, and the number of pieces for each pose.
