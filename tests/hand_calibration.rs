@@ -129,6 +129,13 @@ fn a_limp_finger_is_refused_with_the_calls_that_end_this() {
         assert!(text.contains("motors of finger 1 are off") && !text.contains("wait until"), "{text}");
         assert_eq!(refused.errno(), libc::EBUSY);
     }
+    // The fault of another finger is reported first.
+    hand.stop(2).expect("finger 2");
+    while !matches!(hand.report(2).expect("a report").stage, Stage::Faulted(_)) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let refused = hand.wait(&[1, 2, 3], Until::Settled, Duration::from_secs(10)).expect_err("limp and faulted");
+    assert!(matches!(refused, HandError::Faulted { finger: FingerNumber::TWO, .. }), "{refused}");
 }
 
 /// Two fingers at once: one is zeroed against its stops, the other, whose tendons are not as stiff as configured, is

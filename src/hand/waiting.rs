@@ -50,18 +50,26 @@ impl Waiting {
     /// being calibrated or is closed, because it then follows no set point.
     pub fn poll(&self, hand: &Hand) -> Result<bool, HandError> {
         let late = self.deadline.is_some_and(|deadline| Instant::now() >= deadline);
-        let mut waiting_for = None;
+        let (mut waiting_for, mut refusal) = (None, None);
         for &finger in &self.fingers {
             let member = hand.dispatcher.member(finger)?;
             let (in_force, report) = member.mailbox.newest_in_force();
             let holds = match report.stage {
                 Stage::Opening => false,
                 Stage::Running => in_force && self.holds(report.arrival),
-                stage => return Err(member.refusal(stage)),
+                Stage::Faulted(_) => return Err(member.refusal(report.stage)),
+                // The fault of a later finger is reported instead.
+                stage => {
+                    refusal = refusal.or(Some(member.refusal(stage)));
+                    false
+                }
             };
             if !holds {
                 waiting_for = waiting_for.or(Some(finger));
             }
+        }
+        if let Some(refusal) = refusal {
+            return Err(refusal);
         }
         match waiting_for {
             Some(finger) if late => Err(HandError::NotThereInTime(finger)),
