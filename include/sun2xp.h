@@ -1004,8 +1004,10 @@ struct sun2xp_set_point {
    ENODEV   no such hand
    EINVAL   size is too small; count is not 0 to 3; no such finger; two commands for one finger, or
             position and tip for one finger; an entry is NaN or infinite
-   EDOM, ERANGE  as sun2xp_send_position, sun2xp_send_tip, sun2xp_send_stiffness and sun2xp_send_damping
+   EDOM, ERANGE  as sun2xp_send_position, sun2xp_send_tip and sun2xp_send_stiffness
    EIO      a finger of the group is faulted
+   ERANGE   a ratio is outside the range of sun2xp_send_damping, or a stiffness is too stiff for the ratio
+            (hand.out_of_range = "clamp" clamps the ratio)
    EBUSY    16 groups of a finger have not taken effect yet, because they are sent faster than one in
             a period, or the servo does not run
 

@@ -167,16 +167,23 @@ impl Hand {
             changes[number.index()] = Some(command.admit(admission, &member.mailbox.report().cycle.joints)?);
         }
         let mut prepared: [Option<PreparedSetPoint<'_>>; FINGERS] = [const { None }; FINGERS];
+        let mut refusal = None;
         for number in FingerNumber::ALL {
             let (Some(command), Some(change)) = (by_finger[number.index()], changes[number.index()].take()) else {
                 continue;
             };
             let member = self.dispatcher.member(number)?;
             let faulted = |fault| HandError::Faulted { finger: number, fault };
-            let set_point = member.mailbox.prepare((command.replaced(), command.validity), change).map_err(faulted)?;
-            prepared[number.index()] = Some(set_point?);
+            match member.mailbox.prepare((command.replaced(), command.validity), change).map_err(faulted)? {
+                Ok(set_point) => prepared[number.index()] = Some(set_point),
+                // The fault of a later finger is reported instead, as for a command of a single finger.
+                Err(error) => refusal = refusal.or(Some(error)),
+            }
         }
-        self.send_prepared(prepared)
+        match refusal {
+            Some(refusal) => Err(refusal.into()),
+            None => self.send_prepared(prepared),
+        }
     }
 
     /// Sends the set points of a group, unless a finger has no room for another group.
