@@ -29,8 +29,9 @@ use std::path::PathBuf;
 ///   exchange  in the servo thread of the finger. An error counts as a lost reply. If exchange returns
 ///             after the deadline, the cycle is late. If the next period has begun by then, the cycle
 ///             also counts as an overrun.
-///   stop      in the servo thread or at a recovery. After an error, the library calls it again. Every
-///             start that has succeeded is followed by a stop.
+///   stop      in the servo thread, at a recovery, or when opening is refused. After an error, the library
+///             calls it again, at least twice if the errors persist. Every start that has succeeded is
+///             followed by a stop.
 ///
 /// Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a
 /// servo thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery,

@@ -180,3 +180,14 @@ fn hardware_that_does_not_start_has_its_errno() {
     drop(rig.link);
     assert_eq!(starts_and_stops(&rig.switches), (1, 1), "dropping stops the hardware");
 }
+
+#[test]
+fn a_stop_that_fails_is_repeated_when_the_board_is_dropped() {
+    for (fail, left, stops) in [(2, 0, 1), (5, 2, 0)] {
+        let rig = Rig::ready();
+        rig.switches.lock().stops_fail = fail;
+        drop(rig.link);
+        let switches = rig.switches.lock();
+        assert_eq!((switches.stops_fail, switches.stops), (left, stops), "{fail} failures");
+    }
+}

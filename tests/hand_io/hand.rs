@@ -194,6 +194,8 @@ fn if_one_finger_cannot_start_the_others_are_stopped_again() {
         all[number.index()] = Some(Box::new(hardware) as Box<dyn FingerIo>);
     }
     switches[2].lock().start_fails = Some(libc::EHOSTDOWN);
+    // A stop that fails is repeated.
+    switches[0].lock().stops_fail = 2;
     let refused = Hand::open_with_io(configuration, all).err().expect("finger 3 does not start");
     assert_eq!(refused.errno(), libc::EHOSTDOWN, "{refused}");
     for (switches, started) in switches.iter().zip([1, 1, 0]) {

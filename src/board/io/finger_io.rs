@@ -44,7 +44,7 @@ pub trait FingerIo: Send {
     /// Enters the end state of the terms.
     ///
     /// # Errors
-    /// The library calls `stop` again, several times if necessary.
+    /// The library calls `stop` again, at least twice if the errors persist.
     fn stop(&mut self) -> io::Result<()>;
 }
 

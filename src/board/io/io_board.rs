@@ -22,6 +22,9 @@ use std::time::Duration;
 /// Room for the answers that the host has not read yet. A host awaits at most two.
 const ANSWERS: usize = 4 * MAX_WIRE;
 
+/// Number of attempts to stop hardware that nothing else has stopped.
+const ATTEMPTS_TO_STOP: usize = 3;
+
 /// The board of a finger whose hardware the program provides.
 pub struct IoBoard {
     hardware: Hardware,
@@ -187,8 +190,9 @@ impl Transport for IoBoard {
 impl Drop for IoBoard {
     fn drop(&mut self) {
         if self.process == std::process::id() {
-            // The servo has already stopped the hardware, unless the hand could not be opened.
-            let _ = self.hardware.end();
+            // The servo has already stopped the hardware, unless the hand could not be opened. After one lost telegram,
+            // it must not be left to the watchdog to stop the motors.
+            let _ = (0..ATTEMPTS_TO_STOP).any(|_| self.hardware.end().is_ok());
         }
     }
 }
