@@ -1,20 +1,18 @@
 //! The hands of the C calls: a table with a place for the hand of OpenHand, and places for the hands of sun2xp_open.
 
 use crate::capi::hand_events::{self, HandEvents};
-use crate::capi::handle::{Handle, MOST_HANDS};
+use crate::capi::handle::{DEFAULT, Handle, PLACES};
 use crate::capi::opened_hand::{self, OpenedHand, Source, SourceWithIo};
 use crate::capi::process;
 use crate::capi::refusal::Refusal;
 use crate::capi::remote_hand::{RemoteHand, RemoteOpener};
+use crate::capi::reporting;
 use crate::hand::{FingerCommand, Hand};
 use crate::realtime::{Mutex, RwLock, try_for};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, MutexGuard};
 use std::thread::sleep;
 use std::time::Duration;
-
-/// The place of the hand of OpenHand.
-const DEFAULT: usize = 0;
 
 /// A place for a hand.
 struct Place {
@@ -34,7 +32,7 @@ struct Opened {
     hand: OpenedHand,
 }
 
-static TABLE: [Place; MOST_HANDS + 1] = [const { Place::new() }; MOST_HANDS + 1];
+static TABLE: [Place; PLACES] = [const { Place::new() }; PLACES];
 
 /// Number of hands opened so far. It makes the handles of two hands different.
 static OPENED: AtomicUsize = AtomicUsize::new(0);
@@ -88,11 +86,12 @@ fn free_place(table: &[Place]) -> Option<(usize, MutexGuard<'_, ()>)> {
 /// Opens a hand at a free place. The caller has locked its lifecycle.
 fn open_at(place: usize, from: SourceWithIo, open_remote: RemoteOpener) -> Result<Handle, Refusal> {
     process::watch(close_at_exit);
-    let hand = opened_hand::open(from, open_remote)?;
+    let (hand, print_refusals) = opened_hand::open(from, open_remote)?;
     // If the process exits, this line returns an error, and the return drops the hand, which closes it. The exit
     // handler waits only briefly for this call, so it cannot be relied on to close this hand.
     refuse_while_exiting()?;
     let handle = Handle::new(OPENED.fetch_add(1, Ordering::Relaxed), place);
+    reporting::set_printing(handle, print_refusals);
     let Place { events, hand: slot, handle: value, .. } = &TABLE[place];
     if let OpenedHand::Local(hand) = &hand {
         events.open(handle, hand);

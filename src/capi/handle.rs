@@ -21,6 +21,12 @@ pub(super) struct Handle(usize);
 /// Largest number of hands of sun2xp_open that can be open at the same time.
 pub(super) const MOST_HANDS: usize = 16;
 
+/// The place of the hand of OpenHand in the table.
+pub(super) const DEFAULT: usize = 0;
+
+/// Number of places in the table: that of the hand of OpenHand, and those of the hands of sun2xp_open.
+pub(super) const PLACES: usize = MOST_HANDS + 1;
+
 /// Bits of the place in the table.
 const PLACE_BITS: u32 = 8;
 

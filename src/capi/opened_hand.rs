@@ -3,7 +3,6 @@
 use crate::board::HandIo;
 use crate::capi::refusal::Refusal;
 use crate::capi::remote_hand::{RemoteHand, RemoteOpener, RemoteSource, over_the_network};
-use crate::capi::reporting;
 use crate::hand::{Configured, FingersWithIo, Hand, HandError};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -61,22 +60,27 @@ impl Source {
 
 /// Opens the hand that a configuration describes. With a table `[remote]` it is a hand on another machine, and
 /// otherwise a hand of this machine. In a library without network code, `open_remote` opens hands on other machines.
-pub(super) fn open(from: SourceWithIo, open_remote: RemoteOpener) -> Result<OpenedHand, Refusal> {
+/// Also returns whether the refusals of the calls for this hand are printed.
+pub(super) fn open(from: SourceWithIo, open_remote: RemoteOpener) -> Result<(OpenedHand, bool), Refusal> {
     let SourceWithIo { source, io } = from;
     let configured = source.read(io.as_ref().map(FingersWithIo::of).unwrap_or_default())?;
-    reporting::set_printing(configured.configuration.hand.print_refusals);
+    let print_refusals = configured.configuration.hand.print_refusals;
     let opener = over_the_network();
     if !configured.is_remote() {
         return match opener {
             Some(_) => Err(Refusal::OnlyRemote),
-            None => Ok(OpenedHand::Local(Hand::open_as_with_io(configured, io.unwrap_or_default())?)),
+            None => {
+                let hand = Hand::open_as_with_io(configured, io.unwrap_or_default())?;
+                Ok((OpenedHand::Local(hand), print_refusals))
+            }
         };
     }
     if io.is_some() {
         return Err(Refusal::NotRemote);
     }
     let Some(source) = source.into_remote(&configured) else { return Err(Refusal::OnlyRemote) };
-    Ok(OpenedHand::Remote(opener.unwrap_or(open_remote)(source, &configured.configuration)?))
+    let hand = opener.unwrap_or(open_remote)(source, &configured.configuration)?;
+    Ok((OpenedHand::Remote(hand), print_refusals))
 }
 
 impl OpenedHand {

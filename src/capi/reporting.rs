@@ -2,7 +2,7 @@
 //! of its kind.
 
 use crate::capi::error_numbers::number;
-use crate::capi::handle::Handle;
+use crate::capi::handle::{DEFAULT, Handle, PLACES};
 use crate::capi::process;
 use crate::capi::refusal::{Kind, Refusal};
 use crate::capi::remedy_calls::{Appendix, Interface, RemedyCalls};
@@ -10,12 +10,15 @@ use crate::capi::thread_errors;
 use crate::realtime::{Mutex, Severity, report};
 use std::ffi::c_int;
 use std::fmt::{self, Display, Formatter};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Number of kinds of refusals for which memory is reserved.
 const KINDS: usize = 128;
 
-static PRINT: AtomicBool = AtomicBool::new(true);
+/// For each place of the table of hands: the value of the handle of the last hand there if its refusals are not
+/// printed, and otherwise 0.
+static SILENT: [AtomicUsize; PLACES] = [const { AtomicUsize::new(0) }; PLACES];
+
 static PRINTED: Mutex<Vec<Kind>> = Mutex::new(Vec::new());
 
 /// Displays a refusal with its remedy.
@@ -45,7 +48,7 @@ pub(super) fn refuse(name: &'static str, handle: Handle, refusal: &Refusal) -> c
     let (number, errno) = (number(refusal), refusal.errno());
     let remedy = RemedyCalls(refusal.actions(), interface);
     let stored = thread_errors::store(handle, number, errno, name, &Shown(refusal, interface), &remedy);
-    if stored && PRINT.load(Ordering::Relaxed) && is_first_of_its_kind(refusal.kind()) {
+    if stored && is_printed(handle, interface) && is_first_of_its_kind(refusal.kind()) {
         thread_errors::with_newest_text(|text| report(Severity::Refusal, text));
     }
     process::set_errno(errno);
@@ -63,9 +66,24 @@ fn is_first_of_its_kind(kind: Kind) -> bool {
     first
 }
 
-/// Sets whether refusals are printed, as configured for the hand that is being opened.
-pub(super) fn set_printing(on: bool) {
-    PRINT.store(on, Ordering::Relaxed);
+/// Returns whether the refusals of calls for this hand are printed. The handle may belong to no open hand.
+fn is_printed(handle: Handle, interface: Interface) -> bool {
+    match interface {
+        // These calls have only one hand, so its setting also applies before it is opened again.
+        Interface::Of1990 => SILENT[DEFAULT].load(Ordering::Relaxed) == 0,
+        Interface::Handles => {
+            let silent = handle.place().and_then(|place| SILENT.get(place));
+            silent.is_none_or(|silent| silent.load(Ordering::Relaxed) != handle.value())
+        }
+    }
+}
+
+/// Sets whether the refusals of calls for this hand are printed. The hand has been opened, and the program does not
+/// have its handle yet.
+pub(super) fn set_printing(handle: Handle, on: bool) {
+    if let Some(silent) = handle.place().and_then(|place| SILENT.get(place)) {
+        silent.store(if on { 0 } else { handle.value() }, Ordering::Relaxed);
+    }
     // The memory is reserved here, so that the first KINDS kinds of refusals allocate nothing.
     PRINTED.lock().reserve(KINDS);
 }

@@ -15,6 +15,11 @@ fn a_program_opens_several_hands_and_a_wrong_handle_is_refused() {
 }
 
 #[test]
+fn each_hand_decides_whether_its_refusals_are_reported() {
+    succeed(&strict(&["-std=c89"]), &["silent.c"]);
+}
+
+#[test]
 fn a_planner_with_double_arrays_arrives() {
     succeed(&strict(&["-std=c17", "-DREAL=double"]), &["reach.c"]);
 }

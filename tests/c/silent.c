@@ -1,0 +1,41 @@
+/* hand.print_refusals belongs to one hand: neither another hand nor a refused opening changes it. C89. */
+#include "Sun2Xp.h"
+#include "sun2xp.h"
+#include "check.h"
+
+/* The scheduling of the machine does not matter here. */
+#define PLAIN "real_time = \"ignore\"\n[finger]\nport = \"simulated\"\n"
+#define LOUD "[hand]\n" PLAIN
+#define SILENT "[hand]\nprint_refusals = false\n" PLAIN
+
+static int refusals;
+
+static void count(int severity, const char *text, void *user)
+{
+    (void)text;
+    (void)user;
+    if (severity == SUN2XP_LOG_REFUSAL)
+        refusals++;
+}
+
+/* Each refusal has a kind of its own, because only the first of a kind is reported. */
+int main(void)
+{
+    static const char NoPort[] =
+        "[hand]\nprint_refusals = false\nfingers = [1]\n[finger.1]\nport = \"no/such/port\"\n";
+    double far[3] = {9, 0.5, 0.9}, large[3] = {1e9, 0, 0}, position[3];
+    sun2xp_hand *loud, *silent, *other;
+
+    CHECK(sun2xp_set_log(count, NULL) == 0);
+    CHECK(sun2xp_open_text(LOUD, &loud) == 0 && sun2xp_open_text(SILENT, &silent) == 0);
+    CHECK(sun2xp_position(loud, 9, position) < 0 && refusals == 1);
+    CHECK(sun2xp_send_position(silent, 1, far) < 0 && refusals == 1);
+    CHECK(sun2xp_send_position(loud, 1, far) < 0 && refusals == 2);
+    CHECK(sun2xp_open_text(LOUD, &other) == 0);
+    CHECK(sun2xp_send_joint_torque(silent, 1, large) < 0 && refusals == 2);
+    CHECK(sun2xp_close(silent) == 0 && sun2xp_close(other) == 0);
+    CHECK(sun2xp_open_text(NoPort, &other) < 0 && refusals == 3);
+    CHECK(sun2xp_send_damping(loud, 1, 99) < 0 && refusals == 4);
+    CHECK(sun2xp_position(NULL, 1, position) < 0 && refusals == 5);
+    return sun2xp_close(loud);
+}
