@@ -136,7 +136,10 @@ impl Bench {
             self.served.servo.cycle();
             match self.report().stage {
                 Stage::Running => break,
-                Stage::Faulted(fault) => panic!("while it takes up slack: {fault}"),
+                Stage::Faulted(fault) => {
+                    let cycle = self.report().cycle;
+                    panic!("while it takes up slack: {fault}; tensions {} joints {}", cycle.tensions, cycle.joints)
+                }
                 _ => {}
             }
         }
