@@ -13,6 +13,10 @@ use crate::control::motion::Motion;
 use crate::control::spring::slew::Slew;
 use nalgebra::Vector3;
 
+/// Least period of the planner, s. A shorter period acts as this one. The acceleration and the jerk of a step are fed
+/// forward. If a far step were completed within a few milliseconds, they would demand more than the largest tension.
+const LEAST_TIME: f64 = 0.01;
+
 /// Smallest time between the starts of two steps, as a fraction of the planner's period. Set points that come faster
 /// are combined.
 const SPACING: f64 = 0.25;
@@ -26,7 +30,7 @@ const MOST_STEPS: usize = 13;
 pub struct Interpolation {
     /// Period of the servo, s.
     period: f64,
-    /// Period of the planner, s.
+    /// Period of the planner, s, at least [`LEAST_TIME`].
     time: f64,
     /// Smallest time between the starts of two steps, cycles.
     spacing: u32,
@@ -63,6 +67,7 @@ impl Interpolation {
     /// Constructs the interpolation for a planner that sends a set point every `time` s. `speed` is the limit of the
     /// joint rates, rad/s, and `rate` is in Hz.
     pub fn new(time: f64, speed: f64, rate: f64) -> Self {
+        let time = time.max(LEAST_TIME);
         // Rounding up keeps the number of steps that overlap below `MOST_STEPS`.
         let spacing = (time * rate * SPACING).ceil().max(1.0);
         Self { period: 1.0 / rate, time, spacing: spacing as u32, speed, slew: Slew::new(speed, rate / spacing) }
@@ -193,6 +198,26 @@ mod tests {
         let all = run(1500, |_| target);
         assert!(all.iter().all(|(_, motion)| motion.rates.amax() < 5.0 * (1.0 + 1e-9)));
         assert!((all[1499].0 - target).amax() < 1e-12 && all[1499].1 == Motion::default());
+    }
+
+    #[test]
+    fn a_short_period_neither_demands_a_large_acceleration_nor_falls_behind() {
+        for period in [0.001, 0.002, 0.005] {
+            let interpolation = Interpolation::new(period, 5.0, RATE);
+            let mut state = InterpolationState::at_rest(Vector3::zeros());
+            for _ in 0..200 {
+                let (_, motion) = interpolation.advance(&mut state, &(Vector3::x() * 0.3));
+                // The limit is three quarters of the speed limit per least period, and a small ripple.
+                let acceleration = motion.unwrap_or_default().accelerations.amax();
+                assert!(acceleration < 400.0, "{period}: {acceleration} rad/s^2");
+            }
+            let mut state = InterpolationState::at_rest(Vector3::zeros());
+            for cycle in 0..2000 {
+                let sent = f64::from(cycle) / RATE;
+                let (joints, _) = interpolation.advance(&mut state, &(Vector3::x() * sent));
+                assert!(sent - joints.x < 0.02, "{period} {cycle}: {}", joints.x);
+            }
+        }
     }
 
     #[test]
