@@ -7,7 +7,7 @@ mod pauses;
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use std::time::{Duration, Instant};
 use sun2xp::control::Law;
-use sun2xp::hand::{FingerTip, Hand, HandError, SetPointError};
+use sun2xp::hand::{FingerCommand, FingerTip, Hand, HandError, PathPose, Pose, SetPointError};
 use sun2xp::model::Contact;
 use sun2xp::model::configuration::{Configuration, OutOfRange};
 
@@ -133,6 +133,57 @@ fn an_adjustment_takes_effect_completely_or_not_at_all() {
         Err(HandError::SetPoint(SetPointError::BeyondJointLimit { .. }))
     ));
     hand.send_position(2, [0.0, 0.8, 1.0]).expect("sent");
+}
+
+/// Returns Kx, N/cm, with the same stiffness in all directions.
+fn kx(stiffness: f64) -> [[f64; 3]; 3] {
+    (Matrix3::identity() * stiffness).into()
+}
+
+/// Sends a path that holds the pose of finger 1. Its Kx is `begin` after 0.2 s, and `end` after `seconds`.
+fn send_softening_path(hand: &Hand, (begin, end): (f64, f64), seconds: f64) {
+    let joints = hand.report(1).expect("report").set_point.joints.into();
+    let pose = |time, stiffness| PathPose { time, pose: Pose::Joints(joints), stiffness: Some(kx(stiffness)) };
+    hand.send_path(1, &[pose(0.2, begin), pose(seconds, end)], None).expect("sent");
+}
+
+fn is_refused_damping(result: &Result<(), HandError>) -> bool {
+    matches!(result, Err(HandError::SetPoint(SetPointError::Damping { .. })))
+}
+
+#[test]
+fn damping_is_checked_against_the_stiffest_kx_of_a_path() {
+    let hand = open(Configuration::default());
+    // A ratio of 1.5 is admitted with 1 N/cm, but not with 5 N/cm.
+    send_softening_path(&hand, (5.0, 1.0), 40.0);
+    let refused = hand.send_damping(1, 1.5);
+    assert!(is_refused_damping(&refused), "{refused:?}");
+    taken_in(&hand, 1);
+    let refused = hand.send_damping(1, 1.5);
+    assert!(is_refused_damping(&refused), "{refused:?}");
+    let others = [FingerCommand::new(1).damping(1.5), FingerCommand::new(2).joints([0.0, 0.6, 1.0])];
+    for group in [&others[..1], &others] {
+        let refused = hand.send_group(group);
+        assert!(is_refused_damping(&refused), "{refused:?}");
+    }
+    hand.send_damping(1, 1.1).expect("admitted with 5 N/cm");
+    hand.send_damping(1, 1.0).expect("admitted");
+    // A Kx that is sent ends the change along the path.
+    hand.send_stiffness(1, kx(1.0)).expect("sent");
+    hand.send_damping(1, 1.5).expect("admitted with 1 N/cm");
+    hand.send_damping(1, 1.0).expect("admitted");
+    // The Kx with which a path begins counts too.
+    hand.send_stiffness(1, kx(5.0)).expect("sent");
+    taken_in(&hand, 1);
+    send_softening_path(&hand, (1.0, 1.0), 40.0);
+    let refused = hand.send_damping(1, 1.5);
+    assert!(is_refused_damping(&refused), "{refused:?}");
+    // A path that has ended does not count.
+    send_softening_path(&hand, (5.0, 1.0), 0.4);
+    until("the path has ended", || hand.send_damping(1, 1.5).is_ok());
+    taken_in(&hand, 1);
+    let set_point = hand.report(1).expect("report").set_point;
+    assert!((set_point.stiffness[(0, 0)] - 1.0).abs() < 1e-9 && set_point.damping == 1.5, "{set_point:?}");
 }
 
 #[test]

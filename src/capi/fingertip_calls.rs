@@ -187,7 +187,8 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 /// finger with other links or tendons, k is first multiplied by 12.3 N/cm divided by S. S is the smallest
 /// stiffness that the tendons give the tip in any direction, with locked motors and with the joints in the
 /// middle of their ranges. For the default finger S is 12.3 N/cm. sun2xp_send_stiffness and
-/// sun2xp_send_contact refuse a stiffness whose range does not include the ratio sent last.
+/// sun2xp_send_contact refuse a stiffness whose range does not include the ratio sent last. While a path
+/// changes Kx, k is that of the stiffest Kx from the beginning to the end of the path.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -47,8 +47,8 @@ struct PlannersEnd {
     grouped: Producer<SentSetPoint>,
     renewals: Input<Renewal>,
     paths: Input<PathBuffer>,
-    /// Number of the last path.
-    path: u32,
+    /// The last path.
+    path: paths::LastPath,
     adjustments: Input<Adjustable>,
     gravity: Input<[f64; 3]>,
     orders: Input<Order>,
@@ -112,7 +112,7 @@ pub(super) fn mailbox(
         grouped: grouped_in,
         renewals: renewals_in,
         paths: paths_in,
-        path: 0,
+        path: paths::LastPath::default(),
         adjustments: adjustments_in,
         gravity: gravity_in,
         orders: orders_in,
@@ -193,9 +193,10 @@ impl Mailbox {
     ) -> Result<Result<(), E>, Fault> {
         let planners = &mut *self.planners.lock();
         planners.begin()?;
+        let path = planners.path_kept_by(replaced);
         let next = planners.set_points.input_buffer_mut();
         *next = planners.sent;
-        if let Err(refusal) = change(&mut next.set_point) {
+        if let Err(refusal) = paths::change_along(path, &mut next.set_point, change) {
             return Ok(Err(refusal));
         }
         next.replace(replaced, valid);

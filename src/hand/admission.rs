@@ -117,11 +117,9 @@ impl DampingAdmission {
             return Ok(()); // A ratio of 1 is always admitted, so the most frequent calls need no eigenvalue.
         }
         let finger = self.finger;
-        let contact = Contact::general(&set_point.stiffness, &Matrix6::identity());
-        let contact = contact.map_err(|source| SetPointError::Contact { finger, source })?;
         // The largest eigenvalue of a sum is at most the sum of the largest eigenvalues.
         let of_joints = set_point.joint_spring.map_or(0.0, |spring| spring.equivalent(self.lever));
-        let stiffness = contact.largest_eigenvalue(self.lever) + of_joints;
+        let stiffness = self.largest(&set_point.stiffness)? + of_joints;
         let (least, most) = self.admissible.range(stiffness);
         let ratio = set_point.damping;
         if !(least..=most).contains(&ratio) && self.out_of_range == OutOfRange::Refuse {
@@ -129,6 +127,25 @@ impl DampingAdmission {
         }
         set_point.damping = ratio.clamp(least, most);
         Ok(())
+    }
+
+    /// Returns the spring with the narrowest range of damping.
+    pub fn stiffest(&self, springs: [Matrix6<f64>; 3]) -> Result<Matrix6<f64>, SetPointError> {
+        let mut stiffest = (f64::NEG_INFINITY, Matrix6::zeros());
+        for spring in springs {
+            let largest = self.largest(&spring)?;
+            if largest > stiffest.0 {
+                stiffest = (largest, spring);
+            }
+        }
+        Ok(stiffest.1)
+    }
+
+    /// Returns the largest eigenvalue of the stiffness of a set point, N/cm.
+    fn largest(&self, stiffness: &Matrix6<f64>) -> Result<f64, SetPointError> {
+        let contact = Contact::general(stiffness, &Matrix6::identity());
+        let contact = contact.map_err(|source| SetPointError::Contact { finger: self.finger, source })?;
+        Ok(contact.largest_eigenvalue(self.lever))
     }
 }
 

@@ -6,6 +6,7 @@ mod tips;
 
 pub use plan::{Plan, plan_path};
 
+use crate::control::motion::PathExtent;
 use crate::finger::{Stage, Validity};
 use crate::hand::{Hand, HandError, PathError, Pose};
 use crate::model::FingerNumber;
@@ -53,17 +54,22 @@ impl Hand {
             return Err(member.refusal(report.stage));
         }
         let (damping, law) = (admission.damping, plan.law);
-        let (stiffest, end) = (plan.stiffest(), plan.end());
+        let (along, end) = (plan.stiffest(), plan.end());
+        let (lowest, highest) = plan.table().bounds();
+        let in_force = report.set_point.stiffness;
         let sent = member.mailbox.send_path(
             (report.springs, report.reference.period, Validity::hold_after(valid)),
             &plan.table(),
             |set_point| {
                 (set_point.joints, set_point.law) = (end, law);
-                for stiffness in stiffest {
+                let begin = set_point.stiffness;
+                for &stiffness in &along {
                     set_point.stiffen_tip(stiffness);
                     damping.admit(set_point)?;
                 }
-                Ok(())
+                // A stiffness that was sent just before may not be in force when the path begins.
+                let stiffest = along.first().map(|&first| damping.stiffest([first, begin, in_force])).transpose()?;
+                Ok(PathExtent { lowest, highest, stiffest })
             },
         );
         match sent.map_err(|fault| HandError::Faulted { finger, fault })? {

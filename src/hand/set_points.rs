@@ -153,7 +153,7 @@ impl Hand {
 
     /// Sends the damping of finger 1, 2 or 3, relative to the damping that the controller chooses from the stiffness.
     /// The ratio is 1 after open. Its range depends on controller, rate and stiffness
-    /// (`control::AdmissibleDamping`).
+    /// (`control::AdmissibleDamping`). While a path changes Kx, the stiffest Kx of the whole path counts.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if the ratio is NaN,

@@ -7,6 +7,7 @@ use crate::rig::Bench;
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
+use sun2xp::control::motion::PathExtent;
 use sun2xp::control::{AdmissibleDamping, spatial};
 use sun2xp::finger::events::EventKind;
 use sun2xp::finger::{Adjustable, Condition, FaultKind, Reaction, Reflex, Replaced, Stage, Validity};
@@ -184,7 +185,7 @@ fn a_path_does_not_stiffen_the_finger_beyond_a_bound_that_was_lowered() {
     let plan = plan(&report.reference, &poses);
     let end = |set_point: &mut sun2xp::control::SetPoint| {
         (set_point.joints, set_point.stiffness) = (plan.end(), spatial(&Matrix3::identity()));
-        Ok::<(), ()>(())
+        Ok::<_, ()>(PathExtent::default())
     };
     let begins = (report.springs, report.reference.period, Validity::default());
     assert!(matches!(bench.mailbox.send_path(begins, &plan.table(), end), Ok(Ok(Some(_)))));

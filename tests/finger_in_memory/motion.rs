@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::f64::consts::TAU;
+use sun2xp::control::motion::PathExtent;
 use sun2xp::control::{Activity, SetPoint, spatial};
 use sun2xp::finger::{CycleRecord, FingerReport, Recording, Reference, Replaced, Stage, Validity};
 use sun2xp::hand::{PathError, PathPose, Plan, Pose, plan_path};
@@ -42,7 +43,7 @@ fn deliver(bench: &Bench, report: &FingerReport, plan: &Plan) {
         &plan.table(),
         |set_point| {
             set_point.joints = end;
-            Ok::<(), ()>(())
+            Ok::<_, ()>(PathExtent::default())
         },
     );
     assert!(matches!(sent, Ok(Ok(Some(_)))), "{sent:?}");

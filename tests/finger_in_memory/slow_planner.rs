@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use std::time::Duration;
 use sun2xp::control::SetPoint;
+use sun2xp::control::motion::PathExtent;
 use sun2xp::finger::{Condition, FaultKind, Reaction, Reference, Reflex, Replaced, Stage, Validity};
 use sun2xp::model::InverseKinematics;
 use sun2xp::model::configuration::ExpiryReaction;
@@ -265,7 +266,8 @@ fn a_path_that_a_reflex_inhibits_is_valid_until_its_end() {
     let report = bench.report();
     let path = plan(&report.reference, &[joints(2.0, [0.3, 0.7, 1.2])]);
     let valid = (report.springs, report.reference.period, validity(100, 5000));
-    let sent = bench.mailbox.send_path(valid, &path.table(), to_target);
+    let change = |set_point: &mut SetPoint| to_target(set_point).map(|()| PathExtent::default());
+    let sent = bench.mailbox.send_path(valid, &path.table(), change);
     assert!(matches!(sent, Ok(Ok(Some(_)))), "{sent:?}");
     bench.cycles(2050);
     assert!(!bench.report().expired);

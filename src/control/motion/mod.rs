@@ -2,9 +2,11 @@
 //! arrive at a low rate. In every cycle, a servo applies these to the set point before the controller runs.
 
 mod derivatives;
+mod extent;
 mod follower;
 mod interpolation;
 
 pub use derivatives::Motion;
+pub use extent::PathExtent;
 pub use follower::{Follower, PathTable, TimedStiffness};
 pub use interpolation::{Interpolation, InterpolationState};

@@ -1,6 +1,6 @@
 //! Set points of several fingers that take effect in the same period.
 
-use super::{Mailbox, PlannersEnd, SentSetPoint, ServoEnd};
+use super::{Mailbox, PlannersEnd, SentSetPoint, ServoEnd, paths};
 use crate::control::SetPoint;
 use crate::finger::{Fault, GroupGate, Replaced, Validity};
 use crate::model::configuration::FINGERS;
@@ -31,8 +31,10 @@ impl Mailbox {
     ) -> Result<Result<PreparedSetPoint<'_>, E>, Fault> {
         let mut planners = self.planners.lock();
         planners.begin()?;
+        let path = planners.path_kept_by(replaced);
         let mut set_point = planners.sent.set_point;
-        Ok(change(&mut set_point).map(|()| PreparedSetPoint { planners, replaced, valid, set_point }))
+        let changed = paths::change_along(path, &mut set_point, change);
+        Ok(changed.map(|()| PreparedSetPoint { planners, replaced, valid, set_point }))
     }
 }
 

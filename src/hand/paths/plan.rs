@@ -63,15 +63,10 @@ impl Plan {
     }
 
     /// Returns the stiffest Kx of the path, and then the last one. There is none if the path does not change Kx.
-    pub fn stiffest(&self) -> impl Iterator<Item = Matrix6<f64>> {
+    pub fn stiffest(&self) -> Vec<Matrix6<f64>> {
         let largest = |one: &TimedStiffness| one.kx.symmetric_eigenvalues().max();
         let stiffest = self.stiffness.iter().max_by(|one, other| largest(one).total_cmp(&largest(other)));
-        stiffest
-            .into_iter()
-            .chain(self.stiffness.last())
-            .map(|timed| spatial(&timed.kx))
-            .collect::<Vec<_>>()
-            .into_iter()
+        stiffest.into_iter().chain(self.stiffness.last()).map(|timed| spatial(&timed.kx)).collect()
     }
 }
 
