@@ -182,6 +182,7 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 ///   figures 9, 10, 11      smallest   1                    1
 ///                          largest    2.50 - 0.22 k        2.00 - 0.20 k
 ///
+/// The limits are rounded inward to multiples of 0.01: with 1.5 N/cm the largest ratio is 1.81, not 1.815.
 /// By default the range is 0.67 to 1.53 at 3 N/cm and 0.94 to 1 at 6 N/cm. If the smallest ratio of the
 /// table is above 1, or the largest is below 1, the limit is 1 instead: 1 is always admitted. For a
 /// finger with other links or tendons, k is first multiplied by 12.3 N/cm divided by S. S is the smallest

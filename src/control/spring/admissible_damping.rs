@@ -54,7 +54,7 @@ impl AdmissibleDamping {
     }
 
     /// Returns the smallest and the largest ratio for a spring whose largest eigenvalue is `stiffness`, N/cm. Both are
-    /// multiples of 0.01, so that a planner reads exactly the range that is checked.
+    /// rounded inward to multiples of 0.01, so that a planner reads exactly the range that is checked.
     pub fn range(&self, stiffness: f64) -> (f64, f64) {
         let at = |(limit, slope): (f64, f64)| limit + slope * (stiffness * self.correspondence);
         // The tolerance of 1e-9 absorbs the rounding of the product.
@@ -116,5 +116,7 @@ mod tests {
         let admissible = AdmissibleDamping::new(&ConfiguredFinger::default(), 1000.0);
         let ranges = [0.0, 1.0, 3.0, 6.0].map(|stiffness| admissible.range(stiffness));
         assert_eq!(ranges, [(0.4, 2.1), (0.49, 1.91), (0.67, 1.53), (0.94, 1.0)]);
+        // The lines are at 0.535 and 1.815.
+        assert_eq!(admissible.range(1.5), (0.54, 1.81));
     }
 }
