@@ -186,6 +186,49 @@ fn damping_is_checked_against_the_stiffest_kx_of_a_path() {
     assert!((set_point.stiffness[(0, 0)] - 1.0).abs() < 1e-9 && set_point.damping == 1.5, "{set_point:?}");
 }
 
+/// Sends a path whose joint 1 goes to 1.2 rad, and then to 0.5 rad.
+fn send_path_beyond_its_end(hand: &Hand) {
+    let pose = |time, angle| PathPose { time, pose: Pose::Joints([0.0, angle, 1.0]), stiffness: None };
+    hand.send_path(1, &[pose(2.0, 1.2), pose(4.0, 0.5)], None).expect("sent");
+}
+
+#[test]
+fn an_adjustment_checks_the_whole_path() {
+    let hand = open(Configuration::default());
+    send_path_beyond_its_end(&hand);
+    let refused = hand.adjust(1, "joints.maximum_degrees = [60, 60, 120]").expect_err("60 degrees are 1.05 rad");
+    assert!(matches!(refused, HandError::SetPoint(SetPointError::PathBeyondJointLimit { joint: 1, .. })), "{refused}");
+    assert_eq!(refused.errno(), libc::ERANGE);
+    hand.adjust(1, "tendon.minimum = 6").expect("the limits of the joints stay");
+    hand.send_position(1, [0.0, 0.5, 1.0]).expect("sent");
+    hand.adjust(1, "joints.maximum_degrees = [60, 60, 120]").expect("the path has been replaced");
+    // Softer tendons reduce the largest damping ratio, to 1.72 at 1 N/cm and to 1 at 5 N/cm.
+    taken_in(&hand, 1);
+    hand.send_stiffness(1, kx(1.0)).expect("sent");
+    hand.send_damping(1, 1.1).expect("sent");
+    until("the finger rests", || hand.report(1).expect("report").arrival.settled);
+    send_softening_path(&hand, (5.0, 1.0), 40.0);
+    let refused = hand.adjust(1, "tendon.stiffness = [150, 150, 150, 150]");
+    assert!(is_refused_damping(&refused), "{refused:?}");
+    // A lower bound of Kx ends the change along the path.
+    hand.adjust(1, "tendon.stiffness = [150, 150, 150, 150]\nstiffness.bound = 3").expect("adjusted");
+    hand.send_damping(1, 1.5).expect("only the end of the path counts");
+}
+
+#[test]
+fn a_clamped_path_beyond_the_adjusted_limits_ends() {
+    let mut configuration = Configuration::default();
+    configuration.hand.out_of_range = OutOfRange::Clamp;
+    let hand = open(configuration);
+    send_path_beyond_its_end(&hand);
+    taken_in(&hand, 1);
+    hand.adjust(1, "joints.maximum_degrees = [60, 60, 120]").expect("adjusted");
+    taken_in(&hand, 1);
+    let set_point = hand.report(1).expect("report").set_point;
+    let away = (set_point.joints - Vector3::new(0.0, 0.5, 1.0)).amax();
+    assert!(away < 1e-9 && set_point.motion.is_none(), "{set_point:?}");
+}
+
 #[test]
 fn clamped_commands_follow_the_adjusted_limits() {
     let mut configuration = Configuration::default();

@@ -25,6 +25,10 @@ use std::ffi::{CStr, c_char, c_int};
 /// default bound applies. If a path changes Kx when the bound is lowered, the Kx of the end of the path
 /// takes effect at once.
 ///
+/// The whole path that was sent last is checked against the new limits until it has ended. With
+/// hand.out_of_range = "clamp" a path outside the new joint limits ends, and the finger moves to the end of
+/// the path at once.
+///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
 ///   EFAULT   keys is null
@@ -32,8 +36,8 @@ use std::ffi::{CStr, c_char, c_int};
 ///   EINVAL   no such finger; keys is not TOML
 ///   EBUSY    a key cannot change while the hand is open
 ///   EINVAL   an unknown key; an unusable configuration
-///   ERANGE   the position, stiffness, torque or damping sent last is outside the new limits (hand.out_of_range =
-///            "clamp" clamps it instead)
+///   ERANGE   the position, path, stiffness, torque or damping sent last is outside the new limits
+///            (hand.out_of_range = "clamp" clamps it instead)
 ///   EIO      the finger is faulted
 ///
 /// Threads: any. Never waits for a servo. Takes about 200 us, and allocates memory.

@@ -1,6 +1,7 @@
 //! Changes of a finger's configuration while it runs. The new controller is made on the planner's thread and passed to
 //! the servo as a whole.
 
+use crate::control::motion::PathExtent;
 use crate::control::{JointSpring, SetPoint};
 use crate::finger::{Adjustable, Replaced};
 use crate::hand::admission::Admission;
@@ -10,8 +11,8 @@ use crate::hand::opening::{admission, check};
 use crate::hand::{ConfigurationError, Hand, HandError, SetPointError};
 use crate::model::Contact;
 use crate::model::FingerNumber;
-use crate::model::configuration::{ConfiguredFinger, ConfiguredStiffness, Unusable};
-use nalgebra::Matrix6;
+use crate::model::configuration::{ConfiguredFinger, ConfiguredStiffness, OutOfRange, Unusable};
+use nalgebra::{Matrix6, Vector3};
 use toml_edit::{Document, Item, Table};
 
 /// Dotted keys, and tables of keys, that take effect only at open. They concern the port, the thread, the board, the
@@ -37,6 +38,9 @@ const PERMANENT: &[&str] = &[
     "simulation",
 ];
 
+/// Distance by which a path may exceed a joint limit, rad. The checks of a path permit the same distance.
+const ROUNDING: f64 = 1e-4;
+
 impl Hand {
     /// Changes keys of the configuration of finger 1, 2 or 3 while it runs. `keys` are lines of TOML as in the table
     /// `[finger.N]`, such as `tendon.minimum = 6`. All of them take effect together, within a cycle and without a jump
@@ -49,8 +53,10 @@ impl Hand {
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a key cannot be
     /// read, cannot change while the hand is open, or results in a configuration that cannot be used. Returns an error
-    /// if the set point that was sent last is outside the new limits, unless commands are clamped. Clamping a set point
-    /// does not change the time for which it is valid. After an error nothing is changed.
+    /// if the set point that was sent last, or any part of a path that has not ended, is outside the new limits, unless
+    /// commands are clamped. If commands are clamped, a path outside the new joint limits ends, and the finger moves to
+    /// its end at once. Clamping a set point does not change the time for which it is valid. After an error nothing is
+    /// changed.
     pub fn adjust(&self, finger: i32, keys: &str) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;
@@ -78,6 +84,9 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     let mut admission = member.admission.write();
     let sent = member.mailbox.sent();
     let joints = changed.joints(sent.joints.into())?;
+    let ahead = member.mailbox.path_ahead();
+    let leaves = ahead.as_ref().map(|path| leaves_limits(&changed, &admission.joint_limits, path));
+    let leaves = leaves.transpose()?.unwrap_or(false);
     let contact = Contact::general(&sent.stiffness, &Matrix6::identity());
     let stiffness = changed.contact(&contact.map_err(|source| SetPointError::Contact { finger, source })?)?;
     let joint_spring = match sent.joint_spring {
@@ -88,11 +97,25 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
         }
     };
     let mut admitted = SetPoint { joints, stiffness, joint_spring, ..sent };
+    let stiffest = ahead.and_then(|path| path.stiffest);
+    // A lower bound ends the change of Kx along a path. Then only the Kx of the end of the path counts.
+    let softened = stiffest.is_some() && changed.stiffness_bound < admission.stiffness_bound;
+    if let Some(stiffest) = stiffest.filter(|_| !softened) {
+        let mut along = SetPoint { stiffness: stiffest, ..admitted };
+        changed.damping.admit(&mut along)?;
+        admitted.damping = along.damping;
+    }
     changed.damping.admit(&mut admitted)?;
     let faulted = |fault| HandError::Faulted { finger, fault };
     member.mailbox.adjust(adjustable).map_err(faulted)?;
-    if admitted != sent {
-        let replaced = if joints == sent.joints { Replaced::Stiffness } else { Replaced::Place };
+    if admitted != sent || leaves || softened {
+        let replaced = if joints != sent.joints || leaves {
+            Replaced::Place
+        } else if stiffness != sent.stiffness || softened {
+            Replaced::Stiffness
+        } else {
+            Replaced::Other
+        };
         // If the set point is no longer `sent`, the finger has restarted meanwhile and holds the pose in which it was
         // found. The correction is refused only if the finger has faulted since the controller was replaced. A finger
         // that has faulted has no set point that could be outside the limits, and recovers with the new controller.
@@ -100,6 +123,30 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     }
     *admission = changed;
     Ok(())
+}
+
+/// Returns whether a path that has not ended leaves the changed joint limits. A path may begin beyond a limit, so only
+/// limits that are narrower than `before`, rad, are compared with the path.
+fn leaves_limits(
+    changed: &Admission,
+    before: &(Vector3<f64>, Vector3<f64>),
+    path: &PathExtent,
+) -> Result<bool, SetPointError> {
+    for joint in 0..3 {
+        let (low, high) = (changed.joint_limits.0[joint], changed.joint_limits.1[joint]);
+        let (least, most) = (path.lowest[joint], path.highest[joint]);
+        let above = high < before.1[joint] && most > high + ROUNDING;
+        let below = low > before.0[joint] && least < low - ROUNDING;
+        if !above && !below {
+            continue;
+        }
+        if changed.out_of_range == OutOfRange::Clamp {
+            return Ok(true);
+        }
+        let value = if above { most } else { least };
+        return Err(SetPointError::PathBeyondJointLimit { finger: changed.finger, joint, value, low, high });
+    }
+    Ok(false)
 }
 
 /// Returns the configuration of a finger in which `keys` have replaced some values. `rate` is in Hz.

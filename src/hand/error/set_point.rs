@@ -35,6 +35,24 @@ pub enum SetPointError {
         /// Upper limit, rad.
         high: f64,
     },
+    /// A path that the finger follows leaves joint limits that are to change.
+    #[error(
+        "the path that finger {finger} follows takes joint {joint} to {value:.4} rad, outside the new limits, {low:.4} \
+         to {high:.4} rad: adjust when the path has ended, send another path or position first, or set \
+         `hand.out_of_range = \"clamp\"`, which ends the path"
+    )]
+    PathBeyondJointLimit {
+        /// The finger.
+        finger: FingerNumber,
+        /// Number of the joint, 0 to 2.
+        joint: usize,
+        /// The angle that is farthest beyond the limit, rad.
+        value: f64,
+        /// The new lower limit, rad.
+        low: f64,
+        /// The new upper limit, rad.
+        high: f64,
+    },
     /// Kx is stiffer than the bound.
     #[error(
         "the largest eigenvalue of Kx of finger {finger} is {largest:.3} N/cm, above the bound of {bound:.3} N/cm: \
@@ -197,7 +215,7 @@ impl SetPointError {
             Self::Contact { source: ContactError::NotFinite(_), .. } => libc::EINVAL,
             Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
             Self::TooStiffJoints { .. } | Self::TooMuchTorque { .. } => libc::ERANGE,
-            Self::OutOfReach { .. } | Self::Damping { .. } => libc::ERANGE,
+            Self::OutOfReach { .. } | Self::Damping { .. } | Self::PathBeyondJointLimit { .. } => libc::ERANGE,
             Self::NotSymmetric { .. } | Self::Negative { .. } | Self::Contact { .. } => libc::EDOM,
             Self::JointStiffness { .. } => libc::EDOM,
         }
