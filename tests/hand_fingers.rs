@@ -112,6 +112,21 @@ fn a_hand_of_one_finger_is_a_hand() {
     assert!(matches!(other, HandError::NotInHand { finger: FingerNumber::ONE, .. }), "{other}");
 }
 
+/// The initial stiffness has eigenvalues of 3 N/cm, and cannot change while the hand is open.
+#[test]
+fn the_bound_can_fall_below_the_initial_stiffness() {
+    let hand = Hand::open(slow()).expect("open");
+    hand.send_stiffness(1, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]).expect("sent");
+    hand.adjust(1, "stiffness.bound = 2").expect("adjusted");
+    assert_eq!(hand.limits(1).expect("limits").stiffness, 2.0);
+    assert!(hand.send_stiffness(1, [[2.5, 0.0, 0.0], [0.0, 2.5, 0.0], [0.0, 0.0, 2.5]]).is_err());
+    // The file in which a hand begins must have an initial stiffness within the bound.
+    let mut configuration = slow();
+    configuration.fingers[0].stiffness.bound = Some(2.0);
+    let refused = Hand::open(configuration).err().expect("refused");
+    assert!(refused.to_string().contains("stiffness.initial"), "{refused}");
+}
+
 /// A simulated board, with a link to its port in a folder.
 fn board(link: &Path, members: &[FingerNumber], number: u32) -> SimulatedPort {
     let board = SimulatedBoard::new(&slow(), members).expect("a board").numbered(number);

@@ -7,7 +7,7 @@ use crate::finger::{Adjustable, Replaced};
 use crate::hand::admission::Admission;
 use crate::hand::configuration_file::{Wrong, deserialize, overlay, to_document};
 use crate::hand::dispatcher::Member;
-use crate::hand::opening::{admission, check};
+use crate::hand::opening::admission;
 use crate::hand::{ConfigurationError, Hand, HandError, SetPointError};
 use crate::model::Contact;
 use crate::model::FingerNumber;
@@ -66,7 +66,8 @@ impl Hand {
         let mut changed = configuration.clone();
         changed.fingers[finger.index()] =
             adjusted(finger, &configuration.fingers[finger.index()], keys, configuration.hand.rate)?;
-        check(&changed)?;
+        // A bound below the initial stiffness is no error here: a finger that recovers clamps that stiffness.
+        changed.check()?;
         let unusable =
             |unusable: Unusable| ConfigurationError::Unusable { section: format!("finger.{finger}"), unusable };
         let adjustable = Adjustable::new(&changed, finger).map_err(unusable)?;

@@ -4,7 +4,6 @@
 use crate::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
 use crate::finger::{Adjustable, CalibrationRun, Fault, Order, Stage};
 use crate::hand::calibration_file::store_findings;
-use crate::hand::opening::check;
 use crate::hand::{Found, Hand, HandError};
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredFinger};
@@ -159,7 +158,8 @@ impl Calibrating {
                 let mut configuration = hand.configuration.write();
                 let mut changed = configuration.clone();
                 found.apply(&mut changed.fingers[finger.index()]);
-                check(&changed)?;
+                // An adjustment may have lowered the bound below the initial stiffness.
+                changed.check()?;
                 let adjustable = Adjustable::new(&changed, finger).map_err(|unusable| refusal(finger, unusable))?;
                 let limp = self.stays_limp;
                 let to_store = Found::by_calibration(&found, finger, &changed);
