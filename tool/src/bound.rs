@@ -3,6 +3,8 @@
 mod passivity;
 mod sample;
 mod set;
+#[cfg(test)]
+mod tests;
 
 use crate::failure::{Failure, wrong_usage};
 use crate::print::{self, Progress, Screen};
@@ -12,7 +14,7 @@ use serde::de::value::{Error, StrDeserializer};
 use serde::{Deserialize, Serialize};
 use set::SetBound;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use sun2xp::hand::{self, Fingers, Found};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::ShownPath;
@@ -41,8 +43,10 @@ pub struct Arguments {
     /// The finger. May be repeated. The default is all fingers.
     #[arg(long = "finger", value_name = "N", value_parser = clap::value_parser!(i32).range(1..=FINGERS as i64))]
     fingers: Vec<i32>,
-    /// Write the bounds into the configuration file as finger.N.stiffness.bound, and change nothing else.
-    #[arg(long, requires = "config", conflicts_with_all = ["scheme", "rate"])]
+    /// Write the bounds into the configuration file as finger.N.stiffness.bound, and change nothing else. The bound of
+    /// each finger is written as soon as it is found. Only a bound of the whole set of plants, with the default number
+    /// of samples, can be written.
+    #[arg(long, requires = "config", conflicts_with_all = ["scheme", "rate", "nominal", "free", "samples"])]
     write: bool,
     /// A controller other than the configured one: "figure 9", "figure 10", "figure 11" or "state feedback".
     #[arg(long, value_parser = scheme)]
@@ -64,9 +68,9 @@ pub struct Arguments {
     #[arg(long, conflicts_with_all = ["write", "nominal", "free"])]
     passivity: bool,
     /// Number of samples for each plant, or of poses with --passivity. The default is 400 samples, 2000 samples with
-    /// --nominal, and 4 poses with --passivity.
-    #[arg(long, value_name = "N")]
-    samples: Option<usize>,
+    /// --nominal, and 4 poses with --passivity. A bound needs at least 10 samples.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    samples: Option<u32>,
     /// Seed of the random numbers.
     #[arg(long, default_value_t = 1990)]
     seed: u64,
@@ -74,6 +78,9 @@ pub struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+/// Least number of samples of a bound. With fewer, all tips may be too near the axis of joint 0.
+const LEAST_SAMPLES: u32 = 10;
 
 /// A finger whose stiffness is searched, and the rate, Hz.
 struct Searched<'a> {
@@ -121,6 +128,9 @@ fn rate(text: &str) -> Result<f64, String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if !arguments.passivity && arguments.samples.is_some_and(|samples| samples < LEAST_SAMPLES) {
+        return Err(wrong_usage(format!("a bound needs at least --samples {LEAST_SAMPLES}")));
+    }
     let mut configuration = match &arguments.config {
         Some(path) => hand::Configured::read(path)?.configuration,
         None => hand::find_configuration()?.configuration,
@@ -141,7 +151,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let different = numbers.iter().filter(|&&number| first_like(number) == number).count();
     let steps = if arguments.passivity { passivity::number_of_poses(arguments) } else { set::searches(arguments) };
     let progress = Progress::new("bound", (different * steps) as u64);
+    let written = arguments.config.as_ref().filter(|_| arguments.write);
     let mut reports: Vec<FingerReport> = Vec::new();
+    let mut printed = Ok(());
     for &number in &numbers {
         let searched = Searched { number, finger: &configuration.fingers[number.index()], rate };
         let twin = reports.iter().find(|report| report.finger == first_like(number).get());
@@ -155,24 +167,38 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             },
             None => search(arguments, &searched, &progress)?,
         };
-        if !arguments.json {
-            progress.aside(|| report.write(&searched))?;
+        let print = || if arguments.json { Ok(()) } else { progress.aside(|| report.write(&searched)) };
+        let found = Found::bound(report.stiffness, number, &configuration);
+        printed = printed.and(conclude(written.map(PathBuf::as_path), &found, print)?);
+        if written.is_none() && printed.is_err() {
+            break;
         }
         reports.push(report);
     }
     drop(progress);
-    let written = arguments.config.as_ref().filter(|_| arguments.write);
-    if let Some(path) = written {
-        let number = |report: &FingerReport| FingerNumber::try_from(report.finger);
-        let bounds = reports.iter().map(|one| Ok(Found::bound(one.stiffness, number(one)?, &configuration)));
-        hand::store_findings(path, &bounds.collect::<Result<Vec<_>, Failure>>()?)?;
-    }
+    printed?;
     match (arguments.json, written) {
         (true, _) => print::json(&Report { rate, fingers: reports, written: written.cloned() })?,
         (false, Some(path)) => writeln!(io::stdout(), "written to {}", ShownPath(path))?,
         (false, None) => {}
     }
     Ok(())
+}
+
+/// Stores a bound in the file, if there is one, and then prints it. Returns how the printing ended: a reader that has
+/// closed the pipe must not cost the bounds of the remaining fingers.
+///
+/// # Errors
+/// Returns an error if the bound cannot be stored.
+fn conclude(
+    path: Option<&Path>,
+    found: &Found,
+    print: impl FnOnce() -> io::Result<()>,
+) -> Result<io::Result<()>, Failure> {
+    if let Some(path) = path {
+        hand::store_findings(path, std::slice::from_ref(found))?;
+    }
+    Ok(print())
 }
 
 /// Searches the bound of one finger with the default options. Returns it in N/cm, and what limits it.

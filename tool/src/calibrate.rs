@@ -68,6 +68,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let tasks = arguments.tasks();
     let hand = Hand::open_limp(configured.configuration, Some(arguments.config.clone()), fingers)?;
     let mut report = Report { fingers: Vec::new(), written: None };
+    let mut printed = Ok(());
     for finger in fingers.numbers() {
         let before = hand.calibrated(finger)?;
         let mut calibrated = Calibrated { finger, ..Calibrated::default() };
@@ -92,10 +93,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         calibrated.compare(&before, &hand.calibrated(finger)?);
         if !arguments.json {
-            write!(io::stdout(), "{}", calibrated.text(&Screen::stdout()))?;
+            printed = printed.and(write!(io::stdout(), "{}", calibrated.text(&Screen::stdout())));
+        }
+        // A reader that has closed the pipe must not cost the results of the remaining fingers.
+        if arguments.dry_run && printed.is_err() {
+            break;
         }
         report.fingers.push(calibrated);
     }
+    printed?;
     report.written = (!arguments.dry_run).then(|| arguments.config.clone());
     match (&report.written, arguments.json) {
         (_, true) => print::json(&report)?,

@@ -63,7 +63,7 @@ pub fn compute(arguments: &Arguments, searched: &Searched, progress: &Progress) 
 
 /// Returns the number of poses for one finger. Each pose is one step of the progress.
 pub fn number_of_poses(arguments: &Arguments) -> usize {
-    arguments.samples.unwrap_or(POSES)
+    arguments.samples.map_or(POSES, |samples| samples as usize)
 }
 
 impl Passivity {

@@ -88,7 +88,7 @@ fn places(arguments: &Arguments) -> &'static [bool] {
 pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -> Result<(f64, SetBound), Failure> {
     let Searched { number, finger, rate } = *searched;
     let usual = if arguments.nominal { SAMPLES_OF_NOMINAL } else { SAMPLES_OF_SET };
-    let samples = arguments.samples.unwrap_or(usual);
+    let samples = arguments.samples.map_or(usual, |samples| samples as usize);
     let mut plants: Vec<Member> = Vec::new();
     for variant in variants(arguments) {
         for &walls in places(arguments) {
