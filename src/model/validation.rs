@@ -229,7 +229,7 @@ impl ConfiguredFinger {
         optional("controller.set_point_speed", controller.set_point_speed, 1e-3, 1e3, "rad/s")?;
         optional("controller.adaptation_gain", controller.adaptation_gain, 0.0, 30.0, "1/s")?;
         optional("controller.inertia_gain", controller.inertia_gain, 0.1, 20.0, "")?;
-        optional("controller.damping_ratio", controller.damping_ratio, 0.05, 3.0, "")?;
+        optional("controller.damping_ratio", controller.damping_ratio, 0.05, 0.45, "")?;
         optional("controller.set_point_time", controller.set_point_time, 1e-3, 0.06, "s")?;
         optional("controller.dither", controller.dither, 0.0, 10.0, "")?;
         optional("controller.tension_dither", controller.tension_dither, 0.0, 0.4, "")?;
@@ -274,7 +274,7 @@ impl ConfiguredFinger {
                 return inside("zeroing.upper_stop_degrees", upper[joint], high[joint]);
             }
         }
-        within("zeroing.torque", zeroing.torque, 1e-3, 100.0, "N cm")?;
+        within("zeroing.torque", zeroing.torque, 1e-3, 95.0, "N cm")?;
         within("zeroing.speed", zeroing.speed, 1e-2, 10.0, "rad/s")?;
         within("zeroing.time_limit_s", zeroing.time_limit_s, 1.0, 3600.0, "s")
     }

@@ -150,3 +150,13 @@ fn every_range_is_documented() {
     }
     assert!(documented > 40, "only {documented} ranges found");
 }
+
+/// With larger numbers a finger oscillates, or presses on its stop until the time limit of its zeroing.
+#[test]
+fn numbers_with_which_a_finger_fails_are_refused() {
+    usable("[finger]\ncontroller.damping_ratio = 0.45\nzeroing.torque = 95\n");
+    for (key, range) in [("controller.damping_ratio = 0.5", "0.05 to 0.45"), ("zeroing.torque = 100", "0.001 to 95")] {
+        let (_, reason) = read(&format!("[finger]\n{key}\n")).expect_err("too large");
+        assert!(reason.contains(range), "{reason}");
+    }
+}

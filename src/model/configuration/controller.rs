@@ -63,7 +63,7 @@ pub struct ConfiguredController {
     /// State feedback: alpha, the commanded tension per tension error. The motors then appear to have 1/alpha of their
     /// inertia.
     pub inertia_gain: Option<f64>,
-    /// State feedback: damping ratio of the spring.
+    /// State feedback: damping ratio of the spring. A finger with 0.5 or more can oscillate.
     pub damping_ratio: Option<f64>,
     /// State feedback: time constant of each of the five poles of the set point filter, s.
     pub set_point_time: Option<f64>,
