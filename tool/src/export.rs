@@ -4,6 +4,7 @@ mod columns;
 mod output;
 
 use crate::failure::{Failure, wrong_usage};
+use crate::interrupt::Interrupt;
 use crate::trace::{self, Finger, Item, Mark, Row};
 use clap::ValueEnum;
 use columns::{Column, Value, columns, object_columns};
@@ -53,7 +54,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let standard_output = arguments.output.as_deref() == Some(Path::new("-"));
     let start = trace::first_cycle(&arguments.file)?;
     let mut files = Files { arguments, standard_output, start, open: BTreeMap::new() };
-    trace::read(&arguments.file, "export", &mut |item| files.take(item))?;
+    // An interrupted export must return, because only files that are dropped are removed.
+    let interrupt = Interrupt::watch()?;
+    trace::read(&arguments.file, "export", &mut |item| {
+        if interrupt.requested() { Err("the export was interrupted".into()) } else { files.take(item) }
+    })?;
     files.finish()
 }
 

@@ -4,6 +4,8 @@ use crate::damage::damaged;
 use crate::recorded::{done, recorded, tool};
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::{self, Read};
+use std::process::{Command, Stdio};
 
 /// A CSV file without line feeds in its fields: its header, and its rows by the names of their columns.
 fn table(text: &str) -> (Vec<&str>, Vec<BTreeMap<&str, String>>) {
@@ -138,4 +140,21 @@ fn a_refused_or_failed_export_leaves_the_folder_as_it_was() {
     assert_eq!(failed.status.code(), Some(1), "{failed:?}");
     assert_eq!(names(), before);
     assert_eq!(fs::read_to_string(path("hand-finger2.csv")).expect("read"), "old");
+}
+
+/// An export that returns has removed its files. The tool is held up by a full pipe until it is interrupted.
+#[test]
+fn an_interrupted_export_returns() {
+    let recorded = recorded();
+    let mut tool = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+    tool.arg("export").arg(recorded.file()).args(["--output", "-"]).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut tool = tool.spawn().expect("the tool runs");
+    let mut output = tool.stdout.take().expect("a pipe");
+    output.read_exact(&mut [0]).expect("the first byte");
+    let sent = Command::new("kill").args(["-INT", &tool.id().to_string()]).status().expect("kill runs");
+    assert!(sent.success());
+    io::copy(&mut output, &mut io::sink()).expect("the rest");
+    let ended = tool.wait_with_output().expect("the tool ends");
+    assert_eq!(ended.status.code(), Some(1), "{ended:?}");
+    assert!(String::from_utf8_lossy(&ended.stderr).contains("interrupted"), "{ended:?}");
 }
