@@ -154,6 +154,7 @@ fn is_refused_damping(result: &Result<(), HandError>) -> bool {
 #[test]
 fn damping_is_checked_against_the_stiffest_kx_of_a_path() {
     let hand = open(Configuration::default());
+    taken_in(&hand, 1);
     // A ratio of 1.5 is admitted with 1 N/cm, but not with 5 N/cm.
     send_softening_path(&hand, (5.0, 1.0), 40.0);
     let refused = hand.send_damping(1, 1.5);
@@ -200,6 +201,7 @@ fn an_adjustment_checks_the_whole_path() {
     assert!(matches!(refused, HandError::SetPoint(SetPointError::PathBeyondJointLimit { joint: 1, .. })), "{refused}");
     assert_eq!(refused.errno(), libc::ERANGE);
     hand.adjust(1, "tendon.minimum = 6").expect("the limits of the joints stay");
+    hand.adjust(1, "tendon.minimum = 5").expect("the limits of the joints stay");
     hand.send_position(1, [0.0, 0.5, 1.0]).expect("sent");
     hand.adjust(1, "joints.maximum_degrees = [60, 60, 120]").expect("the path has been replaced");
     // Softer tendons reduce the largest damping ratio, to 1.72 at 1 N/cm and to 1 at 5 N/cm.

@@ -8,6 +8,7 @@
 
 mod adjustments;
 pub(super) mod groups;
+mod last_path;
 mod paths;
 mod requests;
 mod validity;
@@ -48,7 +49,7 @@ struct PlannersEnd {
     renewals: Input<Renewal>,
     paths: Input<PathBuffer>,
     /// The last path.
-    path: paths::LastPath,
+    path: last_path::LastPath,
     adjustments: Input<Adjustable>,
     gravity: Input<[f64; 3]>,
     orders: Input<Order>,
@@ -112,7 +113,7 @@ pub(super) fn mailbox(
         grouped: grouped_in,
         renewals: renewals_in,
         paths: paths_in,
-        path: paths::LastPath::default(),
+        path: last_path::LastPath::default(),
         adjustments: adjustments_in,
         gravity: gravity_in,
         orders: orders_in,
@@ -196,7 +197,7 @@ impl Mailbox {
         let path = planners.path_kept_by(replaced);
         let next = planners.set_points.input_buffer_mut();
         *next = planners.sent;
-        if let Err(refusal) = paths::change_along(path, &mut next.set_point, change) {
+        if let Err(refusal) = last_path::change_along(path, &mut next.set_point, change) {
             return Ok(Err(refusal));
         }
         next.replace(replaced, valid);

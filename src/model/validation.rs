@@ -230,7 +230,7 @@ impl ConfiguredFinger {
         optional("controller.adaptation_gain", controller.adaptation_gain, 0.0, 30.0, "1/s")?;
         optional("controller.inertia_gain", controller.inertia_gain, 0.1, 20.0, "")?;
         optional("controller.damping_ratio", controller.damping_ratio, 0.05, 0.45, "")?;
-        optional("controller.set_point_time", controller.set_point_time, 1e-3, 0.06, "s")?;
+        optional("controller.set_point_time", controller.set_point_time, 1e-3, 0.02, "s")?;
         optional("controller.dither", controller.dither, 0.0, 10.0, "")?;
         optional("controller.tension_dither", controller.tension_dither, 0.0, 0.4, "")?;
         optional("controller.friction_share", controller.friction_share, 0.0, 1.0, "")

@@ -1,6 +1,6 @@
 //! Set points of several fingers that take effect in the same period.
 
-use super::{Mailbox, PlannersEnd, SentSetPoint, ServoEnd, paths};
+use super::{Mailbox, PlannersEnd, SentSetPoint, ServoEnd, last_path};
 use crate::control::SetPoint;
 use crate::finger::{Fault, GroupGate, Replaced, Validity};
 use crate::model::configuration::FINGERS;
@@ -33,7 +33,7 @@ impl Mailbox {
         planners.begin()?;
         let path = planners.path_kept_by(replaced);
         let mut set_point = planners.sent.set_point;
-        let changed = paths::change_along(path, &mut set_point, change);
+        let changed = last_path::change_along(path, &mut set_point, change);
         Ok(changed.map(|()| PreparedSetPoint { planners, replaced, valid, set_point }))
     }
 }

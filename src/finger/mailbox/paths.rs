@@ -1,36 +1,12 @@
 //! Paths on their way to the servo.
 
+use super::last_path::LastPath;
 use super::{Mailbox, PlannersEnd, ServoEnd};
 use crate::control::SetPoint;
 use crate::control::motion::{PathExtent, PathTable};
 use crate::finger::path_buffer::PathBuffer;
 use crate::finger::sent::SentPath;
 use crate::finger::{Fault, Replaced, Validity};
-
-/// The path that was sent last, as far as later changes of the set point depend on it.
-#[derive(Default)]
-pub(super) struct LastPath {
-    /// Number of the path; 0 if there was none.
-    number: u32,
-    /// Number of the set point to which the path leads.
-    set_point: u32,
-    extent: PathExtent,
-}
-
-/// Makes a change of a set point that leaves the stiffness as it is. If `path` changes the stiffness, the set point has
-/// the stiffest spring of the path during the change. A check in `change` thus holds for the whole path, because the
-/// range of the damping narrows as the stiffness grows.
-pub(super) fn change_along<E>(
-    path: Option<PathExtent>,
-    set_point: &mut SetPoint,
-    change: impl FnOnce(&mut SetPoint) -> Result<(), E>,
-) -> Result<(), E> {
-    let Some(PathExtent { stiffest: Some(stiffest), .. }) = path else { return change(set_point) };
-    let end = std::mem::replace(&mut set_point.stiffness, stiffest);
-    let changed = change(set_point);
-    set_point.stiffness = end;
-    changed
-}
 
 impl Mailbox {
     /// Sends a path that begins in period `origin`. `change` gets a copy of the set point that was sent last, moves it

@@ -87,8 +87,7 @@ mod tests {
     #[test]
     fn another_time_constant_does_not_move_a_reference_on_its_way() {
         let (first, slew) = (Reference::new(0.008, RATE), Slew::new(5.0, RATE));
-        for (time, cycles) in [0.001, 0.004, 0.02, 0.06].into_iter().flat_map(|time| [20, 80, 210].map(|at| (time, at)))
-        {
+        for (time, cycles) in [0.001, 0.004, 0.02].into_iter().flat_map(|time| [20, 80, 210].map(|at| (time, at))) {
             let second = Reference::new(time, RATE);
             let (mut anchor, mut along) = (Vector3::zeros(), None);
             let mut state = first.start(&anchor);
