@@ -154,7 +154,8 @@ fn is_refused_damping(result: &Result<(), HandError>) -> bool {
 #[test]
 fn damping_is_checked_against_the_stiffest_kx_of_a_path() {
     let hand = open(Configuration::default());
-    taken_in(&hand, 1);
+    // A path over 40 s must begin at rest. The reference comes to rest after the finger has become a spring.
+    until("the reference rests", || hand.report(1).expect("report").losses.cycles > 1500);
     // A ratio of 1.5 is admitted with 1 N/cm, but not with 5 N/cm.
     send_softening_path(&hand, (5.0, 1.0), 40.0);
     let refused = hand.send_damping(1, 1.5);
@@ -207,7 +208,7 @@ fn an_adjustment_checks_the_whole_path() {
     // Softer tendons reduce the largest damping ratio, to 1.72 at 1 N/cm and to 1 at 5 N/cm.
     taken_in(&hand, 1);
     hand.send_stiffness(1, kx(1.0)).expect("sent");
-    hand.send_damping(1, 1.1).expect("sent");
+    hand.send_damping(1, 1.01).expect("sent");
     until("the finger rests", || hand.report(1).expect("report").arrival.settled);
     send_softening_path(&hand, (5.0, 1.0), 40.0);
     let refused = hand.adjust(1, "tendon.stiffness = [150, 150, 150, 150]");

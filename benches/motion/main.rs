@@ -13,6 +13,7 @@ mod finger_on_a_cable;
 use finger_on_a_cable::{Hooks, ServedFinger, World};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
+use sun2xp::control::motion::PathExtent;
 use sun2xp::control::spatial;
 use sun2xp::finger::{Reference, Stage, Validity};
 use sun2xp::hand::{PathPose, Pose, plan_path};
@@ -69,7 +70,7 @@ impl Bench {
         let origin = (report.springs, report.reference.period, Validity::default());
         let sent = self.served.mailbox.send_path(origin, &plan.table(), |set_point| {
             set_point.joints = plan.end();
-            Ok::<(), ()>(())
+            Ok::<_, ()>(PathExtent::default())
         });
         assert!(matches!(sent, Ok(Ok(Some(_)))));
     }
