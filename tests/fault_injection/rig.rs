@@ -111,7 +111,7 @@ impl Bench {
         // Uses the time limits of a real port.
         configuration.fingers[0].port = "in memory".into();
         // A blow can leave a tendon slack by centimetres, and slack is taken up slowly.
-        configuration.hand.open_timeout_ms = 30_000;
+        configuration.hand.open_timeout_ms = 60_000;
         let world = World::new(truth, Watch::default());
         let served = ServedFinger::new(&world, &configuration);
         let terms = Terms::new(&configuration.hand, &configuration.fingers[0]);
@@ -132,7 +132,7 @@ impl Bench {
     }
 
     fn come_under_tension(&mut self) {
-        for _ in 0..60_000 {
+        for _ in 0..70_000 {
             self.served.servo.cycle();
             match self.report().stage {
                 Stage::Running => break,
