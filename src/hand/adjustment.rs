@@ -4,7 +4,7 @@
 use crate::control::motion::PathExtent;
 use crate::control::{JointSpring, SetPoint};
 use crate::finger::{Adjustable, Replaced};
-use crate::hand::admission::Admission;
+use crate::hand::admission::{Admission, PATH_ROUNDING};
 use crate::hand::configuration_file::{Wrong, deserialize, overlay, to_document};
 use crate::hand::dispatcher::Member;
 use crate::hand::opening::admission;
@@ -37,9 +37,6 @@ const PERMANENT: &[&str] = &[
     "touch",
     "simulation",
 ];
-
-/// Distance by which a path may exceed a joint limit, rad. The checks of a path permit the same distance.
-const ROUNDING: f64 = 1e-4;
 
 impl Hand {
     /// Changes keys of the configuration of finger 1, 2 or 3 while it runs. `keys` are lines of TOML as in the table
@@ -136,8 +133,8 @@ fn leaves_limits(
     for joint in 0..3 {
         let (low, high) = (changed.joint_limits.0[joint], changed.joint_limits.1[joint]);
         let (least, most) = (path.lowest[joint], path.highest[joint]);
-        let above = high < before.1[joint] && most > high + ROUNDING;
-        let below = low > before.0[joint] && least < low - ROUNDING;
+        let above = high < before.1[joint] && most > high + PATH_ROUNDING;
+        let below = low > before.0[joint] && least < low - PATH_ROUNDING;
         if !above && !below {
             continue;
         }

@@ -12,6 +12,9 @@ use crate::model::{Contact, Links};
 use nalgebra::{Matrix3, Matrix3x4, Matrix6, Vector3};
 pub use ranges::Ranges;
 
+/// Distance by which a path may exceed a joint limit, rad. A pose at the limit is accepted despite rounding.
+pub(super) const PATH_ROUNDING: f64 = 1e-4;
+
 /// The limits of one finger, and the geometry of its tip.
 #[derive(Clone, Debug)]
 pub(super) struct Admission {

@@ -7,7 +7,7 @@ use std::io;
 use sun2xp::board::protocol::{Frame, Kind, Reason, Refused, Status, Stop};
 use sun2xp::board::{PortError, Transport};
 use sun2xp::calibration::{Calibration, Task};
-use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Stage};
+use sun2xp::finger::{Adjustable, CalibrationRun, Fault, FaultKind, Order, Stage};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::Part;
 use sun2xp::model::configuration::Configuration;
@@ -29,14 +29,20 @@ fn a_joint_that_is_pushed_beyond_its_limit_is_reported_at_its_stop() {
     assert_eq!((bench.stage(), bench.warning()), (Stage::Running, None), "it went on, and the warning went away");
 }
 
-/// The monitors of a faulted finger do not run, but its warnings become older.
-#[test]
-fn a_warning_ends_a_second_after_its_cause_although_the_finger_is_faulted() {
+/// Returns a finger whose tendon 3 has just been without tension for a moment, and the warning of this.
+fn warned_of_slack() -> (Bench, Fault) {
     let mut bench = Bench::new();
     bench.with_finger(|finger| finger.inject(&Defect::SlackTendon { tendon: 3, grip: 0.0 }));
     bench.cycles(6);
     bench.with_finger(|finger| finger.repair());
     let warning = bench.warns(FaultKind::SlackInMotion);
+    (bench, warning)
+}
+
+/// The monitors of a faulted finger do not run, but its warnings become older.
+#[test]
+fn a_warning_ends_a_second_after_its_cause_although_the_finger_is_faulted() {
+    let (mut bench, warning) = warned_of_slack();
     bench.mailbox.stop();
     bench.faults(FaultKind::FingerStopCall);
     bench.cycles(900);
@@ -61,11 +67,7 @@ fn a_finger_that_reads_an_angle_it_cannot_have_does_not_become_a_spring() {
 
 #[test]
 fn a_tendon_that_is_without_tension_for_a_moment_is_no_fault() {
-    let mut bench = Bench::new();
-    bench.with_finger(|finger| finger.inject(&Defect::SlackTendon { tendon: 3, grip: 0.0 }));
-    bench.cycles(6);
-    bench.with_finger(|finger| finger.repair());
-    let warning = bench.warns(FaultKind::SlackInMotion);
+    let (mut bench, warning) = warned_of_slack();
     assert!(warning.part == Part::Tendon(3) && warning.value < 0.5, "{warning}");
     bench.cycles(3000);
     assert_eq!((bench.stage(), bench.warning()), (Stage::Running, None));

@@ -124,7 +124,7 @@ impl FingerServo {
         self.status = reply.status;
         if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
             let fault = Fault::stopped(reply.status);
-            // Commands that had no replies did not reach the board, so the servo was not too late.
+            // The servo has sent commands in time. If they had reached the board, its watchdog would not have tripped.
             match self.link.explains_watchdog().filter(|_| fault.kind == FaultKind::Watchdog) {
                 Some(lost) => self.fault_silence(lost),
                 None => self.fault(fault),

@@ -1,12 +1,9 @@
 //! Checks a path against the limits of its finger.
 
 use crate::hand::PathError;
-use crate::hand::admission::Admission;
+use crate::hand::admission::{Admission, PATH_ROUNDING};
 use crate::model::path::{Piece, Start};
 use nalgebra::Vector3;
-
-/// Distance by which a path may exceed a joint limit, rad. A pose at the limit is accepted despite rounding.
-const ROUNDING: f64 = 1e-4;
 
 /// The largest excess of a path over the limits of its rates, accelerations and jerk.
 pub struct Excess {
@@ -33,8 +30,8 @@ impl Admission {
             let (least, most) = piece.bounds(0);
             for joint in 0..3 {
                 let (low, high) = (low[joint], high[joint]);
-                let value = if most[joint] > high + ROUNDING { most[joint] } else { least[joint] };
-                if value < low - ROUNDING || value > high + ROUNDING {
+                let value = if most[joint] > high + PATH_ROUNDING { most[joint] } else { least[joint] };
+                if value < low - PATH_ROUNDING || value > high + PATH_ROUNDING {
                     let (finger, pose) = (self.finger, index / per_pose);
                     return Err(PathError::BeyondJointLimit { finger, pose, joint, value, low, high });
                 }
