@@ -2,8 +2,9 @@
 //!
 //! The dither needs large pulls, because it accelerates the rotors. An error of a torque constant, of a rotor's inertia
 //! or of a friction therefore causes a disturbance at the frequency of the dither. The observer finds a disturbance
-//! with a delay of some cycles. Compensated so late, most of the oscillation remains, and because the errors of the
-//! motors differ, it moves the joints. At a known frequency, the delay is a known phase.
+//! with a delay of some cycles. A compensation that is so late leaves most of the oscillation. The oscillation moves
+//! the joints, because the errors of the motors differ. But at a known frequency, the delay is a known phase, so the
+//! disturbance can be predicted.
 
 use super::observer::TendonObserver;
 use nalgebra::{Vector2, Vector4, Vector6};
@@ -21,7 +22,7 @@ const LEAST_RATE: f64 = 750.0;
 
 /// Change of the phasors below which they count as steady.
 const ACCURACY: f64 = 1e-12;
-/// Largest number of cycles in which the error of an observer becomes a steady oscillation.
+/// Largest number of cycles that are computed until the error of an observer is a steady oscillation.
 const MOST_CYCLES: usize = 5000;
 
 /// Largest size of the lead. An observer whose encoder or gauge is much too coarse hardly follows the oscillation. Its
@@ -117,7 +118,7 @@ fn lead(observer: &TendonObserver, turn: f64) -> Vector2<f64> {
     let estimate = Vector2::new(1.0 - real, -imaginary);
     let quotient = Vector2::new(cos * estimate.x + sin * estimate.y, sin * estimate.x - cos * estimate.y);
     let lead = quotient / estimate.norm_squared() - Vector2::x();
-    // A lead that is not a number is not smaller.
+    // The comparison is false for NaN, so a lead that is NaN becomes zero.
     if lead.norm() < LARGEST_LEAD { lead } else { Vector2::zeros() }
 }
 
@@ -126,7 +127,9 @@ mod tests {
     use super::*;
     use crate::control::state_feedback::observer::{ElasticTendon, ObserverDesign};
 
+    /// Hz.
     const RATE: f64 = 1000.0;
+    /// rad/s.
     const FREQUENCY: f64 = 276.0;
     const TENDON: ElasticTendon = ElasticTendon { mass: 2.66, viscous: 8.9, stiffness: 3e4, home: 5.0 };
 
@@ -142,8 +145,8 @@ mod tests {
     }
 
     /// Simulates a motor whose tendon is fixed, with a constant disturbance and one that oscillates by 1 N. Returns the
-    /// largest errors of the estimate and of the prediction in the last 0.1 s, each compared with the mean of the
-    /// disturbance in the next period, N. The simulation integrates in small steps, independent of the observer's
+    /// largest errors of the estimate and of the prediction in the last 0.1 s, N, each compared with the disturbance in
+    /// the middle of the next period. The simulation integrates in small steps, and does not use the observer's
     /// matrices.
     fn errors(constant: f64) -> (f64, f64) {
         let observer = observer();

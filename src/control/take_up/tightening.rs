@@ -35,7 +35,8 @@ const SMOOTHING: f64 = 0.003;
 /// Time in which the tensions rise to the pretension, s.
 const RISING: f64 = 0.2;
 
-/// The spring that holds the joints needs no limit, because the tension bounds limit it.
+/// Limit of the torque of the spring that holds the joints, N cm. The bounds of the tensions limit this torque, so it
+/// needs no limit of its own.
 const UNLIMITED: f64 = f64::INFINITY;
 
 /// The constant part of the tightening.
@@ -67,6 +68,7 @@ pub(crate) struct Winding {
     seconds: f64,
     /// The position at which every motor is held, m of tendon.
     target: Vector4<f64>,
+    /// Whether each motor has detected tension in its tendon.
     felt: [bool; 4],
     /// The length that every motor has wound in, m.
     wound: Vector4<f64>,
@@ -94,7 +96,7 @@ pub(crate) enum Tightened {
 }
 
 impl Tightening {
-    /// Constructs the tightening. `minimum` is t_min, N.
+    /// Constructs the tightening. `minimum` is t_min, N, and `rate` is in Hz.
     pub fn new(links: Links, tendons: &Tendons, minimum: f64, rate: f64) -> Self {
         Self { period: 1.0 / rate, hold: JointHold::new(links), minimum, pretension: tendons.pretension(minimum) }
     }
@@ -167,6 +169,7 @@ impl Tightening {
 
     fn rise(&self, held: &Vector3<f64>, seconds: f64, joints: &Joints) -> Tightened {
         let torques = self.hold.torques(&(held - joints.angles), &joints.rates, UNLIMITED);
+        // The rise begins at about the tensions that the motors have detected.
         let missing = (1.0 - seconds / RISING).max(0.0) * (1.0 - DETECTED);
         Tightened::Hold { torques, below: self.pretension * missing, begins: seconds == 0.0 }
     }

@@ -23,7 +23,8 @@ pub(crate) struct Gains {
 const SET_POINT_SPEED: f64 = 2.0;
 
 /// Speed of the set point with state feedback at 1000 Hz and above, rad/s. Below 1000 Hz the speed is proportional to
-/// the rate. The finger follows its reference, which may therefore move as fast as the tensions permit.
+/// the rate. With state feedback the finger follows the moving set point closely, so the set point may move as fast as
+/// the tensions permit.
 const STATE_FEEDBACK_SET_POINT_SPEED: f64 = 5.0;
 
 /// Bandwidth of the adaptation of Figure 11, 1/s.
