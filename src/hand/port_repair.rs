@@ -32,7 +32,7 @@ pub(super) struct PortRepair {
     given: Option<usize>,
 }
 
-/// A board's properties at open.
+/// A board's properties at open, and whether it has restarted since then.
 pub(super) struct KnownBoard {
     /// Number of the finger, 1 to 3.
     pub finger: FingerNumber,

@@ -13,9 +13,10 @@ const UNREACHABLE: f64 = 1e9;
 
 impl Admission {
     /// Checks that the joint stiffness K_theta, N cm/rad, is symmetric, positive semi-definite and within the bound,
-    /// and returns it. The argument is `rows[row][column]`. The bound of an eigenvalue is the bound of Kx times the
-    /// square of the last link's length; [`JointSpring::equivalent`](crate::control::JointSpring::equivalent) gives the
-    /// reason.
+    /// and returns it. If `out_of_range` is `Clamp`, a K_theta beyond the bound is not refused: the nearest one within
+    /// the bound is returned. The argument is `rows[row][column]`. The bound of an eigenvalue is the bound of Kx times
+    /// the square of the last link's length; [`JointSpring::equivalent`](crate::control::JointSpring::equivalent) gives
+    /// the reason.
     pub fn k_theta(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
         let finger = self.finger;
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);
@@ -40,8 +41,8 @@ impl Admission {
     }
 
     /// Checks that the tendons can make a joint torque, N cm, within the bounds of their tensions, and returns it. The
-    /// moment arms do not depend on the pose, so the torque is possible in every pose. A clamped torque keeps its
-    /// direction.
+    /// moment arms do not depend on the pose, so the torque is possible in every pose. If `out_of_range` is `Clamp`, a
+    /// larger torque is not refused: it is reduced, and keeps its direction.
     pub fn torque(&self, torque: [f64; 3]) -> Result<Vector3<f64>, SetPointError> {
         self.finite("Torque", &torque)?;
         let finger = self.finger;

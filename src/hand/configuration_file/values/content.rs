@@ -1,9 +1,10 @@
-//! The kinds of TOML values. A value is in a table, in an inline table or in an array.
+//! The kinds of TOML values. toml_edit has one type for what is in a table (`Item`), and another one for what is in an
+//! array (`Value`). This file converts both to one type.
 
 use crate::model::Shown;
 use toml_edit::{Array, Item, TableLike, Value};
 
-/// A value by its kind.
+/// A value, with its kind.
 pub(super) enum Content<'a> {
     Text(&'a str),
     Integer(i64),
