@@ -13,6 +13,7 @@ pub struct ServedPort<T> {
     pub(super) link: Option<Link<T>>,
     /// Whether the port has failed.
     pub(super) failed: bool,
+    /// None if the port cannot be repaired while the hand is open.
     pub(super) handover: Option<LinkServoEnd<T>>,
     pub(super) fingers: Pages<[FingerServo]>,
     /// Number of TactileRequests for which the line has time in every period.
@@ -81,8 +82,8 @@ impl<T: Transport> ServedPort<T> {
             }
         } else if let Some(RepairedLink { link, boards }) = handover.repaired.pop() {
             self.failed = false;
-            // From now on, the counters of this link are added to the totals. They are subtracted here, so that the
-            // totals do not jump, whether this is the same link or a new one.
+            // From now on, `counters` adds the counters of this link to `earlier_counters`. What this link has counted
+            // until now is subtracted here, so that the sum does not jump, whether this is the same link or a new one.
             self.earlier_counters = self.earlier_counters.saturating_sub(&link.counters());
             self.link = Some(link);
             // The handshakes of the repair are newer than a relayed one.
@@ -98,7 +99,8 @@ impl<T: Transport> ServedPort<T> {
         self.link.as_ref().map_or(self.earlier_counters, |link| self.earlier_counters.saturating_add(&link.counters()))
     }
 
-    /// Returns a relayed request for a finger at rest. A request for another finger came too late, and is discarded.
+    /// Returns the next relayed request, if it is for a finger at rest. A request for a finger that is no longer at
+    /// rest came too late, and is discarded.
     fn relayed_request(&mut self) -> Option<RelayedRequest> {
         let request = self.handover.as_mut()?.relay.requests.pop()?;
         self.fingers.iter().any(|finger| finger.address() == request.address && finger.at_rest()).then_some(request)
@@ -151,7 +153,7 @@ impl<T: Transport> ServedPort<T> {
     }
 
     /// Receives Replies until `deadline`. After the last Reply, receives answers to TactileRequests until
-    /// `touch_deadline`.
+    /// `touch_deadline`. `sent` is the end of the write. All times are in ns.
     pub(super) fn receive(&mut self, deadline: u64, touch_deadline: u64, sent: u64, clock: &impl Clock) {
         // One allowance for all replies of the period: a board that sends without end must not keep the thread here.
         let mut allowance = Allowance::for_replies(deadline);

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-/// The time for which the set point or path that was sent last to a finger is valid. Both times count from `since`. A
-/// path that is sent with this validity prolongs both times by the time until the end of the path. If a time is none,
-/// the configured time applies.
+/// How long the set point or path that was sent last to a finger is valid. `hold_after` and `end_after` count from
+/// `since`. A path that is sent with this validity prolongs both times by the time until the end of the path. If one of
+/// these times is none, the configured time applies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Validity {
     /// After this time the finger reacts as `finger.motion.on_expiry` says. The configured time is
