@@ -31,8 +31,11 @@ use tendon_stiffness::TendonStiffness;
 
 #[derive(Clone, Debug)]
 pub(super) struct Identification {
+    /// Largest torque that moves a joint to its stop, N cm.
     torque: f64,
+    /// Speed of a joint on the way to its stop, rad/s.
     speed: f64,
+    /// Configured angles of the lower and the upper stops, rad.
     stops: (Vector3<f64>, Vector3<f64>),
     /// Whether the angles of the stops are known exactly.
     stops_known: bool,
@@ -40,10 +43,12 @@ pub(super) struct Identification {
     pose: Vector3<f64>,
     /// `encoder.zero`, counts.
     zero: [i32; 4],
+    /// The configured ghost row of eq. 15.
     ghost: Option<RowVector4<f64>>,
     reference: GaugeReference,
     /// Joint angles at the beginning, rad.
     start: Vector3<f64>,
+    /// Angles at which the lower stops were found, rad.
     stop: Vector3<f64>,
     /// Tensions and motor torques of the free finger. They are evaluated again when the moment arms are known.
     joint_friction: JointFriction,

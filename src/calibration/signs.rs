@@ -26,28 +26,32 @@ use wiring::Wiring;
 const HOLD: f64 = 150.0;
 /// Damping of a held motor, N s/cm.
 const DAMPING: f64 = 2.0;
-/// Largest pull of a held motor, in t_min.
+/// Largest pull of a held motor, in multiples of t_min.
 const STRONGEST_HOLD: f64 = 1.2;
-/// Corner frequency of the speed filter, 1/s.
+/// Corner frequency of the speed filter, rad/s.
 const SPEED_CORNER: f64 = 1000.0;
 
 #[derive(Clone, Debug)]
 pub(super) struct SignSearch {
     /// cm at the tendon per count, without sign.
     cm_per_count: Vector4<f64>,
+    /// Scales of the gauges, N per count, without sign.
     newton_per_count: Vector4<f64>,
     /// Counts at the beginning, from which every distance is measured.
     start: Option<[i32; 4]>,
+    /// Distances from the beginning in the last cycle, cm.
     last: Vector4<f64>,
+    /// Low-pass filtered speeds, cm/s.
     speed: Vector4<f64>,
     /// Position at which every motor is held, cm in the direction of rising count.
     target: Vector4<f64>,
-    /// +1 if a positive command raises the count.
+    /// +1 if a positive command raises the count, -1 if it lowers the count, 0 while this is unknown.
     agrees: [f64; 4],
-    /// +1 if a rising count tightens the tendon.
+    /// +1 if a rising count tightens the tendon, -1 if a falling count does, 0 while this is unknown.
     tightens: [f64; 4],
     /// Sign of each gauge, or 0 until it has responded.
     gauges: [f64; 4],
+    /// The motor that is pushed or swept, 0 to 3.
     motor: usize,
     phase: Phase,
 }
@@ -61,7 +65,9 @@ enum Phase {
     },
     Push {
         seconds: f64,
+        /// N at the tendon.
         push: f64,
+        /// Distances from the beginning before the push, cm.
         from: Vector4<f64>,
     },
     Pause {

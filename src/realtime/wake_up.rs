@@ -11,11 +11,11 @@ use std::thread::JoinHandle;
 /// The result of a measurement.
 #[derive(Debug)]
 pub struct WakeUp {
-    /// From the scheduled beginning of a period to the thread's first instruction.
+    /// Time from the scheduled beginning of a period to the thread's first instruction, us.
     pub late: Distribution,
     /// What the system refused to the thread.
     pub refusals: RealtimeRefusals,
-    /// Timer slack: how late the kernel may wake an ordinary thread, ns.
+    /// Timer slack: how late the kernel may wake an ordinary thread, ns; 0 if the system does not tell it.
     pub timer_slack: u64,
 }
 
@@ -34,7 +34,8 @@ pub fn measure_wake_up(priority: Priority, mut schedule: Schedule, cycles: u64) 
             histograms.record(&timing);
             schedule.advance(MonotonicClock.now());
         }
-        // SAFETY: PR_GET_TIMERSLACK takes no argument, concerns the calling thread, and does not fail.
+        // SAFETY: PR_GET_TIMERSLACK takes no argument, and concerns only the calling thread. A sandbox may refuse the
+        // call, which then returns -1.
         let timer_slack = u64::try_from(unsafe { libc::prctl(libc::PR_GET_TIMERSLACK) }).unwrap_or(0);
         WakeUp { late: histograms.distribution(CycleStage::WakeUp), refusals, timer_slack }
     })
