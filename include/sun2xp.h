@@ -1383,8 +1383,8 @@ int sun2xp_limits(sun2xp_hand *hand, int finger, struct sun2xp_limits *limits);
  */
 struct sun2xp_touch {
     size_t size;                            /* sizeof (struct sun2xp_touch), set before the call. */
-    int valid;                              /* 1: the board has reported this element since its last reset, and its
-                                               newest report has a reading. */
+    int valid;                              /* 1: since sun2xp_open and the last reset of the board, the board has
+                                               reported this element, and its newest report has a reading. */
     int pressed;                            /* 1 if something presses the element, otherwise 0. */
     unsigned int count;                     /* The raw count of the element. */
     double force;                           /* Force on the element, N. */
@@ -1783,7 +1783,8 @@ int sun2xp_reset_timing(sun2xp_hand *hand, int finger);
 struct sun2xp_fault {
     size_t size;                            /* sizeof (struct sun2xp_fault), set before the call. */
     int number;                             /* Fault that has stopped the finger: SUN2XP_FAULT_..., or 0 if none has. */
-    int part;                               /* Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0. */
+    int part;                               /* Number of the joint, 0 to 2, or of the tendon, motor, gauge or
+                                               encoder, 1 to 4; 0 for the whole finger. */
     int warning;                            /* Newest warning of the last second: SUN2XP_FAULT_..., or 0 if there was
                                                none. If the system has refused SCHED_FIFO to the hand,
                                                SUN2XP_FAULT_REALTIME_REFUSED takes the place of 0. */
@@ -2030,9 +2031,12 @@ struct sun2xp_event {
     size_t size;                            /* sizeof (struct sun2xp_event), set before the call. */
     int finger;                             /* Finger, 1 to 3. */
     int kind;                               /* Kind of the event: SUN2XP_EVENT_... */
-    int part;                               /* Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0. */
+    int part;                               /* Number of the joint, 0 to 2, or of the tendon, motor, gauge or
+                                               encoder, 1 to 4; 0 for the whole finger. */
     unsigned long cycle;                    /* Cycle of the event, as in sun2xp_status and sun2xp_record. */
-    unsigned long lost;                     /* Events lost since sun2xp_open because they were not taken in time. */
+    unsigned long lost;                     /* Events lost since sun2xp_open, or in a callback since sun2xp_on_event:
+                                               they were not taken in time, or were lost on the way from another
+                                               machine. */
     double time;                            /* Beginning of the event's cycle, s of CLOCK_MONOTONIC. */
     double values[4];                       /* Values, whose meaning depends on the kind (docs/events.md). Unused
                                                ones are 0. */

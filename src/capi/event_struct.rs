@@ -18,11 +18,12 @@ pub struct sun2xp_event {
     pub finger: c_int,
     /// Kind of the event: SUN2XP_EVENT_...
     pub kind: c_int,
-    /// Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0.
+    /// Number of the joint, 0 to 2, or of the tendon, motor, gauge or encoder, 1 to 4; 0 for the whole finger.
     pub part: c_int,
     /// Cycle of the event, as in sun2xp_status and sun2xp_record.
     pub cycle: c_ulong,
-    /// Events lost since sun2xp_open because they were not taken in time.
+    /// Events lost since sun2xp_open, or in a callback since sun2xp_on_event: they were not taken in time, or were lost
+    /// on the way from another machine.
     pub lost: c_ulong,
     /// Beginning of the event's cycle, s of CLOCK_MONOTONIC.
     pub time: f64,

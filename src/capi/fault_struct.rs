@@ -16,7 +16,7 @@ pub struct sun2xp_fault {
     pub size: usize,
     /// Fault that has stopped the finger: SUN2XP_FAULT_..., or 0 if none has.
     pub number: c_int,
-    /// Joint, 0 to 2, or tendon, motor, gauge, encoder, 1 to 4; else 0.
+    /// Number of the joint, 0 to 2, or of the tendon, motor, gauge or encoder, 1 to 4; 0 for the whole finger.
     pub part: c_int,
     /// Newest warning of the last second: SUN2XP_FAULT_..., or 0 if there was none. If the system has refused
     /// SCHED_FIFO to the hand, SUN2XP_FAULT_REALTIME_REFUSED takes the place of 0.

@@ -83,9 +83,9 @@ impl Errors {
     }
 }
 
-/// Stores a refusal of the calling thread. Returns false if the refusals of the thread are in use. This is so if a
-/// signal handler has interrupted this function and makes a call that it may not make, or if a log callback makes the
-/// call. errno still reports such a refusal.
+/// Stores a refusal of the calling thread. Returns false if another call of this thread is using the refusals: a signal
+/// handler has interrupted that call and makes a call that it may not make, or a log callback makes a call. errno still
+/// reports such a refusal.
 pub(super) fn store(
     handle: Handle,
     number: c_int,

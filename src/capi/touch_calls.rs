@@ -22,7 +22,8 @@ use std::ffi::{c_double, c_int, c_uint, c_ulong};
 pub struct sun2xp_touch {
     /// sizeof (struct sun2xp_touch), set before the call.
     pub size: usize,
-    /// 1: the board has reported this element since its last reset, and its newest report has a reading.
+    /// 1: since sun2xp_open and the last reset of the board, the board has reported this element, and its newest report
+    /// has a reading.
     pub valid: c_int,
     /// 1 if something presses the element, otherwise 0.
     pub pressed: c_int,
