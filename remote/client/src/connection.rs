@@ -11,7 +11,7 @@ use zenoh::{Config, Session, Wait};
 const CONNECT_MS: u64 = 3000;
 
 /// The lease of a connection, ms. Zenoh considers a connection dead after this time without a message. The lease only
-/// decides when the connection is made again. The age of Targets protects the hand.
+/// decides when the connection is made again. It does not protect the hand: the limit on the age of Targets does.
 const LEASE_MS: u64 = 4000;
 
 /// The largest message that is accepted, bytes. A State with all its records has 48 032.
@@ -61,7 +61,8 @@ fn short(error: &zenoh::Error) -> String {
     text.split(" at /").next().unwrap_or_default().trim_end_matches(['.', '!']).into()
 }
 
-/// Finds out why there is no connection. Zenoh does not say it.
+/// Returns why there is no connection, and the remedy. Zenoh does not give the reason, so this function tries to
+/// connect without Zenoh.
 fn unreachable(configuration: &RemoteConfiguration, error: &str) -> String {
     let endpoint = &configuration.endpoint;
     let place = endpoint.split_once('/').map_or("", |(_, place)| place);
@@ -87,7 +88,10 @@ fn unreachable(configuration: &RemoteConfiguration, error: &str) -> String {
 }
 
 /// Sends a get, and collects replies until all of them have arrived, until there are `most` replies, or until `limit`
-/// is over. An empty list means that nobody was reached.
+/// is over. The list is empty if nobody was reached, or if the connection was lost before the first reply.
+///
+/// # Errors
+/// Returns the text of Zenoh's error if no reply has arrived within `limit`, or if the first reply is an error.
 pub fn get(
     session: &Session,
     selector: &str,
@@ -110,8 +114,8 @@ pub fn get(
     query.wait().map_err(|error| short(&error))?;
     let mut received = Vec::new();
     while received.len() < most {
-        // The sender is dropped when all replies have come, or when the connection is lost.
-        // Zenoh ends the query after the limit.
+        // The sender is dropped when all replies have come, or when the connection is lost. After the limit, Zenoh
+        // itself ends the query with an error.
         match replies.recv_timeout(limit + Duration::from_secs(1)) {
             Ok(Ok(reply)) => received.push(reply),
             Ok(Err(error)) if received.is_empty() => return Err(error),

@@ -16,6 +16,7 @@ pub struct Exchange {
     pub outbox: Outbox,
     hand: HandName,
     endpoint: String,
+    /// The configured limit of the age of a position, ms.
     stale_ms: u32,
 }
 
@@ -29,7 +30,7 @@ impl Exchange {
         &self.hand
     }
 
-    /// Takes a State that was received.
+    /// Takes a State that was received at the time `now`, ns on the client's clock.
     pub fn take_state(&mut self, state: &State, now: u64) {
         let continued = self.view.take_state(state, now);
         self.outbox.heard(state.time, state.owner, continued);
@@ -46,12 +47,16 @@ impl Exchange {
         self.outbox.refused(answer);
     }
 
-    /// Puts changes into the outbox. The caller has checked them.
+    /// Puts changes into the outbox. The caller has checked them. `stamp` is the time stamp of their Target, if it is
+    /// to be the same for several hands.
     pub fn put(&mut self, changes: [Option<Change>; FINGERS], stamp: Option<u64>) {
         self.outbox.put(changes, stamp);
     }
 
     /// Converts the number of a finger.
+    ///
+    /// # Errors
+    /// Returns an error if the number is not 1, 2 or 3, or if the hand does not have this finger.
     pub fn finger(&self, number: i32) -> Result<Finger, RemoteError> {
         let finger = Finger::new(number).ok_or(RemoteError::NoSuchFinger(number))?;
         let status = self.view.status();

@@ -1,4 +1,4 @@
-//! Reads the keys of the tables from the text of a file, and finds the line of an error.
+//! Reads the tables `[remote]` and `[remote.tls]` from the text of a file, and finds the line of an error.
 
 use crate::error::RemoteError;
 use serde::de::Error;
@@ -46,7 +46,7 @@ fn client_name<'de, D: Deserializer<'de>>(from: D) -> Result<Option<ClientName>,
     name.map(Some).map_err(|error| D::Error::custom(format!("remote.client: {error}")))
 }
 
-/// Where the keys of `[remote]` are.
+/// The places of the keys of `[remote]` in the text. A place is a range of bytes.
 pub struct Places(Document<String>);
 
 impl Places {

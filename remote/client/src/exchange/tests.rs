@@ -8,7 +8,7 @@ use crate::error::RemoteErrorKind;
 use sun2xp_remote_protocol::{Code, Counts, FaultText, FingerStatus, PathPose, Record, Stage, Status};
 
 const MS: u64 = 1_000_000;
-/// The server's clock at the time 0 of the client.
+/// The server's clock at the time 0 of the client, ns.
 const SERVER: u64 = 5_000_000 * MS;
 
 fn status(stage: Stage) -> Status {
@@ -65,7 +65,7 @@ fn answer() -> Answer {
     Answer { code: Code::Done, catch_ms: 100, epoch: 77, time: SERVER, number: 2, text: String::new() }
 }
 
-/// An exchange that owns the hand and has heard it at 10 ms.
+/// An exchange that owns the hand, and that received a State at 10 ms.
 fn owner() -> Exchange {
     let hand = "left".parse().expect("a name");
     let mut exchange = Exchange::new(hand, "tcp/127.0.0.1:7447".into(), 100);
@@ -140,8 +140,8 @@ fn wrong_arguments_are_refused_and_change_nothing() {
     }
     let twice = exchange.admit(&[good(1), good(1)], 10 * MS).map(drop);
     assert!(refused(twice).1.contains("the group has two commands for finger 1"));
-    let target = exchange.outbox.next(10 * MS).expect("it lives");
-    assert!(target.parts.is_empty(), "nothing was put into the mailbox");
+    let target = exchange.outbox.next(10 * MS).expect("a Target");
+    assert!(target.parts.is_empty(), "nothing was put into the outbox");
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn a_finger_that_has_stopped_is_reported_with_its_fault() {
     let (kind, text) = refused(send(&mut exchange, good(1), 11 * MS));
     assert!(text.starts_with("finger 1 is faulted (fault 10): the cable: plug it in. Remove"), "{kind:?}: {text}");
     assert!(exchange.record(1, 11 * MS).is_ok(), "its record can be read");
-    // Its servo has no cycles any more, but the server repeats the newest one.
+    // The servo of the finger has no cycles any more, but the server repeats the record of the newest one.
     let State { records, .. } = state(2, 11 * MS, Stage::Faulted(10));
     exchange.take_state(&State { records, ..state(3, 500 * MS, Stage::Running) }, 500 * MS);
     assert_eq!(exchange.moving(1, 600 * MS).expect_err("faulted").kind(), RemoteErrorKind::Faulted);

@@ -25,8 +25,8 @@ impl RemoteHand {
     }
 
     /// Stops every finger as [`RemoteHand::stop`] does, for an emergency. No Targets are sent until the server has
-    /// confirmed the stop. Without the confirmation, the hand goes to its end state by itself. If the call
-    /// returns an error, repeat it as long as [`RemoteHand::is_owner`] is true.
+    /// confirmed the stop. Without the confirmation, the hand goes to its end state by itself, because no Targets
+    /// arrive. If the call returns an error, repeat it as long as [`RemoteHand::is_owner`] is true.
     ///
     /// # Errors
     /// Returns an error if the server does not give this client a permission, or if the hand cannot be reached.
