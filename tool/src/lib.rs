@@ -77,7 +77,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let parsed = command().try_get_matches_from(arguments).and_then(|matches| Arguments::from_arg_matches(&matches));
     let arguments = match parsed {
         Ok(arguments) => arguments,
-        // Help and version are errors too, with the status 0.
+        // clap returns help and version as errors too. Their exit status is 0.
         Err(error) => {
             // If the help cannot be printed, its reader has closed the pipe.
             let _ = error.print();

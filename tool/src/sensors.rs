@@ -51,10 +51,11 @@ struct Reading {
 }
 
 impl Reading {
-    /// Returns the newest counts of the open hand; none before the first reply of the board.
+    /// Returns the newest encoder counts and the averaged gauge counts, without turns and tensions; none before the
+    /// first reply of the board.
     fn take(hand: &Hand, finger: i32) -> Result<Option<Self>, Failure> {
         let kept = hand.record(finger, None)?;
-        let first = kept.newest.saturating_sub(AVERAGED).max(kept.oldest);
+        let first = kept.newest.saturating_sub(AVERAGED - 1).max(kept.oldest);
         // The black box may overwrite the oldest cycles meanwhile.
         let feedback = (first..=kept.newest).filter_map(|cycle| hand.record(finger, Some(cycle)).ok()?.record.feedback);
         let feedback: Vec<_> = feedback.collect();

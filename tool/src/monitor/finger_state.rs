@@ -16,7 +16,7 @@ const RATE_TIME: u64 = 1_000_000_000;
 /// Interval of the history, ns.
 const HISTORY_INTERVAL: u64 = 100_000_000;
 
-/// Length of the history: 20 s.
+/// Number of intervals in the history, which is 20 s long.
 const HISTORY: usize = 200;
 
 /// A finger.
@@ -71,7 +71,7 @@ pub struct FingerState {
     to_palm: UnitQuaternion<f64>,
     #[serde(skip)]
     wake_ups: WakeUps,
-    /// Number and beginning of cycles of the last second, ns.
+    /// The cycles of the last second: the number of each cycle, and its beginning in ns.
     #[serde(skip)]
     marks: VecDeque<(u64, u64)>,
 }

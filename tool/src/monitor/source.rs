@@ -20,7 +20,7 @@ const SEARCH_INTERVAL: Duration = Duration::from_millis(300);
 pub enum Wanted {
     /// The hand with this name, or the only hand.
     Named(Option<String>),
-    /// The hand of a process.
+    /// The hand that the process with this number has opened.
     Process(u32),
 }
 
@@ -36,7 +36,7 @@ pub enum News {
     Ended(String),
 }
 
-/// The thread. Dropping it ends the thread.
+/// The thread that reads. Dropping this value ends the thread.
 pub struct Source {
     /// The news in their order.
     pub news: Receiver<News>,

@@ -1,6 +1,6 @@
 //! Axes: ranges, and round numbers along them.
 
-/// The scale of an axis, from values to pixels.
+/// The scale of an axis, from values to places. The place 0 is the low end, and 1 is the high end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
     pub low: f64,
@@ -39,7 +39,7 @@ impl Axis {
         Self::linear(middle - 1.08 * half, middle + 1.08 * half)
     }
 
-    /// The place of a value: 0 at the low end, 1 at the high end.
+    /// The place of a value.
     pub fn place(&self, value: f64) -> f64 {
         match self.logarithmic {
             true => (value / self.low).ln() / (self.high / self.low).ln(),
@@ -47,7 +47,8 @@ impl Axis {
         }
     }
 
-    /// Round numbers, at most about `most` of them, as values and texts.
+    /// Round numbers, as values and texts. A linear axis has at most `most` + 1 of them, for `most` from 2 up. A
+    /// logarithmic axis has at most `MOST_POWERS`, whatever `most` is.
     pub fn ticks(&self, most: usize) -> Vec<(f64, String)> {
         if self.logarithmic {
             let exponents = self.low.log10().round() as i32..=self.high.log10().round() as i32;

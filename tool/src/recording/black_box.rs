@@ -27,6 +27,7 @@ pub fn read(path: &Path) -> Result<(Description, Vec<Entry>), Failure> {
     if let Some(first) = origin.controllers.first() {
         configuration.fingers[number.index()] = first.finger.clone();
     }
+    // A black box has only times of the monotonic clock. Its last cycle gets the time at which the file was written.
     let written = path.metadata()?.modified()?.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64);
     let last = cycles.last().map_or(0, |record| record.began);
     let description = Description {
@@ -58,7 +59,7 @@ pub fn read(path: &Path) -> Result<(Description, Vec<Entry>), Failure> {
     Ok((description, entries))
 }
 
-/// Checks the configurations. An altered file may have any values. The programs that draw and convert a recording
+/// Checks the configurations. An altered file may have any values. The commands that draw and convert a recording
 /// expect values that a hand may have.
 fn check(origin: &Origin) -> Result<(), String> {
     let refused = |key: &str, reason: &str| format!("{key} {reason}");

@@ -12,14 +12,16 @@ use std::time::{Duration, Instant};
 use sun2xp::model::FingerNumber;
 use sun2xp::telemetry::{Description, Message, Status, View};
 
-/// Longest time for which messages are collected until they are written as a chunk. Together with the batches of
-/// telemetry this is less than a second.
+/// Longest time for which messages are collected before they are written as a chunk. Together with the batches of
+/// telemetry this is less than a second, so a crash of the recorder loses less than a second.
 const CHUNK_TIME: Duration = Duration::from_millis(500);
 
-/// Largest size of a chunk before compression, bytes. Three fingers at 5000 Hz write 8 MB in [`CHUNK_TIME`].
+/// Largest size of a chunk before compression, bytes. A chunk that reaches it is written earlier: three fingers at 5000
+/// Hz write 8 MB in [`CHUNK_TIME`].
 const CHUNK_BYTES: u64 = 4 << 20;
 
-/// Level of the compression. It halves the size, and takes 5 % of a core for three fingers at 1000 Hz.
+/// Level of the compression. This level halves the size of a recording, and takes 5 % of a core for three fingers at
+/// 1000 Hz.
 const COMPRESSION: u32 = 1;
 
 /// Writes messages into an MCAP file.
@@ -59,8 +61,8 @@ struct Lost {
 }
 
 impl<W: Write + Seek> RecordingWriter<W> {
-    /// Begins a recording of the hand with this description. Messages before the first cycle get the time `begin`, ns
-    /// of the monotonic clock.
+    /// Begins a recording of the hand with this description. Events and statuses have times of their own. Other
+    /// messages before the first cycle get the time `begin`, ns of the monotonic clock.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.

@@ -14,9 +14,9 @@ use sun2xp::model::configuration::{Configuration, RATES};
 pub enum Source {
     /// A file.
     File,
-    /// The maximum of every time that was measured.
+    /// A measurement: the maximum of each time of [`Costs`].
     MeasuredMaximum,
-    /// The 99.9 % value of every time that was measured.
+    /// A measurement: the 99.9 % value of each time of [`Costs`].
     Measured999,
 }
 
@@ -31,7 +31,9 @@ pub struct Report {
     /// Whether the costs were measured on a virtual machine.
     virtual_machine: bool,
     costs: Costs,
+    /// The hand as it is configured.
     configured: Schedule,
+    /// The hand with one more sensor on each finger.
     with_sensor: Schedule,
 }
 
@@ -48,6 +50,7 @@ struct Schedule {
 struct Thread {
     #[serde(flatten)]
     scheduled: Scheduled,
+    /// Number of tactile events that the thread fetches in every period.
     tactile_events: usize,
 }
 
@@ -62,7 +65,7 @@ impl Schedule {
         Self { sensor, threads: threads.map(with_touch).collect(), fastest: Fastest::of(hand, costs, &sensor) }
     }
 
-    /// The highest rate and its reason, as a sentence that begins with `condition`.
+    /// The highest rate, and what prevents a higher one, as a sentence that begins with `condition`.
     fn summary(&self, condition: &str) -> String {
         let Some(Limit { missed: limit, thread }) = self.fastest.limit else {
             return format!("{condition}every deadline is met up to the highest rate that can be configured.");

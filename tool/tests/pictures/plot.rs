@@ -40,7 +40,7 @@ fn numbers(text: &str) -> Vec<f64> {
     text.split_whitespace().map(|word| word.parse().expect("a number")).collect()
 }
 
-/// The points of a curve of an SVG, in the values of its axes.
+/// The points of a curve of an SVG, converted from pixels to the units of the axes.
 fn curve(svg: &str, name: &str) -> Vec<[f64; 2]> {
     let (before, _) = svg.split_once(&format!("data-name=\"{name}\"")).unwrap_or_else(|| panic!("no curve {name}"));
     let panel = before.rsplit_once("class=\"panel\"").expect("a panel").1;

@@ -20,7 +20,7 @@ pub enum Frame {
 }
 
 impl Socket {
-    /// Asks for a WebSocket. `headers` come in addition. Returns the status if the server refuses.
+    /// Asks for a WebSocket, with the usual headers and `headers`. Returns the status if the server refuses.
     pub fn open(address: SocketAddr, path: &str, headers: &[(&str, &str)]) -> Result<Self, u16> {
         let mut stream = connect(address);
         let host = address.to_string();
