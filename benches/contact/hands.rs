@@ -20,6 +20,7 @@ const NONE: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
 const HOUR: f64 = 3600.0;
 const TEN_MINUTES: f64 = 600.0;
 
+/// The rows of the tables of docs/contact.md.
 pub const HANDS: [Hand; 15] = [
     Hand { name: "nominal", seconds: HOUR, gravity: NONE, make: |_, _| {} },
     Hand { name: "nominal, gravity", seconds: HOUR, gravity: ACROSS, make: |_, _| {} },
@@ -121,6 +122,7 @@ fn calibrated(finger: &mut ConfiguredFinger, own: &mut ConfiguredFinger, hand: N
     own.tendon.stiffness = simulation.tendon_stiffness;
     own.friction.pulley = [simulation.pulley_friction; 4];
     own.friction.conduit = [simulation.shaft_friction + simulation.conduit_friction; 4];
+    // The simulation has these values in N m, and the configuration of the controller has them in N cm.
     own.friction.motor_coulomb = simulation.motor_coulomb_friction.map(|friction| friction * 100.0);
     own.friction.joint_coulomb = simulation.joint_coulomb_friction.map(|friction| friction * 100.0);
 }

@@ -4,15 +4,18 @@ use nalgebra::Vector3;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
-/// A sequence of straight lines in joint space with rests between them.
+/// A sequence of straight lines in joint space, with rests between some of them. Angles are in rad.
 pub struct Motion {
     random: Pcg64,
     low: Vector3<f64>,
     high: Vector3<f64>,
     pub joints: Vector3<f64>,
     target: Vector3<f64>,
+    /// Rate of the fastest joint on the present line, rad/s.
     rate: f64,
+    /// Whether there are rests between lines.
     rests: bool,
+    /// Cycles that are left of the present rest.
     rest: u32,
 }
 
@@ -27,11 +30,13 @@ impl Motion {
         Self { rests: false, rest: 0, ..self }
     }
 
+    /// Returns a random number between 0 and 1.
     pub fn uniform(&mut self) -> f64 {
         self.random.next_u32() as f64 / f64::from(u32::MAX)
     }
 
-    /// Returns the joint angles of the next cycle, rad. `speed` is the fastest joint rate of new lines, rad/s.
+    /// Returns the joint angles of the next cycle, rad. `speed` is the fastest joint rate of new lines, rad/s, and
+    /// `period` is the length of a cycle, s.
     pub fn set_point(&mut self, speed: f64, period: f64) -> Vector3<f64> {
         if self.rest > 0 {
             self.rest -= 1;

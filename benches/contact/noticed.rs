@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use std::error::Error;
 use sun2xp::model::configuration::ConfiguredContact;
 
-/// The forces, N.
+/// The forces of the pushes, N.
 pub const FORCES: [f64; 10] = [0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0];
 
 /// Poses at rest, degrees.
@@ -49,13 +49,18 @@ impl Pushes {
     }
 }
 
+/// The result of one push.
 struct Push {
+    /// Time from its beginning until the contact was reported, s; none if it was not reported.
     noticed: Option<f64>,
+    /// Time from its end until the contact was lost, s.
     lost: f64,
+    /// Error of the estimated force at its end, N.
     error: f64,
 }
 
-/// Pushes a resting finger with every force, in every pose, from six directions.
+/// Pushes a resting finger with every force, in every pose, from six directions, once for each of `seeds` seeds of the
+/// simulation.
 pub fn at_rest(hand: &Hand, contact: &ConfiguredContact, seeds: u64) -> Result<Vec<Pushes>, Box<dyn Error>> {
     let cases: Vec<_> = (0..seeds).flat_map(|seed| POSES.map(|pose| (seed, pose))).collect();
     let runs = each(&cases, |_, &(seed, pose)| {
@@ -77,7 +82,7 @@ pub fn at_rest(hand: &Hand, contact: &ConfiguredContact, seeds: u64) -> Result<V
     collected(runs)
 }
 
-/// Pushes a moving finger with every force in random directions.
+/// Pushes a moving finger with every force in random directions, six times for each of `seeds` seeds.
 pub fn in_motion(hand: &Hand, contact: &ConfiguredContact, seeds: u64) -> Result<Vec<Pushes>, Box<dyn Error>> {
     let seeds: Vec<u64> = (0..seeds).collect();
     let runs = each(&seeds, |_, &seed| {

@@ -95,6 +95,7 @@ pub struct ByHand {
     pub start: Start,
     pub figure9: Step,
     pub figure10: Step,
+    /// Name and version of the compiler.
     pub compiler: String,
 }
 

@@ -32,6 +32,7 @@ const KINDS: [(Kind, &str); 3] = [
     (Kind::Awaited, "10 000 events a second, and a thread that waits for them"),
 ];
 
+/// Period of the servos, ns.
 const PERIOD: u64 = 1_000_000;
 
 /// Priorities as in a hand.

@@ -44,6 +44,7 @@ pub struct Step {
 }
 
 /// Steps the anchor by 5 mm from every pose, in each of several directions in which the joint limits leave room.
+/// `stiffness` is in N/cm, and `loss` is the probability with which a reply is lost.
 pub fn steps(case: &Case, stiffness: f64, loss: f64) -> Steps {
     steps_of(case, stiffness, loss, |_| {})
 }
@@ -113,8 +114,8 @@ pub fn step_responses(case: &Case, stiffness: f64, seconds: f64) -> Vec<Vec<(f64
     })
 }
 
-/// Moves the anchor by 30 mm in 200 ms with minimum jerk, at Kx 3. Returns the largest error in the period from 100 ms
-/// to 400 ms after the end, cm, and the smallest true tension, N.
+/// Moves the anchor by 30 mm in 200 ms with minimum jerk, at a Kx of 3 N/cm. Returns the largest error from 100 ms to
+/// 400 ms after the end of the motion, cm, and the smallest true tension, N.
 pub fn reach(case: &Case) -> (f64, f64) {
     const WAY: f64 = 3.0;
     let all = each(&case.poses_and_directions(WAY), |_, (pose, direction)| {

@@ -14,7 +14,8 @@ const RATE: f64 = 1000.0;
 const POSES: usize = 6;
 const FONT: &str = "sans-serif";
 
-/// Draws `step-response.svg` and `stiffness-ellipses.svg` in `folder`, one panel per controller, at 1000 Hz.
+/// Draws `step-response.svg`, with one panel per controller, and `stiffness-ellipses.svg`, with one panel per
+/// controller and pose, in `folder`. All fingers run at 1000 Hz.
 pub fn draw(folder: &Path, schemes: &[Scheme], seed: u64) -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(folder)?;
     let cases: Vec<Case> = schemes

@@ -31,11 +31,12 @@ fn believing(
     }))
 }
 
-/// Ratios of the motors' true torques to their commands. Their deviations from 1 are all alike, or differ in sign.
+/// Ratios of the motors' true torques to their commands. The deviations from 1, of 20 %, have the same sign for all
+/// motors, or different signs.
 pub const MOTOR_CONSTANTS: [[f64; 4]; 4] = [[1.2; 4], [0.8; 4], [1.2, 0.8, 1.2, 0.8], [1.2, 0.8, 0.8, 1.2]];
 
-/// Ratios of the tendons' true stiffness to the configured one. Their deviations from 1, of 10 %, are all alike, or
-/// differ in sign.
+/// Ratios of the tendons' true stiffness to the configured one. The deviations from 1, of 10 %, have the same sign for
+/// all tendons, or different signs.
 pub const TENDONS: [[f64; 4]; 4] = [[1.1; 4], [0.9; 4], [1.1, 0.9, 1.1, 0.9], [1.1, 0.9, 0.9, 1.1]];
 
 /// Returns the worst result over motors with each of these ratios.

@@ -18,13 +18,13 @@ pub const SPRINGS: [f64; 2] = [3.0, 6.0];
 /// Deflection of the pushes, cm.
 const PUSHED: f64 = 0.2;
 
-/// A sixth of the period of the dither, s, rounded to cycles.
+/// A sixth of the period of the dither, s, rounded to whole cycles of 1 ms.
 const PHASE: f64 = 0.004;
 
 /// The results of one pose.
 #[derive(Clone, Debug, Default)]
 pub struct Trial {
-    /// Error of K for pushes of 2 mm, at each of [`SPRINGS`].
+    /// Relative error of the stiffness for pushes of 2 mm, at each of [`SPRINGS`].
     pub error: [f64; 2],
     /// Motion at rest, cm rms, at each of [`SPRINGS`].
     pub rest: [f64; 2],
@@ -55,7 +55,9 @@ pub enum Extent {
     All,
 }
 
-/// Runs the trials at every pose of each case. Returns the results of each case.
+/// Runs the trials at every pose of each case. Returns the results of each case. `adjust` changes the finger and the
+/// configuration of its controller, and `truth` then changes only the finger. If `identified` is set, each case
+/// identifies the finger first, and its controllers use what was identified.
 pub fn trials(
     cases: &[Case],
     truth: &Truth,
