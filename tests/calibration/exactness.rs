@@ -1,4 +1,4 @@
-//! Zeros against the truth: all named hands, both methods, and many poses, parts and seeds.
+//! Zeros against the truth: all named hands, both methods of zeroing, and random poses, zeros and seeds.
 
 use crate::bench::Bench;
 use nalgebra::{Vector3, Vector4};
@@ -59,7 +59,7 @@ fn zero(bench: &mut Bench) -> Result<(), Obstacle> {
     Ok(())
 }
 
-/// Largest error of a joint angle of the finger as a spring, degrees: mean of half a second.
+/// Largest error of a joint angle of the finger as a spring, degrees. The error of each joint is averaged over 0.5 s.
 fn error(bench: &mut Bench) -> f64 {
     bench.follow_belief();
     bench.run(1.0, &Activity::TakeUpSlack);
@@ -92,7 +92,7 @@ fn errors(hand: NamedHand, seed: u64, method: ZeroingMethod) -> Result<[f64; 3],
     Ok([zeroed, identified, error(&mut bench)])
 }
 
-/// The table of docs/calibration.md.
+/// Prints the table of docs/calibration.md, and asserts that the errors after the last zeroing are small enough.
 fn zeros_are_right(seeds: u64) {
     for method in [ZeroingMethod::Stops, ZeroingMethod::Pose] {
         for (number, hand) in (0..).zip(NamedHand::ALL) {
@@ -115,7 +115,7 @@ fn zeros_after_calibration_are_right() {
 }
 
 #[test]
-#[ignore = "long: 64 calibrations"]
+#[ignore = "long: 64 fingers, with four calibrations each"]
 fn zeros_after_many_calibrations_are_right() {
     zeros_are_right(8);
 }

@@ -6,10 +6,10 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::calibration::{Findings, Obstacle, Task};
 use sun2xp::model::configuration::ConfiguredFinger;
 
-/// Wrong wirings that are tried with every seed.
+/// Number of wrong wirings that are tried with every seed.
 const KINDS: usize = 20;
 
-/// Fingers that are tried with every kind.
+/// Number of fingers that are tried with every kind of wrong wiring.
 const SEEDS: u64 = 20;
 
 /// The self-test ends within this time, s.
@@ -154,7 +154,8 @@ fn a_finger_that_is_wired_correctly_passes() {
     assert!(wrong.is_empty(), "{wrong}");
 }
 
-/// All tendons are tightened to three times their pretension. A gauge with 0.08 of its scale shows 0.08 of the rise.
+/// All tendons are tightened from their pretension to three times their pretension. A gauge with 0.08 of its scale
+/// shows 0.08 of this rise.
 #[test]
 fn a_gauge_that_hardly_responds_is_reported_with_its_rise() {
     let (truth, belief) = fingers(6000);

@@ -10,17 +10,17 @@ use sun2xp::board::protocol::Status;
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
 
-/// A pose with joint 2 at more than 0.8 rad.
+/// A pose that differs from [`START`] in every joint, rad.
 pub const TARGET: [f64; 3] = [0.2, 0.6, 1.1];
 
-/// The start pose of the simulated fingers.
+/// The start pose of the simulated fingers, rad.
 pub const START: [f64; 3] = [0.0, 30.0 * std::f64::consts::PI / 180.0, 60.0 * std::f64::consts::PI / 180.0];
 
 /// Longer than any wait of a test should take on a busy machine.
 const LIMIT: Duration = Duration::from_secs(20);
 
-/// Allows one hand at a time, because its servos and boards need the machine. The guard must be kept for the length of
-/// the test.
+/// Allows one hand at a time, because the servos and boards of two hands would delay each other. The guard must be kept
+/// for the length of the test.
 pub fn turn() -> MutexGuard<'static, ()> {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     crate::pauses::name_pauses();
@@ -28,7 +28,8 @@ pub fn turn() -> MutexGuard<'static, ()> {
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes the board's finger stand still while a busy machine delays its host's commands.
+/// Makes the board's finger stand still while a busy machine delays the commands of its host, which sends 500 of them a
+/// second, as in [`on_ports`].
 pub const PATIENT: [&str; 2] = ["--patient", "500"];
 
 /// The program `sun2xp board` and its standard streams.
@@ -42,7 +43,9 @@ pub struct Board {
 /// The answer to `state`.
 #[derive(Debug)]
 pub struct State {
+    /// rad.
     pub joints: Vec<f64>,
+    /// N.
     pub tensions: Vec<f64>,
     /// N cm.
     pub torques: Vec<f64>,
@@ -167,9 +170,9 @@ pub fn three_boards() -> [Board; 3] {
     ["1", "2", "3"].map(|finger| Board::start(&[finger]))
 }
 
-/// A hand on these ports. A busy machine delays the bytes of a pseudo-terminal by some ms, and occasionally by many. So
-/// periods are twice the default, watchdogs are as long as possible, and set points move slowly, so that a finger does
-/// not run far while the servo receives nothing.
+/// The configuration of a hand on these ports. A busy machine delays the bytes of a pseudo-terminal by some ms, and
+/// occasionally by many. So periods are twice the default, and watchdogs are as long as possible. Set points move
+/// slowly, so that a finger does not run far while the servo receives nothing.
 pub fn on_ports(ports: [&str; 3]) -> Configuration {
     let mut configuration = Configuration::default();
     (configuration.hand.rate, configuration.hand.watchdog_ms) = (500.0, 1000);
@@ -181,12 +184,12 @@ pub fn on_ports(ports: [&str; 3]) -> Configuration {
     configuration
 }
 
-/// A hand on the ports of three boards.
+/// The configuration of a hand on the ports of three boards.
 pub fn on_boards(boards: &[Board; 3]) -> Configuration {
     on_ports(boards.each_ref().map(|board| board.port.as_str()))
 }
 
-/// A hand whose three fingers share a port, and therefore a thread.
+/// The configuration of a hand whose three fingers share a port, and therefore a thread.
 pub fn on_one_port(port: &str, baud: u32) -> Configuration {
     let mut configuration = on_ports([port; 3]);
     for finger in &mut configuration.fingers {
@@ -199,6 +202,7 @@ pub fn open(configuration: Configuration) -> Hand {
     Hand::open(configuration).unwrap_or_else(|error| panic!("open: {error}"))
 }
 
+/// Returns how far a finger is from `target`: the largest difference of a joint angle, rad.
 pub fn farthest(hand: &Hand, finger: i32, target: [f64; 3]) -> f64 {
     let position = hand.position(finger).unwrap_or_else(|error| panic!("finger {finger}: {error}"));
     distance(position, target)
