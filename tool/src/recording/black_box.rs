@@ -27,7 +27,7 @@ pub fn read(path: &Path) -> Result<(Description, Vec<Entry>), Failure> {
     if let Some(first) = origin.controllers.first() {
         configuration.fingers[number.index()] = first.finger.clone();
     }
-    // A black box has only times of the monotonic clock. Its last cycle gets the time at which the file was written.
+    // The cycles have times of the monotonic clock only. The last cycle gets the modification time of the file.
     let written = path.metadata()?.modified()?.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64);
     let last = cycles.last().map_or(0, |record| record.began);
     let description = Description {
