@@ -36,7 +36,8 @@ const GOAL: f64 = 30_000.0;
 /// control.
 const CONTROLLER_RATE: f64 = 10_000.0;
 
-/// Period until the fingers are under control, ns. The servo waits for replies during most of the period.
+/// Period until the fingers are under control, ns. Afterwards the servo has no fixed period, but still waits for
+/// replies for at most 85 % of this time.
 const PERIOD: u64 = 1_000_000;
 
 /// Priority of the simulated boards, below the servos.
