@@ -146,13 +146,13 @@
         1 MiB   sun2xp_send_path
        64 KiB   sun2xp_wait, sun2xp_on_event, sun2xp_event_descriptor, sun2xp_wait_event
 
-   The calls of the table test the free memory directly after EPERM, even if their entries do not list
-   ENOMEM there. There are two exceptions: sun2xp_send_path tests it after EFAULT, and sun2xp_wait_event
-   after its other reasons, if there is no event. If memory runs out while one of these calls runs, the
+   ENOMEM is the second reason that these calls check, after EPERM, even if an entry does not list it there.
+   There are two exceptions. sun2xp_send_path checks it after EFAULT. sun2xp_wait_event checks it after all
+   its other reasons, and only if there is no event. If memory runs out while one of these calls runs, the
    process is aborted, and the boards' watchdogs end the motion. If less than 4 MiB are free when a finger
    faults, no black box is written, and a message says so. If the library was loaded with dlopen, the first
-   call of a thread needs memory for the thread-local data of the library. If there is none, the C library
-   aborts the process.
+   call of a thread needs memory for the thread-local data of the library. If this memory is not available,
+   the C library aborts the process.
 
    Cancellation: pthread_cancel does not interrupt a call. It takes effect at the program's next
    cancellation point or, with asynchronous cancellation, when the call returns.
@@ -512,7 +512,7 @@ struct sun2xp_io_terms {
     size_t size;                            /* sizeof (struct sun2xp_io_terms) in the library. */
     int finger;                             /* Finger, 1 to 3. */
     int hold;                               /* 1: the end state is "hold"; 0: it is "release". */
-    double rate;                            /* Exchanges in a second, Hz. */
+    double rate;                            /* Exchanges per second, Hz. */
     double watchdog;                        /* Time without an exchange after which the hardware must enter the end
                                                state by itself, s. */
     double hold_time;                       /* Duration of "hold", s. */
@@ -729,15 +729,15 @@ int sun2xp_position(sun2xp_hand *hand, int finger, double *position);
 /*
  Result of sun2xp_tip. Vectors are in the finger's frame.
 
- The member force is computed from the measured tensions, so it includes friction, weight and inertia
- of the finger. It is never NaN. Near singular poses there are directions that the joints cannot
- measure. Along these, the members force and stiffness are zero. The member contact_force does not
- contain constant errors of the gauges. The member stiffness is the part of Kx, or of the joint
- stiffness, that the finger applies at present, plus three other springs: the soft joint limits, the
- spring of joint 0 while the tip is near its axis, and the rotational stiffness of a contact. The
- members contact_force, stiffness and touching are zero while the finger is not running. The member
- slide_speed is 0 while the member touching is 0. While touching is 1, the tip slides on the object at
- this speed, or tip and object move together at this speed.
+ The member force is computed from the measured tensions, so it includes friction, weight and inertia of
+ the finger. It is never NaN. Near singular poses there are directions in which a force on the tip causes
+ no joint torque, so that the joints cannot measure it. Along these directions, the members force and
+ stiffness are zero. The member contact_force does not contain constant errors of the gauges. The member
+ stiffness is the part of Kx, or of the joint stiffness, that the finger applies at present, plus three
+ other springs: the soft joint limits, the spring of joint 0 while the tip is near the axis of this joint,
+ and the rotational stiffness of a contact. The members contact_force, stiffness and touching are zero
+ while the finger is not running. The member slide_speed is 0 while the member touching is 0. While
+ touching is 1, the tip slides on the object at this speed, or tip and object move together at this speed.
  */
 struct sun2xp_tip {
     size_t size;                            /* sizeof (struct sun2xp_tip), set before the call. */
@@ -814,22 +814,22 @@ int sun2xp_tip(sun2xp_hand *hand, int finger, struct sun2xp_tip *tip);
                 4   soft finger: three forces and a moment about the normal
    stiffness    a matrix of dimensions x dimensions, row by row. 1: N/cm along the normal. 3 and 4: rows
                 and columns 0 to 2 are x, y, z of the finger's frame, N/cm. 4: row and column 3 are the
-                rotation about the normal: N cm/rad on the diagonal, else N/rad
+                rotation about the normal: N cm/rad on the diagonal, N/rad elsewhere
    normal       normal[3]: the contact normal in the finger's frame, of any length but zero. Not used
                 for 3 dimensions, and may be null there
 
  The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last,
- and a later sun2xp_send_stiffness replaces it. In directions outside the contact, the finger is limp
- but still damped. The matrix must be symmetric and must have no negative eigenvalue, as for
+ and a later sun2xp_send_stiffness replaces it. In directions in which the contact exerts no force, the
+ finger is limp but still damped. The matrix must be symmetric and must have no negative eigenvalue, as for
  sun2xp_send_stiffness. For the comparison with the bound, a rotational stiffness of k N cm/rad is
  converted to k / (l2 l2) N/cm, where l2 is the length of the last link.
 
  A soft finger is not a spring in four independent directions, because three joints turn the tip only by
- moving it. A tip that moves by v cm turns about normal by c . v rad, and the vector c depends on the
- pose. A rotational stiffness of k N cm/rad therefore stiffens the tip along c, by k |c| |c| N/cm, and
- the tip exerts no moment that is independent of its force. In the pose 0, 0.5, 0.8 rad the example below
- gives 3.24, 3 and 3 N/cm along x, y and z. With normal along x it gives 3, 3.56 and 4.87 N/cm, and -1.02
- N/cm between y and z. sun2xp_tip reads the stiffness that results.
+ moving it. If the tip moves by a vector v, cm, it turns about normal by the dot product c . v, rad. The
+ vector c depends on the pose. A rotational stiffness of k N cm/rad therefore stiffens the tip along c, by
+ k |c| |c| N/cm, and the tip exerts no moment that is independent of its force. In the pose 0, 0.5, 0.8
+ rad the example below gives 3.24, 3 and 3 N/cm along x, y and z. With normal along x it gives 3, 3.56 and
+ 4.87 N/cm, and -1.02 N/cm between y and z. sun2xp_tip reads the stiffness that results.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1000,7 +1000,7 @@ struct sun2xp_set_point {
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
  "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
- This happens about once each time that two of the clocks have drifted apart by one period.
+ This happens about once while two of the clocks drift apart by one period.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1198,8 +1198,8 @@ struct sun2xp_palm_pose {
    jacobian   result: jacobian[9], row by row: entry [row][column] is the motion of the tip
               along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8 of the report)
 
- A force f on the tip exerts a torque on joint k: the sum over the axes of entry [axis][k] times f[axis],
- N cm.
+ A force f on the tip, N, exerts this torque on joint k, N cm: entry [0][k] times f[0], plus entry [1][k]
+ times f[1], plus entry [2][k] times f[2].
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1522,10 +1522,10 @@ int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
 
  A configured stiffness.bound was chosen for the configured controller.scheme. If the lines in keys
  change controller.scheme but do not set stiffness.bound, the smaller of the configured bound and the
- default bound applies. If a path changes Kx when the bound is lowered, the Kx of the end of the path
+ default bound applies. If the bound is lowered while a path changes Kx, the Kx of the end of the path
  takes effect at once.
 
- The whole path that was sent last is checked against the new limits until it has ended. With
+ While the finger follows a path, the whole path is checked against the new limits. With
  hand.out_of_range = "clamp" a path outside the new joint limits ends, and the finger moves to the end of
  the path at once.
 
@@ -2202,7 +2202,7 @@ struct sun2xp_reflex {
     int finger;                             /* The other finger for SUN2XP_WHEN_OTHER_FINGER. */
     int joint;                              /* Joint, 0 to 2, for the conditions JOINT_ABOVE and JOINT_BELOW. */
     int reaction;                           /* SUN2XP_THEN_STOP to SUN2XP_THEN_DAMP. */
-    int priority;                           /* 0 to 255. The highest fires first in a cycle. */
+    int priority;                           /* 0 to 255. In a cycle, the rule with the highest priority reacts first. */
     double bound;                           /* N, rad or s, as the condition says. */
     double value;                           /* SUN2XP_THEN_GRIP: increase of the force, N. SUN2XP_THEN_DAMP: ratio. */
     double largest;                         /* SUN2XP_THEN_GRIP: largest force, N. */

@@ -259,8 +259,8 @@ public:
         return position;
     }
 
-    /// Waits until the condition holds. Returns false if it does not hold within the time, and for a hand on another
-    /// machine also if no reports arrive from it. Accepts all_fingers.
+    /// Waits until the condition holds. Returns false if it does not hold within the time. If the hand is on another
+    /// machine, also returns false if no reports arrive from it. Accepts all_fingers.
     bool wait(until condition, seconds longest)
     {
         const int result = sun2xp_wait(hand_, number_, static_cast<int>(condition), longest.count());

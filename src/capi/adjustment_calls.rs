@@ -22,10 +22,10 @@ use std::ffi::{CStr, c_char, c_int};
 ///
 /// A configured stiffness.bound was chosen for the configured controller.scheme. If the lines in keys
 /// change controller.scheme but do not set stiffness.bound, the smaller of the configured bound and the
-/// default bound applies. If a path changes Kx when the bound is lowered, the Kx of the end of the path
+/// default bound applies. If the bound is lowered while a path changes Kx, the Kx of the end of the path
 /// takes effect at once.
 ///
-/// The whole path that was sent last is checked against the new limits until it has ended. With
+/// While the finger follows a path, the whole path is checked against the new limits. With
 /// hand.out_of_range = "clamp" a path outside the new joint limits ends, and the finger moves to the end of
 /// the path at once.
 ///

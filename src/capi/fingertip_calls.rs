@@ -92,22 +92,22 @@ pub unsafe extern "C" fn sun2xp_tip(hand: *mut sun2xp_hand, finger: c_int, tip: 
 ///                4   soft finger: three forces and a moment about the normal
 ///   stiffness    a matrix of dimensions x dimensions, row by row. 1: N/cm along the normal. 3 and 4: rows
 ///                and columns 0 to 2 are x, y, z of the finger's frame, N/cm. 4: row and column 3 are the
-///                rotation about the normal: N cm/rad on the diagonal, else N/rad
+///                rotation about the normal: N cm/rad on the diagonal, N/rad elsewhere
 ///   normal       normal[3]: the contact normal in the finger's frame, of any length but zero. Not used
 ///                for 3 dimensions, and may be null there
 ///
 /// The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last,
-/// and a later sun2xp_send_stiffness replaces it. In directions outside the contact, the finger is limp
-/// but still damped. The matrix must be symmetric and must have no negative eigenvalue, as for
+/// and a later sun2xp_send_stiffness replaces it. In directions in which the contact exerts no force, the
+/// finger is limp but still damped. The matrix must be symmetric and must have no negative eigenvalue, as for
 /// sun2xp_send_stiffness. For the comparison with the bound, a rotational stiffness of k N cm/rad is
 /// converted to k / (l2 l2) N/cm, where l2 is the length of the last link.
 ///
 /// A soft finger is not a spring in four independent directions, because three joints turn the tip only by
-/// moving it. A tip that moves by v cm turns about normal by c . v rad, and the vector c depends on the
-/// pose. A rotational stiffness of k N cm/rad therefore stiffens the tip along c, by k |c| |c| N/cm, and
-/// the tip exerts no moment that is independent of its force. In the pose 0, 0.5, 0.8 rad the example below
-/// gives 3.24, 3 and 3 N/cm along x, y and z. With normal along x it gives 3, 3.56 and 4.87 N/cm, and -1.02
-/// N/cm between y and z. sun2xp_tip reads the stiffness that results.
+/// moving it. If the tip moves by a vector v, cm, it turns about normal by the dot product c . v, rad. The
+/// vector c depends on the pose. A rotational stiffness of k N cm/rad therefore stiffens the tip along c, by
+/// k |c| |c| N/cm, and the tip exerts no moment that is independent of its force. In the pose 0, 0.5, 0.8
+/// rad the example below gives 3.24, 3 and 3 N/cm along x, y and z. With normal along x it gives 3, 3.56 and
+/// 4.87 N/cm, and -1.02 N/cm between y and z. sun2xp_tip reads the stiffness that results.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

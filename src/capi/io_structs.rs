@@ -37,7 +37,7 @@ pub struct sun2xp_io_terms {
     pub finger: c_int,
     /// 1: the end state is "hold"; 0: it is "release".
     pub hold: c_int,
-    /// Exchanges in a second, Hz.
+    /// Exchanges per second, Hz.
     pub rate: f64,
     /// Time without an exchange after which the hardware must enter the end state by itself, s.
     pub watchdog: f64,

@@ -48,8 +48,8 @@ pub struct sun2xp_palm_pose {
 ///   jacobian   result: jacobian[9], row by row: entry [row][column] is the motion of the tip
 ///              along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8 of the report)
 ///
-/// A force f on the tip exerts a torque on joint k: the sum over the axes of entry [axis][k] times f[axis],
-/// N cm.
+/// A force f on the tip, N, exerts this torque on joint k, N cm: entry [0][k] times f[0], plus entry [1][k]
+/// times f[1], plus entry [2][k] times f[2].
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -84,7 +84,7 @@ pub struct sun2xp_reflex {
     pub joint: c_int,
     /// SUN2XP_THEN_STOP to SUN2XP_THEN_DAMP.
     pub reaction: c_int,
-    /// 0 to 255. The highest fires first in a cycle.
+    /// 0 to 255. In a cycle, the rule with the highest priority reacts first.
     pub priority: c_int,
     /// N, rad or s, as the condition says.
     pub bound: c_double,

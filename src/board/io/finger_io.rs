@@ -79,7 +79,7 @@ impl Default for IoProperties {
 pub struct IoTerms {
     /// The finger, 1 to 3.
     pub finger: FingerNumber,
-    /// Exchanges in a second, Hz.
+    /// Exchanges per second, Hz.
     pub rate: f64,
     /// Time without an exchange after which the hardware enters the end state by itself, ms.
     pub watchdog_ms: u16,
