@@ -276,8 +276,8 @@ pub enum Obstacle {
     },
     /// The readings of a gauge contradict each other, or never changed.
     #[error(
-        "gauge {tendon} does not rise and fall with the tension: it is dead, or its cable is swapped with another one. \
-         Check both"
+        "gauge {tendon} does not rise and fall with the tension: it is dead, or its cable is swapped with that of \
+         another gauge. Check the gauge and the cables"
     )]
     InconsistentGauge {
         /// The gauge's number, 1 to 4.

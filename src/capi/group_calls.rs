@@ -55,7 +55,7 @@ pub struct sun2xp_set_point {
 ///
 /// If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
 /// "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
-/// This happens about once while two of the clocks drift apart by one period.
+/// This happens about once for every period by which two of the clocks drift apart.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

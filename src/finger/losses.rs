@@ -10,7 +10,7 @@ pub struct Losses {
     pub cycles: u64,
     /// Cycles that ended after the next one should have begun.
     pub overruns: u64,
-    /// Periods skipped because of overruns.
+    /// Whole periods in which no cycle began because the previous cycle was late or the servo thread did not run.
     pub skipped_periods: u64,
     /// Cycles without a valid reply in time.
     pub lost_replies: u64,

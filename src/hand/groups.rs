@@ -125,7 +125,7 @@ impl Hand {
     ///
     /// If a servo is so late that it skips this period, its fingers follow in their next cycle. With
     /// `hand.clock = "board"` the periods of the threads follow different clocks. A finger may then follow one period
-    /// later. This happens about once while two of the clocks drift apart by one period.
+    /// later. This happens about once for every period by which two of the clocks drift apart.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if a finger has two commands, if a finger refuses its command, if a

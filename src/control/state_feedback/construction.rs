@@ -88,9 +88,10 @@ impl Drives {
         let too_far = || Unusable {
             key: "tendon.stiffness",
             reason: format!(
-                "of {} N/m with a motor mass of {} kg cannot be observed at {rate} Hz: check the finger's tendons and \
-                 motors",
-                tendon.stiffness, tendon.mass
+                "{} N/cm and a motor mass (motor.inertia / geometry.motor_radius^2) of {} kg differ so much that state \
+                 feedback has no observer at {rate} Hz: check these values, and geometry.motor_radius",
+                tendon.stiffness / 100.0,
+                tendon.mass
             ),
         };
         TendonObserver::new(tendon, &design, 1.0 / rate).ok_or_else(too_far)
@@ -124,7 +125,8 @@ impl Drives {
 
 /// Returns R^T (R R^T)^-1.
 fn right_inverse(r: &Matrix3x4<f64>) -> Result<Matrix4x3<f64>, Unusable> {
-    let singular = || Unusable { key: "geometry.r", reason: "has no right inverse: check its signs".into() };
+    let reason = "has linearly dependent rows, so the tendons cannot turn each joint independently: check its signs";
+    let singular = || Unusable { key: "geometry.r", reason: reason.into() };
     Ok(r.transpose() * (r * r.transpose()).try_inverse().ok_or_else(singular)?)
 }
 

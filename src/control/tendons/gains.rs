@@ -36,7 +36,9 @@ impl Gains {
         let scheme = configured.scheme(rate);
         let tuned = TunedGains::of(scheme, rate);
         let absent = |key, term: &str| {
-            let reason = format!("is set, but this scheme has no {term} term: leave it out, or choose \"figure 10\"");
+            let reason = format!(
+                "is set, but this scheme has no {term} term: leave it out, or set controller.scheme = \"figure 10\""
+            );
             Err(Unusable { key, reason })
         };
         if matches!(scheme, Scheme::Figure9 | Scheme::Figure11) && configured.tension_gain.is_some() {

@@ -46,7 +46,8 @@ faults! {
         "the motor or its gear is jammed, its wires are broken, or its driver is off",
         "Switch the power off, turn the motor by hand and check its wiring; then recover the finger", [Recover];
     9 OverheatedMotor "OVERHEATED_MOTOR" Fault Motor Share "over-heated motor",
-        "a motor has been at its thermal limit for too long, as computed from the square of its torque over time",
+        "a motor has been at its thermal limit for too long; its heat is computed from the square of its torque over \
+         time",
         "the finger presses or holds more than the motor can carry continuously",
         "Let the motor cool, recover the finger and command less force; check finger.motor.continuous_torque and \
          finger.motor.thermal_time", [Recover];
@@ -65,8 +66,8 @@ faults! {
         "Move more slowly, or raise finger.tendon.minimum", [];
     13 LostReplies "LOST_REPLIES" Fault Finger Time "lost replies",
         "the board has sent no valid reply for this time",
-        "the cable is unplugged, the board has no power, the line is too noisy, the board sends without end, or this \
-         computer is too busy to receive in time",
+        "the cable is unplugged, the board has no power, the line is too noisy, the board sends without a pause, or \
+         this computer is too busy to receive in time",
         "Check the cable, the power and the firmware of the board, and the load of this computer (run sun2xp doctor); \
          then recover the finger", [Recover];
     14 DamagedReplies "DAMAGED_REPLIES" Fault Finger Share "damaged replies",
@@ -198,8 +199,8 @@ faults! {
         "Send set points that are nearer, or a softer Kx", [];
     44 CalibrationFailed "CALIBRATION_FAILED" Warning Finger Nothing "calibration failed",
         "the last calibration failed; the finger is limp, and its previous calibration is in force",
-        "an obstacle, which the error text of the calibration call names",
-        "Remove the obstacle as that error text says, then calibrate again", [];
+        "the error text of the calibration call names it",
+        "Follow the remedy in that error text, then calibrate again", [];
     45 WarmMotor "WARM_MOTOR" Warning Motor Share "warm motor",
         "a motor is near its thermal limit, and its torque is being limited",
         "the finger presses or holds more than the motor can carry continuously",

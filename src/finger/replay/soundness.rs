@@ -61,7 +61,7 @@ impl Recording {
             limits.check(&control.input).map_err(wrong)?;
             computed = computed.saturating_add(control.input.skipped + 1);
             if computed > MOST_COMPUTED {
-                let reason = format!("gives more than {MOST_COMPUTED} cycles to compute");
+                let reason = format!("leads to more than {MOST_COMPUTED} cycles to compute, which a replay refuses");
                 return Err(wrong(("skipped".into(), reason)));
             }
         }
