@@ -29,7 +29,7 @@ use sun2xp_remote_protocol::ClientName;
     after_help = "Exit status: 0 if the command has done its work, 1 if it failed, 2 for wrong usage."
 )]
 pub struct Arguments {
-    /// Configuration file. If omitted: the file that the library would use.
+    /// The configuration file. The default is the file that OpenHand would use.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     /// Listen here, in place of serve.listen: tls/HOST:PORT, or tcp/127.0.0.1:PORT. Can be repeated.
@@ -45,13 +45,14 @@ pub struct Arguments {
     /// a new one does.
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["config", "listen", "name", "router"])]
     make_certificates: Option<PathBuf>,
-    /// Make the certificate of a server, a hand or a router with this name, which is also the name of its machine.
+    /// Make the certificate of the server of a hand, or of a router. Clients reach it by this name, by an --address, or
+    /// at loopback. Can be repeated.
     #[arg(long, value_name = "NAME", requires = "make_certificates")]
     server: Vec<String>,
-    /// Another name or address by which clients reach the servers.
+    /// Another name or address by which clients reach the servers. Can be repeated.
     #[arg(long, value_name = "HOST", requires = "make_certificates")]
     address: Vec<String>,
-    /// Make the certificate of a client with this name.
+    /// Make the certificate of a client with this name. Can be repeated.
     #[arg(long, value_name = "NAME", requires = "make_certificates")]
     client: Vec<String>,
 }
@@ -128,6 +129,6 @@ fn announce(settings: &Settings) {
         say("nobody may command the hand: list clients in [serve.clients], such as planner = \"command\"");
     }
     if settings.tls.is_none() {
-        say("without TLS: every program on this machine can read, and a client has the name that it says");
+        say("without TLS: every program on this machine can read the hand, and can take the name of any client");
     }
 }

@@ -75,7 +75,7 @@ fn check_names(folder: &Path, wanted: &Wanted) -> Result<(), ServeError> {
             return Err(ServeError::certificate(folder, "`ca` is the name of the authority: choose another name"));
         }
         if named().filter(|other| *other == name).count() > 1 {
-            let reason = format!("{name} is named twice: each certificate has its own name");
+            let reason = format!("{name} is named twice: give each certificate a name of its own");
             return Err(ServeError::certificate(folder, reason));
         }
         let existing = files(folder, name.as_str()).into_iter().find(|file| is_there(file));

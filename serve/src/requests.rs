@@ -206,7 +206,7 @@ fn run(shared: &Arc<Shared>, reply: impl Reply, body: impl FnOnce(&Shared) -> An
         }
         Err(error) => {
             shared.busy.store(false, Ordering::Release);
-            complain(&format!("cannot start a thread for a request: {error}. Does the system limit threads?"));
+            complain(&format!("cannot start a thread for a request: {error}. Raise the limit of threads (ulimit -u)"));
             false
         }
     }

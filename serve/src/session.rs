@@ -44,7 +44,9 @@ pub fn open(settings: &Settings, access: &str, largest: u16) -> Result<Session, 
         let text = error.to_string();
         // zenoh appends the place in its sources.
         let cause = text.split(" at /").next().unwrap_or(&text).trim_end_matches('.');
-        failed(format!("{cause}. Is the address that of this machine and the port free? Does the router run?"))
+        failed(format!(
+            "{cause}. Check that the address is one of this machine, that the port is free, and that the router runs"
+        ))
     })
 }
 

@@ -266,7 +266,8 @@ export class Control {
     this.open(true);
     if (!this.message) return;
     clearTimeout(this.forget);
-    this.message.textContent = "The stop has NOT reached the hand. It is sent again when sun2xp answers.";
+    this.message.textContent =
+      "sun2xp has NOT confirmed the stop: the hand may still move. The page sends the stop again when it is connected.";
     this.message.className = "message refused";
   }
 

@@ -34,7 +34,7 @@ const FACTS = [
   ["tip force", "Magnitude of the measured force of the fingertip"],
   ["scales", "Part of the joint torques that the tension bounds permit; part of the stiffness that the pose supports"],
   ["wake, cycle 99.9 %", "Wake-up delay and cycle duration that 99.9 % of the servo's cycles do not exceed"],
-  ["lost, skipped", "Replies of the board that were lost, and periods that were skipped, since open"],
+  ["lost, skipped", "Replies of the board that were lost, and periods that were skipped, since the hand was opened"],
 ];
 
 const fixed = (value, decimals) => (Number.isFinite(value) ? value.toFixed(decimals).replace("-", "−") : "–");

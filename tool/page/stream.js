@@ -23,7 +23,7 @@ export class Stream {
     this.socket.onclose = () => {
       this.receivers.link(
         false,
-        "sun2xp does not answer. Is the command still running, and is this the whole address that it printed?",
+        "sun2xp does not answer. Check that the command still runs, and that this is the whole printed address.",
       );
       setTimeout(() => this.connect(), RETRY_MS);
     };

@@ -118,8 +118,8 @@ fn note_losses(lost: [u64; 3], files: &mut Files, counts: &mut Counts, display: 
     for (finger, lost) in FingerNumber::ALL.into_iter().zip(lost).filter(|(_, lost)| *lost > 0) {
         counts.lost += lost;
         files.write_lost(finger, lost)?;
-        display
-            .line(&format!("finger {finger}: {} lost, and marked in /lost", Counted(lost, "cycle is", "cycles are")));
+        let lost = Counted(lost, "cycle is", "cycles are");
+        display.line(&format!("finger {finger}: {lost} lost, and marked in the topic /lost"));
     }
     Ok(())
 }

@@ -87,7 +87,7 @@ fn frictions(all: &mut Vec<Complaint>, before: &Vitals, today: &Vitals) {
     let joint = "Clean and lubricate the joint";
     each(
         all,
-        ("joint_friction", "friction of joint (counted from 1)", "N cm"),
+        ("joint_friction", "friction of joint", "N cm"),
         (before.joint_friction, today.joint_friction),
         more(FRICTION.1),
         joint,
@@ -151,7 +151,9 @@ fn each<const PARTS: usize>(
     advice: &'static str,
 ) {
     let (Some(before), Some(today)) = values else { return };
-    for (number, (before, today)) in (1..).zip(before.into_iter().zip(today)) {
+    // The joints, of which there are three, are numbered from 0. All other parts are numbered from 1.
+    let first = usize::from(PARTS > 3);
+    for (number, (before, today)) in (first..).zip(before.into_iter().zip(today)) {
         if changed(before, today) {
             let text = |value: f64| format!("{value:.3} {unit}").trim_end().to_owned();
             let (before, today) = (text(before), text(today));
@@ -252,6 +254,8 @@ mod tests {
         assert_eq!(rubs, only("motor_friction", "friction of motor 3"));
         let dry = named(|today| today.conduit_friction = Some([0.05, 0.15, 0.05, 0.05]));
         assert_eq!(dry, only("conduit_friction", "friction of conduit 2"));
+        let stiff = named(|today| today.joint_friction = Some([0.05, 0.05, 0.2]));
+        assert_eq!(stiff, only("joint_friction", "friction of joint 2"));
         let loose = named(|today| today.tensions = Some([4.0, 13.2, 13.2, 7.5]));
         assert_eq!(loose, only("tension", "tension at rest of tendon 1"));
         let noisy = named(|today| today.gauge_noise = Some([0.02, 0.02, 0.02, 0.2]));

@@ -247,7 +247,7 @@ fn list(svg: &mut Svg, [left, top]: [f64; 2], listed: &[(f64, &Happened)], texts
         }
     }
     if left_out > 0 {
-        let text = format!("{left_out} less serious or later ones are not listed: sun2xp export writes all of them");
+        let text = format!("{left_out} less serious or later entries are not listed: sun2xp export writes all");
         svg.text([left + 118.0, y], &text, Font { bold: false, colour: SOFT_INK, ..HEADING });
     }
 }

@@ -78,8 +78,13 @@ impl Recording {
         loop {
             match mcap.next().map_err(|error| foreign(&error.to_string()))? {
                 Some(Found::Format { version, .. }) if version == VERSION => {}
-                Some(Found::Format { library, .. }) => {
-                    return Err(foreign(&format!("library {library} wrote it in another version of the format")).into());
+                Some(Found::Format { version, library }) => {
+                    let text = format!(
+                        "{} has format version {version}, and this program reads version {VERSION}: use the program \
+                         of library {library}, which wrote it",
+                        ShownPath(path)
+                    );
+                    return Err(text.into());
                 }
                 Some(Found::Description(description)) => {
                     description.configuration.check().map_err(|wrong| {

@@ -127,7 +127,7 @@ impl Executor {
     fn run(&self, orders: &Receiver<Order>) {
         for Order { command, stops, answers } in orders {
             self.waiting.fetch_sub(1, Ordering::Relaxed);
-            let dropped = || (false, "dropped by the emergency stop: send it again".into());
+            let dropped = || (false, "the command was dropped by the emergency stop: send it again".into());
             let result = self.stopper.carry_out(&command, stops, || self.execute(&command));
             let (done, text) = result.unwrap_or_else(dropped);
             // The page may have left.

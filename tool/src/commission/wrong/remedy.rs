@@ -29,18 +29,18 @@ impl Wrong {
             ),
             Self::GaugesExchanged(order) => format!("Swap the gauge cables: {}", moves("gauge", order)),
             Self::EncoderReversed(encoder) => {
-                format!("Nothing: encoder.sign compensates it. Or swap the channels A and B of encoder {encoder}")
+                format!("Nothing to do: encoder.sign compensates it. Or swap the channels A and B of encoder {encoder}")
             }
             Self::EncoderDead(encoder) => format!(
                 "Check the cable and the supply of encoder {encoder}, and that its disc turns with the shaft. One \
                  missing channel looks the same"
             ),
-            Self::EncoderScale(..) => "Nothing: encoder.counts_per_revolution is corrected".into(),
+            Self::EncoderScale(..) => "Nothing to do: encoder.counts_per_revolution is corrected".into(),
             Self::EncoderUnclear(motor, _) => {
                 format!("Turn motor {motor} by exactly one turn; a mark on its shaft helps")
             }
             Self::MotorReversed(motor) => {
-                format!("Nothing: motor.sign compensates it. Or swap the two wires of motor {motor}")
+                format!("Nothing to do: motor.sign compensates it. Or swap the two wires of motor {motor}")
             }
             Self::MotorBlocked(motor) => format!("Free motor {motor}: its drum, brake, bearing or tendon blocks it"),
             Self::MotorDead(motor) => format!(
@@ -65,7 +65,7 @@ impl Wrong {
     fn remedy_of_gauges(&self) -> String {
         match self {
             Self::GaugeReversed(gauge) => format!(
-                "Nothing: the sign of gauge.newton_per_count compensates it. Or swap the two signal wires of \
+                "Nothing to do: the sign of gauge.newton_per_count compensates it. Or swap the two signal wires of \
                  gauge {gauge}"
             ),
             Self::GaugeDead(gauge) => {
@@ -76,8 +76,8 @@ impl Wrong {
                  the wiring of gauge {gauge} or a wrong mass: check the masses, the supply of its bridge, the gain of \
                  its amplifier, and the wires of the bridge. After a repair do the step gauges again"
             ),
-            Self::GaugeScale(..) => "Nothing: gauge.newton_per_count is corrected".into(),
-            Self::GaugeZero(..) => "Nothing: gauge.zero is corrected".into(),
+            Self::GaugeScale(..) => "Nothing to do: gauge.newton_per_count is corrected".into(),
+            Self::GaugeZero(..) => "Nothing to do: gauge.zero is corrected".into(),
             Self::GaugeNoise(gauge, _) => {
                 format!("Check the shield and the ground of gauge {gauge}, and keep motor wires away from its cable")
             }

@@ -37,7 +37,7 @@ const SIGNS: &[(&str, &str)] = &[
     ("‹", "the tendon is slack, below 0.8 t_min"),
     ("F, Fc", "tip force from the tensions, and contact estimate"),
     ("Kx+", "Kx has entries off its diagonal: see the detail"),
-    ("not seen", "cycles that this view has lost; the servo has not"),
+    ("not seen", "cycles that this view has missed; the servo ran them"),
 ];
 
 /// Draws the keys and the signs.
