@@ -57,7 +57,8 @@ def paths(message: Any, prefix: str, fingers: Sequence[int], now: float, *, wait
     positions = [list(point.positions) for point in message.points]
     for place, angles in enumerate(positions):
         if len(angles) != len(message.joint_names):
-            raise Unusable(f"point {place} has {len(angles)} positions for {len(message.joint_names)} joints")
+            found = f"point {place} has {len(angles)} positions for {len(message.joint_names)} joints"
+            raise Unusable(f"{found}: give every joint of joint_names one position")
     stamp = seconds(message.header.stamp)
     late = max(now - stamp, 0.0) if stamp else 0.0
     since_stamp = numpy.array([seconds(point.time_from_start) for point in message.points])
@@ -85,7 +86,8 @@ def _columns(given: Sequence[str], prefix: str, fingers: Sequence[int]) -> Dict[
     if unknown or not given:
         raise Unusable(f"there is no joint {', '.join(unknown) or 'in joint_names'}: the joints are {', '.join(every)}")
     if len(set(given)) != len(given):
-        raise Unusable("a joint is named twice")
+        twice = [name for name in dict.fromkeys(given) if given.count(name) > 1]
+        raise Unusable(f"{', '.join(twice)} is named twice: name every joint once")
     columns = {}
     for finger, joints in known.items():
         missing = [name for name in joints if name not in given]

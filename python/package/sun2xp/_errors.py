@@ -35,8 +35,8 @@ class Error(Exception):
     Attributes:
         text: cause and remedy, in one line.
         number: the reason, as the C interface numbers it.
-        errno: the number of the errno that describes the error best (module `errno`).
-        remedy: what to do.
+        errno: the constant of the module `errno` that describes the error best.
+        remedy: what to do; may be empty. The text always contains the whole remedy.
     """
 
     text: str

@@ -27,8 +27,8 @@ class Hand(_sun2xp.Hand):
     """
 
     def events(self) -> Events:
-        """Returns a queue of the hand's events from now on. `for event in hand.events()` waits for each event, and
-        `async for` does so in asyncio."""
+        """Returns a queue that gets the hand's events from now on. `for event in hand.events()` waits for each event,
+        and `async for` does so in asyncio."""
         events = Events(self)
         events.clear()
         return events
@@ -52,7 +52,7 @@ class Hand(_sun2xp.Hand):
             timeout: time limit, s.
 
         Raises:
-            TimedOut: the time limit is over.
+            TimedOut: the time limit has expired.
             Fault: a finger is faulted.
         """
         if fingers is None:
@@ -72,8 +72,8 @@ class Hand(_sun2xp.Hand):
         """Zeros gauges and encoders of a finger. With the zeroing method "stops", its joints move between
         their stops.
 
-        An exception of `progress` or of the handler of a signal, such as Ctrl-C, stops the finger. The finger is then
-        faulted, and `recover` makes it a spring with the previous calibration.
+        If `progress` or the handler of a signal raises an exception, as the handler of Ctrl-C does, the finger stops.
+        It is then faulted, and `recover` makes it a spring with the previous calibration.
 
         Args:
             progress: called with the part that is done and the current activity.
@@ -81,8 +81,8 @@ class Hand(_sun2xp.Hand):
 
         Raises:
             ConfigurationError: the zeros could not be stored. They are in force until the hand is closed.
-            Error: the calibration failed, and the previous one is in force. If the finger faulted when the zeros had
-                been found already, the zeros are in force.
+            Error: the calibration failed, and the previous one is in force. If the finger faulted after its zeros had
+                been found, the new zeros are in force.
         """
         return self._calibrated(finger, "zero", progress, store)
 
@@ -131,11 +131,11 @@ def simulated(name: str = "nominal", *, rate: float = 1000.0, text: str = "") ->
     Args:
         name: "nominal", or a hand that differs from its configuration: "worn", "sheathed" or "cheap".
         rate: rate of the servos, Hz, 500 to 5000.
-        text: further configuration. The names of hands, the rate, the ports, the boards and the table `[remote]` of
-            this text are ignored.
+        text: further keys of the configuration. The keys `simulation.hand`, `hand.rate`, `port` and `board` and the
+            table `[remote]` are ignored.
 
     Raises:
-        ConfigurationError: there is no such name or rate, or the text is wrong.
+        ConfigurationError: no hand has this name, the rate is out of range, or the text is wrong.
     """
     return _opened(_sun2xp.open_simulated, name, rate, text)
 

@@ -57,7 +57,7 @@ class Losses:
     cycles: int
     #: Cycles that ended after the next one should have begun.
     overruns: int
-    #: Periods skipped because of overruns.
+    #: Whole periods in which no cycle began because the previous cycle was late or the servo thread did not run.
     skipped_periods: int
     #: Cycles without a valid reply in time.
     lost_replies: int
@@ -202,7 +202,8 @@ class ObjectState:
 class TouchReading:
     """The newest reading of a tactile element."""
 
-    #: Whether the board has reported this element since open. Otherwise the other fields are 0.
+    #: Whether the board has reported this element since open and since its last reset, and could read it then.
+    #: Otherwise the other fields are 0.
     valid: bool
     #: Whether something presses the element.
     pressed: bool

@@ -82,7 +82,7 @@ pub enum AdmissionError {
         smallest: f64,
     },
     /// A damping ratio is negative.
-    #[error("the damping ratio {ratio} of finger {finger} is negative: send 0 or more; 1 is the normal one")]
+    #[error("the damping ratio {ratio} of finger {finger} is negative: send a ratio near 1, which is the normal ratio")]
     Damping {
         /// The finger.
         finger: Finger,

@@ -61,13 +61,13 @@ def open(
         client: name of this client; "planner" if not given. With TLS it is the common name of the certificate.
         tls: the files of mutual TLS. A server that listens on more than loopback needs them.
         read_only: do not acquire the hand. Then its state can be read, and it can be stopped.
-        take_over: acquire it also if another client commands it.
+        take_over: acquire the hand even if another client commands it.
         recover: recover fingers that have stopped. When a hand is released, its fingers stop.
-        stale: largest age of the state that `position` and others return, s.
+        stale: largest age of the state that `position`, `tip` and `state` return, s.
 
     Raises:
-        ConfigurationError: a name that no hand or client can have, or a certificate that cannot be read.
-        NoAnswer: no connection, no such hand, or this client may not use it.
+        ConfigurationError: no hand or client can have this name, or a certificate cannot be read.
+        NoAnswer: there is no connection or no such hand, or this client may not use the hand.
         NotOwner: another client commands the hand.
     """
     network = Network(endpoint, client=client, tls=tls)

@@ -72,7 +72,7 @@ class RemoteHand(Reading):
 
         Args:
             take_over: whether to take the hand from another client that commands it. That client then gets NotOwner.
-            recover: recovers the fingers that have stopped.
+            recover: whether to recover the fingers that have stopped.
 
         Raises:
             NotOwner: another client commands the hand.
@@ -173,13 +173,14 @@ class RemoteHand(Reading):
             timeout: time limit, s.
 
         Raises:
-            TimedOut: the time limit is over.
+            TimedOut: the time limit has expired.
             NotOwner: this client does not command the hand, or has lost it.
             Refused: the server has refused the set point.
             Fault: a finger is faulted.
         """
         if condition not in _CONDITIONS:
-            raise Refused(f'condition is {condition!r}, not "applied", "arrived" or "settled"', number=7)
+            text = f'there is no condition {condition!r} to wait for: pass "applied", "arrived" or "settled"'
+            raise Refused(text, number=ErrorNumber.ARGUMENT)
         if fingers is None:
             with self._network.sender.lock:
                 fingers = self._owner.commanded()
@@ -199,7 +200,9 @@ class RemoteHand(Reading):
             if holds:
                 return
             if left <= 0:
-                raise TimedOut(f"fingers {wanted} are not {condition} after {timeout} s", number=ErrorNumber.TIMED_OUT)
+                text = f'the condition "{condition}" did not hold for fingers {wanted} within {timeout} s'
+                remedy = "check what keeps the fingers from moving, and the line to the server, or wait longer"
+                raise TimedOut(f"{text}: {remedy}", number=ErrorNumber.TIMED_OUT, remedy=remedy)
 
     def recover(self, finger: int = 0) -> None:
         """Recovers a finger that has stopped: it becomes a spring again. Without an argument, recovers every such

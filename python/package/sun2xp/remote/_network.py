@@ -106,7 +106,7 @@ class Network:
         tls: the files of mutual TLS. A server that listens on more than loopback needs them.
 
     Raises:
-        ConfigurationError: a name that no client can have, or a certificate that cannot be read.
+        ConfigurationError: no client can have this name, or a certificate cannot be read.
         NoAnswer: nobody listens at the endpoint, or the certificates do not fit.
     """
 
@@ -122,8 +122,9 @@ class Network:
         except self._zenoh.ZError as error:
             # The text ends with a place in the source of Zenoh.
             reason = str(error).split(" at /")[0].rstrip("! ")
-            text = f"no connection to {endpoint}: {reason}. Check the endpoint, the certificates, and sun2xp serve."
-            raise NoAnswer(text, number=ErrorNumber.TIMED_OUT) from error
+            remedy = "Check the endpoint and the certificates, and whether sun2xp serve runs"
+            text = f"no connection to {endpoint}: {reason}. {remedy}."
+            raise NoAnswer(text, number=ErrorNumber.TIMED_OUT, remedy=remedy) from error
         self.sender = Sender()
         self._hands: List[Any] = []
         self._lock = threading.Lock()

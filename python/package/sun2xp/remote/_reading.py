@@ -97,7 +97,8 @@ class Reading:
         return self._status if finger is None else self._status.fingers[finger]
 
     def events(self) -> RemoteEvents:
-        """Returns a queue of the hand's events from now on. `for event in hand.events()` waits for each event."""
+        """Returns a queue that gets the hand's events from now on. `for event in hand.events()` waits for each
+        event."""
         self._check()
         return RemoteEvents(self._receiver)
 

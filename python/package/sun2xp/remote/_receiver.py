@@ -179,7 +179,7 @@ class Receiver:
             known = f"the state of finger {finger} is {age * 1e3:.0f} ms old"
             if record is None:
                 known = f"no state of finger {finger} has arrived"
-            remedy = "Check the line and sun2xp serve, or allow older data with stale"
+            remedy = "Check the line and sun2xp serve, or raise stale to allow older data"
             raise Stale(f"{known}, and {stale * 1e3:.0f} ms are allowed. {remedy}.", number=14, remedy=remedy)
         return record
 

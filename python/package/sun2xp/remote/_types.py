@@ -74,13 +74,19 @@ class Tip:
 
 @dataclasses.dataclass(frozen=True)
 class Counts:
-    """What the server has done with Targets since its start."""
+    """What the server has done with Targets since its start. docs/remote-protocol.md describes each reason."""
 
+    #: Targets whose set points the server has taken.
     taken: int
+    #: Targets that are not valid messages.
     malformed: int
+    #: Targets of an epoch that has ended, or of a client that does not own the hand.
     old_epoch: int
+    #: Targets that arrived a second time or in the wrong order.
     replayed: int
+    #: Targets that were too old when they arrived.
     late: int
+    #: Targets with a set point that the hand does not accept.
     refused: int
     #: Number of times that the fingers were held because the owner's targets had become too old.
     caught: int
