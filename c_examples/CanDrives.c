@@ -2,10 +2,10 @@
 
        CanDrives INTERFACE | FOLDER
 
-   Answers a frame that starts or stops a drive with encoder counts and tensions. Answers a frame of torques for a
-   started drive in the same way, and then advances that finger by 1 ms. Each drive has a watchdog. The frame that
-   starts the drive sets the watchdog's time. If no torques arrive for this time, the drive releases its motors. The
-   program ends after 10 s without a frame. */
+   When a frame starts or stops a drive, the program answers with encoder counts and tensions. When a frame of torques
+   reaches a started drive, the program answers in the same way, and then advances that finger by 1 ms. Each drive has a
+   watchdog. The frame that starts the drive sets the watchdog's time. If no torques arrive for this time, the drive
+   releases its motors. The program ends after 10 s without a frame. */
 
 #define _GNU_SOURCE
 #include <stdlib.h>

@@ -1,5 +1,6 @@
 /* The independent watchdog runs from its own oscillator of 17 to 47 kHz (data sheet; 32 kHz typically). At a quarter of
-   this frequency, 80 counts take 6.8 ms to 18.9 ms, and 10 ms typically. The main loop takes less than 0.2 ms. */
+   this frequency, 80 counts take 6.8 ms to 18.9 ms, and 10 ms typically. The main loop feeds the watchdog at
+   intervals of at most 1.6 ms (README.md, upper bound). */
 
 #include "parts.h"
 #include "registers.h"

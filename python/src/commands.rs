@@ -43,7 +43,10 @@ impl Hand {
         self.quick(py, |hand| hand.send_stiffness(finger, rows))
     }
 
-    /// Sends the stiffness of a contact. Its shape selects the type of the contact.
+    /// Sends the stiffness of a contact. Its shape selects the type of the contact: a number, N/cm, with a normal for a
+    /// frictionless point; (3, 3), N/cm, for a hard finger; (4, 4) with a normal for a soft finger, whose row and
+    /// column 3 are the rotation about the normal, N cm/rad; (6, 6) for any contact. The normal is in the finger's
+    /// frame.
     #[pyo3(signature = (finger, stiffness, normal=None))]
     fn send_contact(
         &self,
@@ -84,7 +87,9 @@ impl Hand {
         self.quick(py, |hand| hand.send_group(&commands))
     }
 
-    /// Sends a path: poses and their times.
+    /// Sends a path. `times` are the times of the poses since the beginning of the path, s: shape (n,). The poses are
+    /// `joints`, rad, or `tips` in the finger's frame, cm: shape (n, 3). `stiffness` is Kx at each pose, N/cm: shape
+    /// (n, 3, 3). `valid` is how long the path stays valid after its end, s; without it, `motion.valid_ms` applies.
     #[pyo3(signature = (finger, times, *, joints=None, tips=None, stiffness=None, valid=None))]
     #[expect(clippy::too_many_arguments, reason = "the keywords of a Python call")]
     fn send_path(
