@@ -116,8 +116,10 @@ def test_a_refusal_is_raised_by_the_next_call_and_the_set_point_is_left_out(doub
     ],
 )
 def test_what_cannot_be_right_is_refused_before_it_is_sent(hand, double, call):
-    with pytest.raises(sun2xp.Refused):
+    with pytest.raises(sun2xp.Refused, match=": .") as refusal:
         call(hand)
+    # Every cause is followed by what to do.
+    assert not refusal.value.text.endswith(".")
     double.targets.clear()
     eventually(lambda: len(double.targets) >= 2)
     assert all(not target[3] for target in double.targets)

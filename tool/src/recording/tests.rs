@@ -1,6 +1,9 @@
 //! Recordings of a simulated hand are read again, complete or not, and so are black boxes.
 
+use super::channels::FORMAT;
 use super::{Entry, Item, Recording, RecordingWriter};
+use mcap::records::Metadata;
+use mcap::write::WriteOptions;
 use std::fs::{self, File};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -86,6 +89,19 @@ fn a_recording_has_every_message_with_every_bit() {
     assert!(kinds(|message| matches!(message, Message::Cycle { .. })) > 1500);
     assert!(kinds(|message| matches!(message, Message::Event(_))) > 0);
     assert!(kinds(|message| matches!(message, Message::Status(_))) > 2);
+}
+
+#[test]
+fn a_recording_in_another_version_of_the_format_is_refused_with_the_library_to_use() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hand.mcap");
+    let mut writer = WriteOptions::new().create(File::create(&path).expect("a file")).expect("begun");
+    let metadata = [("version", "0"), ("library", "0.0.9")].map(|(key, value)| (key.to_owned(), value.to_owned()));
+    writer.write_metadata(&Metadata { name: FORMAT.into(), metadata: metadata.into() }).expect("written");
+    writer.finish().expect("finished");
+    let refusal = Recording::open(&path).err().expect("another version").to_string();
+    let remedy = "use the program of library 0.0.9, which wrote it";
+    assert!(refusal.contains("has format version 0,") && refusal.ends_with(remedy), "{refusal}");
 }
 
 #[test]

@@ -110,7 +110,7 @@ class Reading:
         for finger in fingers:
             # A float equals the number of a finger, but the messages need an integer.
             if not hasattr(finger, "__index__") or finger not in self._status.fingers:
-                text = f"there is no finger {finger!r}. The hand {self.name} has the fingers {self.fingers}."
+                text = f"there is no finger {finger!r}: the hand {self.name} has the fingers {self.fingers}"
                 raise Refused(text, number=ErrorNumber.ARGUMENT)
 
     def _record(self, finger: int) -> Any:
