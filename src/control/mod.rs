@@ -6,6 +6,7 @@
 //! connects the blocks. Equation numbers are those of the report.
 
 mod contact;
+mod culprit;
 mod cycle;
 mod eigenvalues;
 pub mod events;

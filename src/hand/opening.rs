@@ -70,14 +70,15 @@ pub(super) struct Line {
     pub port: ServedPort<Connection>,
 }
 
-/// Checks everything in a configuration that can be checked without a port: values, initial stiffness, capacity of the
-/// lines.
+/// Checks everything in a configuration that can be checked without a port: values, initial stiffness, controllers,
+/// capacity of the lines.
 pub fn check(configuration: &Configuration) -> Result<(), UnusableConfiguration> {
     configuration.check()?;
     for number in FingerNumber::ALL {
         let refused = |unusable| UnusableConfiguration { section: Section::Finger(number), unusable };
         initial_stiffness(configuration, number).map_err(refused)?;
         if configuration.hand.fingers.contains(number) {
+            Controller::new(&configuration.fingers[number.index()], configuration.hand.rate).map_err(refused)?;
             carries(configuration, number).map_err(refused)?;
         }
     }

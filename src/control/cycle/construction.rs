@@ -2,6 +2,7 @@
 
 use super::Controller;
 use crate::control::contact::ContactObserver;
+use crate::control::culprit::with_culprit;
 use crate::control::monitors::Monitors;
 use crate::control::motors::motor_heating::MotorHeating;
 use crate::control::motors::motor_torque::MotorTorque;
@@ -30,7 +31,7 @@ const TIGHT: f64 = 0.8;
 
 impl Controller {
     /// Constructs the controller of `finger` at `rate`, Hz, without gravity. Gains that are not configured follow from
-    /// the rate. Returns an error that names the key if the controller cannot use the value of this key.
+    /// the rate. Returns an error that names the key to correct if the controller cannot use the values.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         Self::in_gravity(finger, &Vector3::zeros(), rate)
     }
@@ -39,7 +40,8 @@ impl Controller {
     /// [`Controller::approach_gravity`] changes it. Otherwise it equals the controller that [`Controller::new`]
     /// constructs.
     pub fn in_gravity(finger: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Result<Self, Unusable> {
-        Self::construct(finger, gravity, rate, None)
+        let construct = |finger: &ConfiguredFinger| Self::construct(finger, gravity, rate, None);
+        construct(finger).map_err(|refusal| with_culprit(refusal, finger, &|changed| construct(changed).is_ok()))
     }
 
     /// Constructs a controller without gravity whose state feedback has these numbers. `cargo bench --bench stiffness`
@@ -145,5 +147,22 @@ mod tests {
         assert_eq!(refused, Err("motor.continuous_torque"));
         finger.controller.scheme = Some(Scheme::Figure10);
         assert!(Controller::new(&finger, 1000.0).is_ok());
+    }
+
+    #[test]
+    fn a_refusal_names_the_key_to_correct() {
+        let refused = |change: fn(&mut ConfiguredFinger)| {
+            let mut finger = ConfiguredFinger::default();
+            change(&mut finger);
+            Controller::new(&finger, 1000.0).map(|_| ()).map_err(|unusable| unusable.key)
+        };
+        assert_eq!(refused(|finger| finger.tendon.maximum = 10.0), Err("tendon.maximum"));
+        assert_eq!(refused(|finger| finger.motor.viscous_friction = [1.0; 4]), Err("motor.viscous_friction"));
+        assert_eq!(refused(|finger| finger.friction.joint_coulomb = [20.0; 3]), Err("friction.joint_coulomb"));
+        let weak_motors = |finger: &mut ConfiguredFinger| {
+            (finger.friction.motor_coulomb, finger.friction.conduit) = ([0.0; 4], [0.0; 4]);
+            finger.motor.torque_limit = [0.43; 4];
+        };
+        assert_eq!(refused(weak_motors), Err("motor.torque_limit"));
     }
 }

@@ -45,9 +45,9 @@ impl TensionDistribution {
     /// the limit of its motor. Returns an error if no tensions within the bounds give zero joint torque.
     pub fn new(tendons: &Tendons, minimum: f64, maximum: Vector4<f64>) -> Result<Self, Unusable> {
         crate::control::number_checks::positive("tendon.minimum", &[minimum])?;
-        crate::control::number_checks::positive("tendon.maximum", maximum.as_slice())?;
         let at_rest = tendons.pretension(minimum);
-        if let Some(tendon) = (0..4).find(|&tendon| maximum[tendon] <= at_rest[tendon]) {
+        let too_low = |&tendon: &usize| !maximum[tendon].is_finite() || maximum[tendon] <= at_rest[tendon];
+        if let Some(tendon) = (0..4).find(too_low) {
             let reason = format!(
                 "allows tendon {} only {:.2} N, but at zero joint torque, with at least {minimum} N in every tendon, \
                  that tendon already has {:.2} N: raise tendon.maximum or motor.torque_limit, or lower tendon.minimum",
