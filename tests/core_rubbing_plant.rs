@@ -196,6 +196,59 @@ fn torque_ripple_changes_the_tension_with_the_angle_of_the_motor() {
     assert!((0.01..=0.12).contains(&change), "{change}");
 }
 
+/// Returns the default finger with the largest ratio of a change that the configuration admits, to 1 %. `key` is the key
+/// of the refusals above this ratio.
+fn last_admitted(change: fn(&mut ConfiguredFinger, f64), key: &str) -> ConfiguredFinger {
+    let changed = |ratio| {
+        let mut finger = ConfiguredFinger::default();
+        change(&mut finger, ratio);
+        finger
+    };
+    let (mut admitted, mut refused): (f64, f64) = (1.0, 1000.0);
+    while refused > 1.01 * admitted {
+        let middle = (admitted * refused).sqrt();
+        match changed(middle).check() {
+            Ok(()) => admitted = middle,
+            Err(unusable) => {
+                assert_eq!(unusable.key, key);
+                refused = middle;
+            }
+        }
+    }
+    assert!(refused < 1000.0, "{key}: nothing is refused");
+    changed(admitted)
+}
+
+#[test]
+fn the_simulation_of_a_finger_that_is_just_admitted_does_not_diverge() {
+    let light = last_admitted(
+        |finger, ratio| finger.simulation.masses = finger.simulation.masses.map(|mass| mass / ratio),
+        "simulation.masses",
+    );
+    let viscous = last_admitted(
+        |finger, ratio| finger.simulation.joint_viscous_friction = [5e-4 * ratio; 3],
+        "simulation.joint_viscous_friction",
+    );
+    let pushes = [[6.0, 0.0, 0.0], [-6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, -6.0, 0.0], [0.0, 0.0, 6.0], [3.0; 3]];
+    for (finger, braked) in [(&light, true), (&light, false), (&viscous, true), (&viscous, false)] {
+        let (low, high) = finger.joint_limits();
+        let mut plant = Plant::new(finger, Vector3::new(0.0, -9.81, 0.0)).expect("a usable finger");
+        if !braked {
+            plant.release_brake();
+        }
+        for push in pushes {
+            plant.set_external_force(Vector3::from(push));
+            for _ in 0..1000 {
+                plant.step([0.0; 4]);
+                let joints = plant.joints();
+                // The stops are 0.05 rad beyond the limits. A blow deflects them further.
+                let at_stop = |joint: usize| (low[joint] - 0.5..high[joint] + 0.5).contains(&joints[joint]);
+                assert!((0..3).all(at_stop), "{push:?}, braked: {braked}, {joints}");
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig {
         cases: ProptestConfig::default().cases / 8,

@@ -106,10 +106,18 @@ impl Configured {
 
     /// Does the same as [`Configured::read`], but ignores ports and boards of the fingers in `with_io`.
     pub(crate) fn read_with_io(path: &Path, with_io: FingersWithIo) -> Result<Self, ConfigurationError> {
+        Self::read_with(path, &|text| with_io.parse(text))
+    }
+
+    /// Reads one configuration file. `parse` reads and checks its text.
+    fn read_with(
+        path: &Path,
+        parse: &dyn Fn(&str) -> Result<(Configuration, Said), Wrong>,
+    ) -> Result<Self, ConfigurationError> {
         let file = path.to_path_buf();
         let text = read_regular_file(path, LARGEST)
             .map_err(|source| ConfigurationError::Unreadable { path: file.clone(), source })?;
-        match with_io.parse(&text) {
+        match parse(&text) {
             Ok((configuration, said)) => Ok(Self { configuration, file: Some(file), said }),
             Err(wrong) => Err(ConfigurationError::Invalid { file, line: wrong.line(&text), reason: wrong.to_string() }),
         }

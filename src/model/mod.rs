@@ -15,6 +15,7 @@ mod link_momentum;
 mod link_weight;
 mod part;
 pub mod path;
+pub(crate) mod physics;
 mod shown;
 pub(crate) mod snapshot;
 mod tendons;

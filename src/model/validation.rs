@@ -2,6 +2,7 @@
 
 mod contact;
 mod events;
+mod links;
 mod monitors;
 mod motion;
 mod object;

@@ -13,11 +13,12 @@ use super::stribeck::Stribeck;
 use super::tendon::{ElasticTendons, TendonTensions};
 use crate::model::configuration::ConfiguredFinger;
 use crate::model::configuration::Surface;
+use crate::model::physics::STEP;
 use crate::model::{LinkDynamics, Links, TendonsError};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
 /// Default length of one [`Plant::step`] in simulated time, s.
-pub const PLANT_STEP_SECONDS: f64 = 1e-4;
+pub const PLANT_STEP_SECONDS: f64 = STEP;
 
 /// Joint rate at which the excess of the static friction has fallen to 1/e, rad/s.
 const STRIBECK_RATE: f64 = 0.05;

@@ -1,13 +1,8 @@
 //! The mechanical stops of the joints: stiff, damped and one-sided.
 
 use crate::model::configuration::ConfiguredFinger;
+use crate::model::physics::{STOP_DAMPING, STOP_STIFFNESS};
 use nalgebra::Vector3;
-
-/// Stiffness, N m/rad. A default motor at its torque limit deflects a stop by at most 0.6 degrees. Even with the
-/// lightest link, the plant step resolves the motion at a stop.
-const STIFFNESS: f64 = 100.0;
-/// Damping, N m s/rad.
-const DAMPING: f64 = 0.02;
 
 /// The angles of the stops of each joint, rad.
 #[derive(Clone, Debug)]
@@ -27,7 +22,7 @@ impl JointStops {
     pub fn torque(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64> {
         Vector3::from_fn(|joint, _| {
             let depth = self.depth(theta, joint);
-            let torque = -STIFFNESS * depth - DAMPING * rate[joint];
+            let torque = -STOP_STIFFNESS * depth - STOP_DAMPING * rate[joint];
             if depth > 0.0 {
                 torque.min(0.0)
             } else if depth < 0.0 {
@@ -40,7 +35,7 @@ impl JointStops {
 
     /// Returns the elastic energy, J.
     pub fn energy(&self, theta: &Vector3<f64>) -> f64 {
-        (0..3).map(|joint| 0.5 * STIFFNESS * self.depth(theta, joint).powi(2)).sum()
+        (0..3).map(|joint| 0.5 * STOP_STIFFNESS * self.depth(theta, joint).powi(2)).sum()
     }
 
     /// Returns how far the joint is beyond its upper (positive) or lower (negative) stop, rad.

@@ -54,6 +54,7 @@ fn an_unusable_configuration_is_refused_with_its_line() {
             2,
             "singular",
         ),
+        ("[finger.tendon]\nmaximum = 10.0\n", 2, "finger.1.tendon.maximum"),
     ] {
         let (status, output, printed) = opened_with(configuration);
         assert_eq!(status, Some(2), "{configuration}: {output}{printed}");

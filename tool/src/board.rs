@@ -86,15 +86,15 @@ pub struct Arguments {
 /// Starts the board, and executes orders until `quit`.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let orders = orders_in(&arguments.orders)?;
+    let fingers: Vec<FingerNumber> =
+        arguments.fingers.iter().filter_map(|&number| FingerNumber::new(number.into())).collect();
     let mut configuration = match &arguments.config {
-        Some(file) => hand::Configured::read(file)?.configuration,
+        Some(file) => hand::Configured::read_for_board(file, &fingers)?.configuration,
         None => Configuration::default(),
     };
     if let Some(seed) = arguments.seed {
         configuration.fingers.iter_mut().for_each(|finger| finger.simulation.seed = seed);
     }
-    let fingers: Vec<FingerNumber> =
-        arguments.fingers.iter().filter_map(|&number| FingerNumber::new(number.into())).collect();
     let mut board = SimulatedBoard::new(&configuration, &fingers)?.numbered(number(arguments.link.as_deref())?);
     for action in [&arguments.force, &arguments.wall, &arguments.ball].into_iter().flatten() {
         for finger in board.fingers() {

@@ -150,3 +150,30 @@ fn a_refused_order_leaves_no_link() {
     assert_eq!(board.process.wait().unwrap().code(), Some(2));
     assert!(!link.is_symlink());
 }
+
+/// The ports of a file are ignored, so the physics must suit the step also if the file names a real port.
+#[test]
+fn values_of_the_simulation_are_checked_although_the_file_names_a_port() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("hand.toml");
+    let run = |text: &str, finger: &str| {
+        std::fs::write(&file, text).unwrap();
+        let mut board = Program::new(env!("CARGO_BIN_EXE_sun2xp"));
+        board.args(["board", "--finger", finger, "--config"]).arg(&file);
+        board.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut board = board.spawn().unwrap();
+        // A board that has refused its configuration reads no orders.
+        let _ = board.stdin.take().unwrap().write_all(b"quit\n");
+        let ended = board.wait_with_output().unwrap();
+        (ended.status.code(), String::from_utf8(ended.stderr).unwrap())
+    };
+    let text = "[finger.1]\nport = '/dev/ttyUSB0'\n[finger.1.simulation]\nrotor_inertia = [1e-8, 1e-8, 1e-8, 1e-8]\n\
+                tendon_stiffness = [3000, 3000, 3000, 3000]\n[finger.geometry]\nmotor_radius = [0.2, 0.2, 0.2, 0.2]\n\
+                [finger.2]\nport = '/dev/ttyUSB1'\n[finger.3]\nport = '/dev/ttyUSB2'\n";
+    let (status, told) = run(text, "1");
+    assert_eq!(status, Some(1), "{told}");
+    assert!(told.contains("hand.toml:4: finger.1.simulation.rotor_inertia: "), "{told}");
+    // The other fingers of the file are on other boards. Only finger 1 names a port here, which a hand would refuse.
+    let (status, told) = run("[finger.1]\nport = '/dev/ttyUSB0'\n", "1");
+    assert_eq!(status, Some(0), "{told}");
+}

@@ -101,6 +101,21 @@ fn the_report_is_readable_and_an_invalid_configuration_is_refused() {
     assert!(!told.contains('\u{1b}'), "{told}");
     assert!(told.ends_with("pass\n") || told.ends_with("fail\n"), "{told}");
 
-    fs::write(&file, "[hand]\nrat = 1\n").expect("written");
-    assert_eq!(doctor(&file, &["--json"]), (Vec::new(), Some(1)));
+    // No controller can use the second text.
+    for text in ["[hand]\nrat = 1\n", "[finger.tendon]\nmaximum = 10\n"] {
+        fs::write(&file, text).expect("written");
+        assert_eq!(doctor(&file, &["--json"]), (Vec::new(), Some(1)), "{text}");
+    }
+}
+
+#[test]
+fn values_that_open_hand_would_refuse_are_reported_with_file_and_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("named.toml");
+    fs::write(&file, "[hand]\nrate = 1000\n[finger.2.motor]\nviscous_friction = [1, 1, 1, 1]\n").expect("written");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+    let run = command.args(["doctor", "--seconds", "0.5", "--config"]).arg(&file).output().expect("it starts");
+    let told = String::from_utf8(run.stderr).expect("text");
+    assert_eq!(run.status.code(), Some(1), "{told}");
+    assert!(told.contains("named.toml:4: finger.2.motor.viscous_friction: "), "{told}");
 }

@@ -1,10 +1,11 @@
-//! The configuration of a simulated hand: its name, its rate, and further keys as text.
+//! The configurations of simulated hands and boards.
 
 use super::text::{Said, parse_with};
 use super::{Configured, invalid_text, parse_configuration};
 use crate::hand::ConfigurationError;
 use crate::model::FingerNumber;
 use crate::model::configuration::{ConfiguredFinger, FINGERS};
+use std::path::Path;
 
 impl Configured {
     /// Reads and checks the configuration of a simulated hand with this name and this rate, Hz. `text` has further keys
@@ -19,10 +20,25 @@ impl Configured {
             finger.simulate();
             true
         };
-        let parsed = parse_with(text, Some(name), &simulate);
-        let (mut configuration, _) = parsed.map_err(|wrong| invalid_text(text, &wrong))?;
-        configuration.hand.rate = rate;
+        let parsed = parse_with(text, Some((name, rate)), &simulate);
+        let (configuration, _) = parsed.map_err(|wrong| invalid_text(text, &wrong))?;
         Ok(Self { configuration, file: None, said: Said { ports: [true; FINGERS], remote: false } })
+    }
+
+    /// Reads and checks one configuration file for a simulated board with these fingers. Their ports and boards are
+    /// ignored. The values of their simulation are checked in the same way as those of a finger without a port.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be read or used.
+    pub fn read_for_board(path: &Path, fingers: &[FingerNumber]) -> Result<Self, ConfigurationError> {
+        let simulate = |number: FingerNumber, finger: &mut ConfiguredFinger| {
+            let of_board = fingers.contains(&number);
+            if of_board {
+                finger.simulate();
+            }
+            of_board
+        };
+        Self::read_with(path, &|text| parse_with(text, None, &simulate))
     }
 }
 
@@ -56,5 +72,15 @@ mod tests {
             assert_eq!(hand.fingers[1], named.fingers[1], "{name}");
         }
         assert_eq!(NamedHand::default().name(), "nominal");
+    }
+
+    #[test]
+    fn a_text_is_checked_at_the_rate_of_the_hand() {
+        // State feedback, the default from 750 Hz up, needs more tension than the report's controller.
+        let text = "[hand]\nrate = 500\n[finger.tendon]\nmaximum = 10\n";
+        assert!(Configured::simulated("nominal", 500.0, text).is_ok());
+        let refusal = Configured::simulated("nominal", 1000.0, text).expect_err("refused").to_string();
+        assert!(refusal.starts_with("configuration text:4: finger.1.tendon.maximum: "), "{refusal}");
+        assert!(Configured::simulated("nominal", 500.0, &text.replace("500", "1000")).is_ok());
     }
 }

@@ -33,11 +33,12 @@ pub(super) fn parse(text: &str) -> Result<(Configuration, Said), Wrong> {
     parse_with(text, None, &|_, _| false)
 }
 
-/// Reads and checks the text of a configuration file. A name replaces `simulation.hand` of every finger.
-/// `replace_port` can replace the port of a finger before the ports are checked, and returns whether it did.
+/// Reads and checks the text of a configuration file. In the text of a simulated hand with a name and a rate, Hz, the
+/// name replaces `simulation.hand` of every finger, and the rate replaces `hand.rate`. `replace_port` can replace the
+/// port of a finger before the ports are checked, and returns whether it did.
 pub(super) fn parse_with(
     text: &str,
-    name: Option<&str>,
+    simulated: Option<(&str, f64)>,
     replace_port: &dyn Fn(FingerNumber, &mut ConfiguredFinger) -> bool,
 ) -> Result<(Configuration, Said), Wrong> {
     let document = Document::parse(text).map_err(Wrong::in_syntax)?;
@@ -46,7 +47,8 @@ pub(super) fn parse_with(
         let reason = format!("unknown key `{}`, expected `{}`", Shown(key), TABLES.join("`, `"));
         return Err(Wrong::at(span_of_key(root, key), reason));
     }
-    let hand: ConfiguredHand = deserialize(&table(root, "hand")?).map_err(|wrong| wrong.in_key("hand"))?;
+    let mut hand: ConfiguredHand = deserialize(&table(root, "hand")?).map_err(|wrong| wrong.in_key("hand"))?;
+    hand.rate = simulated.map_or(hand.rate, |(_, rate)| rate);
     let telemetry = deserialize(&table(root, "telemetry")?).map_err(|wrong| wrong.in_key("telemetry"))?;
     let all = table(root, "finger")?;
     let numbers = || (1..=FINGERS).map(|number| number.to_string());
@@ -58,6 +60,7 @@ pub(super) fn parse_with(
     for number in numbers() {
         common.remove(&number);
     }
+    let name = simulated.map(|(name, _)| name);
     let mut fingers: [ConfiguredFinger; FINGERS] = Default::default();
     let mut ports = [false; FINGERS];
     for ((number, finger), port_named) in FingerNumber::ALL.into_iter().zip(&mut fingers).zip(&mut ports) {

@@ -1,16 +1,15 @@
-//! Checks that the oscillation of a rotor on its tendon is slow enough for a simulation.
+//! Checks that a step of the simulation is short enough for the rotors of a finger.
 
 use super::ranges::unusable;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
-
-/// Step of the simulation, s.
-const STEP: f64 = 1e-4;
+use crate::model::physics::STEP;
 
 impl ConfiguredFinger {
     /// Checks the rotors and tendons of the controller's model, with which the tools simulate every finger.
     pub(super) fn check_rotors(&self) -> Result<(), Unusable> {
-        let keys = ("motor.inertia", "tendon.stiffness");
-        self.check_oscillation(keys, &self.motor.inertia, &self.tendon.stiffness)
+        let motor = &self.motor;
+        let keys = ["motor.inertia", "tendon.stiffness", "motor.viscous_friction"];
+        self.check_step(keys, [&motor.inertia, &self.tendon.stiffness, &motor.viscous_friction])
     }
 
     /// Checks the rotors and tendons of a simulated finger. A finger at a port is not checked, because it has the
@@ -19,18 +18,18 @@ impl ConfiguredFinger {
         if !self.simulated() {
             return Ok(());
         }
-        let keys = ("simulation.rotor_inertia", "simulation.tendon_stiffness");
-        self.check_oscillation(keys, &self.simulation.rotor_inertia, &self.simulation.tendon_stiffness)
+        let simulation = &self.simulation;
+        let keys = ["simulation.rotor_inertia", "simulation.tendon_stiffness", "simulation.motor_viscous_friction"];
+        let values = [&simulation.rotor_inertia, &simulation.tendon_stiffness, &simulation.motor_viscous_friction];
+        self.check_step(keys, values)
     }
 
-    /// Checks the angular frequency of each rotor on its tendon: its product with the step of the simulation must not
-    /// exceed 1. A simulation with these values diverges above 2.
-    fn check_oscillation(
-        &self,
-        (key, key_of_stiffness): (&'static str, &str),
-        inertia: &[f64; 4],
-        stiffness: &[f64; 4],
-    ) -> Result<(), Unusable> {
+    /// Checks that h^2 k r^2 + 2 h b is at most the inertia of each rotor. h is the step, k the stiffness of the
+    /// tendon, r the radius of the motor, and b the viscous friction. A simulation of a rotor diverges if the sum
+    /// exceeds four times the inertia. The observers of state feedback resolve a rotor within the limit too. `keys` are
+    /// the keys of inertia, stiffness and friction, and `values` are their values.
+    fn check_step(&self, keys: [&'static str; 3], values: [&[f64; 4]; 3]) -> Result<(), Unusable> {
+        let ([key, key_of_stiffness, key_of_viscous], [inertia, stiffness, viscous]) = (keys, values);
         for motor in 0..4 {
             // N/m and m.
             let (stiffness, radius) = (stiffness[motor] * 100.0, self.geometry.motor_radius[motor] * 0.01);
@@ -43,6 +42,16 @@ impl ConfiguredFinger {
                     motor + 1
                 );
                 return unusable(key, reason);
+            }
+            let most = (inertia[motor] - least) / (2.0 * STEP);
+            if viscous[motor] > most {
+                let reason = format!(
+                    "{} N m s/rad of motor {} is too much for its {key}: it must be at most {:.2e}. Check both values",
+                    viscous[motor],
+                    motor + 1,
+                    0.99 * most
+                );
+                return unusable(key_of_viscous, reason);
             }
         }
         Ok(())
@@ -61,6 +70,19 @@ mod tests {
         assert_eq!(finger.check_rotors(), Ok(()));
         finger.geometry.motor_radius[2] = 1.0;
         assert_eq!(finger.check_rotors().map_err(|unusable| unusable.key), Err("motor.inertia"));
+    }
+
+    #[test]
+    fn a_rotor_must_not_be_too_viscous_for_its_inertia() {
+        let refused = |change: fn(&mut ConfiguredFinger)| {
+            let mut finger = ConfiguredFinger::default();
+            change(&mut finger);
+            finger.check().map_err(|unusable| unusable.key)
+        };
+        assert_eq!(refused(|finger| finger.motor.viscous_friction = [2e-3; 4]), Ok(()));
+        assert_eq!(refused(|finger| finger.motor.viscous_friction[3] = 1.0), Err("motor.viscous_friction"));
+        let key = Err("simulation.motor_viscous_friction");
+        assert_eq!(refused(|finger| finger.simulation.motor_viscous_friction[3] = 1.0), key);
     }
 
     #[test]

@@ -13,8 +13,8 @@ impl ConfiguredFinger {
         each("simulation.joint_coulomb_friction", &simulation.joint_coulomb_friction, 0.0, 1.0, "N m")?;
         each("simulation.tendon_stiffness", &simulation.tendon_stiffness, 1.0, 3000.0, "N/cm")?;
         each("simulation.rotor_inertia", &simulation.rotor_inertia, 1e-8, 1.0, "kg m^2")?;
-        self.check_simulated_rotors()?;
         each("simulation.motor_viscous_friction", &simulation.motor_viscous_friction, 0.0, 1.0, "N m s/rad")?;
+        self.check_simulated_rotors()?;
         each("simulation.motor_coulomb_friction", &simulation.motor_coulomb_friction, 0.0, 1.0, "N m")?;
         within("simulation.shaft_friction", simulation.shaft_friction, 0.0, 1.0, "")?;
         within("simulation.stiction_ratio", simulation.stiction_ratio, 1.0, 10.0, "")?;
@@ -30,6 +30,7 @@ impl ConfiguredFinger {
         within("simulation.gauge_noise", simulation.gauge_noise, 0.0, 100.0, "N")?;
         within("simulation.stop_margin_degrees", simulation.stop_margin_degrees, 0.0, 90.0, "degrees")?;
         each("simulation.start_degrees", &simulation.start_degrees, -180.0, 180.0, "degrees")?;
+        self.check_simulated_links()?;
         check_surface(simulation.surface.as_ref())
     }
 

@@ -140,3 +140,42 @@ fn impossible_values_are_named_with_line_and_reason() {
         assert!(reason.contains(words), "{text:?}: {reason}");
     }
 }
+
+#[test]
+fn values_with_which_no_controller_can_be_constructed_are_refused_with_the_key_to_correct() {
+    for (text, line, beginning, words) in [
+        ("[finger.tendon]\nmaximum = 10\n", 2, "finger.1.tendon.maximum: allows", "lower tendon.minimum"),
+        ("[hand]\nrate = 1000\n[finger.3.tendon]\nmaximum = 10\n", 4, "finger.3.tendon.maximum: allows", "raise"),
+        (
+            "[finger.2.friction]\njoint_coulomb = [20, 20, 20]\n",
+            2,
+            "finger.2.friction.joint_coulomb: correct this value first",
+            "lower tendon.minimum",
+        ),
+        (
+            "[finger.motor]\nviscous_friction = [1, 1, 1, 1]\n",
+            2,
+            "finger.1.motor.viscous_friction: 1 N m s/rad",
+            "must be at most",
+        ),
+    ] {
+        let (found, reason) = refusal(text);
+        assert_eq!(found, Some(line), "{text:?}: {reason}");
+        assert!(reason.starts_with(beginning) && reason.contains(words), "{text:?}: {reason}");
+    }
+    // OpenHand constructs no controller for a finger that the hand does not have.
+    assert!(parse("[hand]\nfingers = [1]\n[finger.2.tendon]\nmaximum = 10\n").is_ok());
+}
+
+#[test]
+fn a_simulated_finger_that_a_step_cannot_integrate_is_refused_with_its_line() {
+    for (text, key) in [
+        ("[finger.2.simulation]\njoint_viscous_friction = [0.5, 0.5, 0.5]\n", "joint_viscous_friction"),
+        ("[finger.2.simulation]\nmasses = [1e-6, 1e-6, 1e-6, 1e-6]\n", "masses"),
+        ("[finger.2.simulation]\nmotor_viscous_friction = [1, 1, 1, 1]\n", "motor_viscous_friction"),
+    ] {
+        let (line, reason) = refusal(text);
+        assert_eq!(line, Some(2), "{text:?}: {reason}");
+        assert!(reason.starts_with(&format!("finger.2.simulation.{key}: ")), "{text:?}: {reason}");
+    }
+}
