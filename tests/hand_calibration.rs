@@ -3,8 +3,9 @@
 use std::fs;
 use std::time::Duration;
 use sun2xp::calibration::{Findings, Obstacle, Progress, Step, Zeros};
+use sun2xp::control::AdmissibleDamping;
 use sun2xp::finger::Stage;
-use sun2xp::hand::{Calibrating, Configured, Fingers, Found, Hand, HandError, PathPose, Pose, Until};
+use sun2xp::hand::{Calibrating, Configured, Fingers, Found, Hand, HandError, PathPose, Pose, SetPointError, Until};
 use sun2xp::hand::{read_configuration, store_findings};
 use sun2xp::model::FingerNumber;
 
@@ -177,6 +178,13 @@ fn fingers_are_zeroed_against_their_stops_and_identified() {
     // The findings are in force at once, for that finger only, and both fingers are under control.
     assert_eq!(hand.calibrated(2).expect("there").tendon.stiffness, <[f64; 4]>::from(found.tendon_stiffness));
     assert_eq!(hand.calibrated(1).expect("there").tendon.stiffness, [300.0; 4]);
+    // The range of the damping ratio depends on the stiffness of the tendons.
+    let refused = hand.send_damping(2, 9.0).expect_err("above every range");
+    let HandError::SetPoint(SetPointError::Damping { stiffness, least, most, .. }) = refused else {
+        panic!("{refused}")
+    };
+    let range = AdmissibleDamping::new(&hand.calibrated(2).expect("there"), 500.0).range(stiffness);
+    assert_eq!((least, most), range);
     assert_eq!([1, 2, 3].map(|finger| hand.report(finger).expect("a report").stage), [Stage::Running; 3]);
 }
 

@@ -4,6 +4,7 @@
 use crate::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
 use crate::finger::{Adjustable, CalibrationRun, Fault, Order, Stage};
 use crate::hand::calibration_file::store_findings;
+use crate::hand::opening::admission;
 use crate::hand::{Found, Hand, HandError};
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredFinger};
@@ -153,28 +154,36 @@ impl Calibrating {
             Some(Verdict::Refused(obstacle)) => {
                 Err(HandError::Calibration { finger, limp: report.stage == Stage::Limp, obstacle })
             }
-            Some(Verdict::Found(found)) => {
-                // The lock is held throughout, so that a concurrent adjustment is not lost.
-                let mut configuration = hand.configuration.write();
-                let mut changed = configuration.clone();
-                found.apply(&mut changed.fingers[finger.index()]);
-                // An adjustment may have lowered the bound below the initial stiffness.
-                changed.check()?;
-                let adjustable = Adjustable::new(&changed, finger).map_err(|unusable| refusal(finger, unusable))?;
-                let limp = self.stays_limp;
-                let to_store = Found::by_calibration(&found, finger, &changed);
-                let member = hand.dispatcher.member(finger)?;
-                self.order = hand.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
-                    Self::ordered(finger, member.mailbox.restart(adjustable, limp))
-                })?;
-                (self.found, self.asked) = (Some(found), Instant::now());
-                *configuration = changed;
-                drop(configuration);
-                // The results are in force even if the finger faults before it has restarted.
-                hand.note(to_store);
-                Ok(CalibrationState::InProgress(Progress { step: Step::TakingUpSlack, part: 1.0 }))
-            }
+            Some(Verdict::Found(found)) => self.put_in_force(hand, found),
         }
+    }
+
+    /// Makes the finger restart with the results of its routine.
+    fn put_in_force(&mut self, hand: &Hand, found: Findings) -> Result<CalibrationState, HandError> {
+        let finger = self.finger;
+        // The lock is held throughout, so that a concurrent adjustment is not lost.
+        let mut configuration = hand.configuration.write();
+        let mut changed = configuration.clone();
+        found.apply(&mut changed.fingers[finger.index()]);
+        // An adjustment may have lowered the bound below the initial stiffness.
+        changed.check()?;
+        let adjustable = Adjustable::new(&changed, finger).map_err(|unusable| refusal(finger, unusable))?;
+        let limp = self.stays_limp;
+        let to_store = Found::by_calibration(&found, finger, &changed);
+        let member = hand.dispatcher.member(finger)?;
+        self.order = hand.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
+            // Moment arms and tendon stiffness determine the ranges of torque and damping, and the force of the tip.
+            let mut checks = member.admission.write();
+            let order = Self::ordered(finger, member.mailbox.restart(adjustable, limp))?;
+            *checks = admission(&changed, finger);
+            Ok(order)
+        })?;
+        (self.found, self.asked) = (Some(found), Instant::now());
+        *configuration = changed;
+        drop(configuration);
+        // The results are in force even if the finger faults before it has restarted.
+        hand.note(to_store);
+        Ok(CalibrationState::InProgress(Progress { step: Step::TakingUpSlack, part: 1.0 }))
     }
 }
 
