@@ -116,7 +116,7 @@ mod finger {
                 Self { number: 0, origin: 0 }
             }
 
-            pub fn fill(&mut self, number: u32, origin: u64, _: &PathTable) {
+            pub fn fill(&mut self, number: u32, origin: u64, _: Option<impl Sized>, _: &PathTable) {
                 (self.number, self.origin) = (number, origin);
             }
         }

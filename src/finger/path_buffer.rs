@@ -4,7 +4,7 @@
 use crate::control::motion::{PathTable, TimedStiffness};
 use crate::model::path::Piece;
 use crate::realtime::{LockedMemory, Pages};
-use nalgebra::Vector3;
+use nalgebra::{Matrix6, Vector3};
 
 /// Largest number of pieces of a path.
 pub const MOST_PIECES: usize = 256;
@@ -18,6 +18,9 @@ pub(super) struct PathBuffer {
     pub number: u32,
     /// The period of the servo in which the path begins, as in [`Reference::period`](crate::finger::Reference::period).
     pub origin: u64,
+    /// The stiffness with which the path begins, as in [`SetPoint::stiffness`](crate::control::SetPoint::stiffness);
+    /// none for the stiffness that is in force when the servo takes the path.
+    pub begin: Option<Matrix6<f64>>,
     pieces: Pages<[Piece]>,
     piece_count: usize,
     stiffness: Pages<[TimedStiffness]>,
@@ -31,12 +34,12 @@ impl PathBuffer {
         let stiffness = Pages::from_fn(MOST_POSES, |_| TimedStiffness::default());
         memory.add(&pieces);
         memory.add(&stiffness);
-        Self { number: 0, origin: 0, pieces, piece_count: 1, stiffness, stiffness_count: 0 }
+        Self { number: 0, origin: 0, begin: None, pieces, piece_count: 1, stiffness, stiffness_count: 0 }
     }
 
     /// Replaces the path. Entries beyond the largest numbers are ignored; the caller must have refused such a path.
-    pub fn fill(&mut self, number: u32, origin: u64, path: &PathTable) {
-        (self.number, self.origin) = (number, origin);
+    pub fn fill(&mut self, number: u32, origin: u64, begin: Option<Matrix6<f64>>, path: &PathTable) {
+        (self.number, self.origin, self.begin) = (number, origin, begin);
         self.piece_count = path.pieces.len().min(MOST_PIECES);
         self.pieces[..self.piece_count].copy_from_slice(&path.pieces[..self.piece_count]);
         self.stiffness_count = path.stiffness.len().min(MOST_POSES);

@@ -32,6 +32,9 @@ impl Mailbox {
         let stiffness = !path.stiffness.is_empty();
         let stiffens = planners.path_ahead().is_some_and(|ahead| ahead.stiffest.is_some());
         let present = planners.reports.read().set_point.stiffness;
+        // The servo may not have taken a stiffness that was sent just before. It then takes only the newer set point of
+        // the path. If an earlier path changes the stiffness, this one begins with the stiffness that is in force.
+        let begin = (!stiffens).then_some(planners.sent.set_point.stiffness);
         let next = planners.set_points.input_buffer_mut();
         *next = planners.sent;
         if stiffness && stiffens {
@@ -51,7 +54,7 @@ impl Mailbox {
         planners.path = LastPath { number, set_point: next.number, extent };
         planners.sent = *next;
         // The path is published before the set point, so that a servo that has the set point also has the path.
-        planners.paths.input_buffer_mut().fill(number, origin, path);
+        planners.paths.input_buffer_mut().fill(number, origin, begin, path);
         planners.paths.publish();
         planners.set_points.publish();
         Ok(Ok(Some(number)))

@@ -144,7 +144,7 @@ impl FingerServo {
                 let taken = self.mailbox.take_path();
                 motion.path = Following {
                     number: taken.number,
-                    follower: Some(Follower::new(held.stiffness)),
+                    follower: Some(Follower::new(taken.begin.unwrap_or(held.stiffness))),
                     // Only the set point of a later path tells whether that path changes the stiffness. When that set
                     // point arrives, it can switch the change off but not on, so the change is on at first.
                     stiffness: path.stiffness || taken.number != path.number,
