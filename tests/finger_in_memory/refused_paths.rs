@@ -59,6 +59,18 @@ fn a_path_that_is_too_fast_is_made_slower_if_commands_are_clamped() {
     assert!(matches!(again, Err(PathError::TooFast { .. })));
 }
 
+/// The sum of the time of a pose and 1 ms is rounded, and may be later than the next pose.
+#[test]
+fn poses_that_are_a_millisecond_apart_are_accepted() {
+    let rest = Reference { joints: TARGET, ..Reference::default() };
+    let planned = |apart: f64| {
+        let poses: Vec<_> = (1..=128).map(|pose| joints(apart * f64::from(pose), TARGET.into())).collect();
+        plan_path(&configuration(), FingerNumber::ONE, &rest, &poses).map(drop)
+    };
+    assert!(planned(1e-3).is_ok(), "{:?}", planned(1e-3));
+    assert!(matches!(planned(0.99e-3), Err(PathError::Time { pose: 0, .. })));
+}
+
 /// The text gives the factor with two digits. The path is admitted with this factor, and refused with the next smaller
 /// one.
 #[test]

@@ -16,6 +16,9 @@ use nalgebra::{Matrix6, Vector3};
 /// Shortest time from one pose to the next, s.
 const LEAST_STEP: f64 = 1e-3;
 
+/// Rounding error of the time from one pose to the next, s. Poses that are exactly [`LEAST_STEP`] apart are accepted.
+const TIME_ROUNDING: f64 = 1e-9;
+
 /// Time in which a finger in motion brakes to rest if a path that continues its motion is refused, s.
 const BRAKING: f64 = 0.15;
 
@@ -145,7 +148,7 @@ impl Admission {
         let mut before = 0.0;
         for (pose, &PathPose { time, .. }) in poses.iter().enumerate() {
             // This form of the comparison rejects NaN.
-            if !(time >= before + LEAST_STEP && time <= LONGEST) {
+            if !(time >= before + (LEAST_STEP - TIME_ROUNDING) && time <= LONGEST) {
                 let (least, most) = (LEAST_STEP, LONGEST);
                 return Err(PathError::Time { finger: self.finger, pose, time, before, least, most });
             }
