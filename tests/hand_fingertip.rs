@@ -242,3 +242,17 @@ fn clamped_commands_follow_the_adjusted_limits() {
     taken_in(&hand, 1);
     assert_eq!(hand.report(1).expect("report").set_point.joints[1], 20f64.to_radians());
 }
+
+#[test]
+fn a_finger_that_holds_a_pose_beyond_a_limit_can_be_adjusted() {
+    let mut configuration = Configuration::default();
+    configuration.fingers[0].simulation.start_degrees = [0.0, 102.0, 60.0];
+    let hand = open(configuration);
+    let found = hand.report(1).expect("report").set_point.joints;
+    assert!(found[1] > 100.5f64.to_radians(), "{found}");
+    hand.adjust(1, "events.arrived_degrees = 3").expect("adjusted");
+    taken_in(&hand, 1);
+    assert_eq!(hand.report(1).expect("report").set_point.joints, found);
+    let refused = hand.adjust(1, "joints.maximum_degrees = [60, 99, 120]");
+    assert!(matches!(refused, Err(HandError::SetPoint(SetPointError::BeyondJointLimit { .. }))), "{refused:?}");
+}

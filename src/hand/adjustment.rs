@@ -4,7 +4,7 @@
 use crate::control::motion::PathExtent;
 use crate::control::{JointSpring, SetPoint};
 use crate::finger::{Adjustable, Replaced};
-use crate::hand::admission::{Admission, PATH_ROUNDING};
+use crate::hand::admission::{Admission, PATH_ROUNDING, Ranges};
 use crate::hand::configuration_file::{Wrong, deserialize, overlay, to_document};
 use crate::hand::dispatcher::Member;
 use crate::hand::opening::admission;
@@ -81,7 +81,7 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     let finger = changed.finger;
     let mut admission = member.admission.write();
     let sent = member.mailbox.sent();
-    let joints = changed.joints(sent.joints.into())?;
+    let joints = joints_within(&changed, &admission.joint_limits, &sent.joints)?;
     let ahead = member.mailbox.path_ahead();
     let leaves = ahead.as_ref().map(|path| leaves_limits(&changed, &admission.joint_limits, path));
     let leaves = leaves.transpose()?.unwrap_or(false);
@@ -121,6 +121,25 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     }
     *admission = changed;
     Ok(())
+}
+
+/// Checks the joint angles of the last set point, rad, against the changed limits. A finger may hold the pose beyond a
+/// limit in which it was found, so only limits that are narrower than `before`, rad, count.
+fn joints_within(
+    changed: &Admission,
+    before: &(Vector3<f64>, Vector3<f64>),
+    sent: &Vector3<f64>,
+) -> Result<Vector3<f64>, SetPointError> {
+    let (mut low, mut high) = changed.joint_limits;
+    for joint in 0..3 {
+        if low[joint] <= before.0[joint] {
+            low[joint] = low[joint].min(sent[joint]);
+        }
+        if high[joint] >= before.1[joint] {
+            high[joint] = high[joint].max(sent[joint]);
+        }
+    }
+    Ranges { joint_limits: (low, high), ..changed.ranges() }.joints((*sent).into())
 }
 
 /// Returns whether a path that has not ended leaves the changed joint limits. A path may begin beyond a limit, so only

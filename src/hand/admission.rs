@@ -47,7 +47,7 @@ pub(super) struct Admission {
 impl Admission {
     // Without `inline`, the ranges are copied for every set point.
     #[inline]
-    fn ranges(&self) -> Ranges {
+    pub(super) fn ranges(&self) -> Ranges {
         let Self { finger, joint_limits, stiffness_bound, out_of_range, .. } = *self;
         Ranges { finger, joint_limits, stiffness_bound, out_of_range }
     }
@@ -125,7 +125,9 @@ impl DampingAdmission {
         let stiffness = self.largest(&set_point.stiffness)? + of_joints;
         let (least, most) = self.admissible.range(stiffness);
         let ratio = set_point.damping;
-        if !(least..=most).contains(&ratio) && self.out_of_range == OutOfRange::Refuse {
+        // A ratio at a limit that is sent as `float` may be rounded beyond the limit. It must be accepted.
+        let rounding = f64::from(f32::EPSILON) * most;
+        if !(least - rounding..=most + rounding).contains(&ratio) && self.out_of_range == OutOfRange::Refuse {
             return Err(SetPointError::Damping { finger, ratio, stiffness, least, most });
         }
         set_point.damping = ratio.clamp(least, most);

@@ -200,7 +200,15 @@ mod damping {
             let mut admitted = set_point(stiffness, damping);
             refuse.admit(&mut admitted).expect("admitted");
             assert_eq!(admitted, set_point(stiffness, damping));
+            // As float, 0.94 is below the limit.
+            let mut rounded = set_point(stiffness, f64::from(damping as f32));
+            refuse.admit(&mut rounded).expect("admitted");
+            assert!((rounded.damping - damping).abs() < 1e-7 && rounded.damping >= least_of(&refuse, stiffness));
         }
+    }
+
+    fn least_of(admission: &DampingAdmission, stiffness: f64) -> f64 {
+        admission.admissible.range(stiffness).0
     }
 
     #[test]
