@@ -28,7 +28,8 @@ const STALL_LIMIT: Duration = Duration::from_secs(5);
 /// need the hand.
 #[must_use = "a recovery does nothing before `reconnect` is called"]
 pub struct Recovering {
-    /// `None` if the finger is not faulted. Then there is nothing to do.
+    finger: FingerNumber,
+    /// `None` if the finger is not faulted. Then there is nothing to repair.
     task: Option<Task>,
     /// Time of the first poll. The time limit for the servo to take the finger counts from here, because `reconnect`
     /// may have taken long.
@@ -36,7 +37,6 @@ pub struct Recovering {
 }
 
 struct Task {
-    finger: FingerNumber,
     /// Place of the finger among those of the port.
     place: usize,
     port: Arc<RepairablePort>,
@@ -50,8 +50,8 @@ struct Task {
 
 impl Recovering {
     /// Notes the state of finger 1, 2 or 3 and of every other finger on its port. If the finger is not faulted, the
-    /// other steps do nothing. If a finger was stopped before this call and its servo has not faulted it yet, this call
-    /// waits until the servo has done so. That takes a cycle.
+    /// other steps only wait for a recovery of another caller. If a finger was stopped before this call and its servo
+    /// has not faulted it yet, this call waits until the servo has done so. That takes a cycle.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if a servo does not carry out a request to stop within 5 s.
@@ -64,7 +64,6 @@ impl Recovering {
         hand.dispatcher.member(finger)?;
         let port = hand.recovery.ports.iter().find(with_finger).ok_or(HandError::NotOpened(finger))?.clone();
         let mut task = Task {
-            finger,
             place: 0,
             port: port.clone(),
             recoveries: [0; FINGERS],
@@ -78,7 +77,7 @@ impl Recovering {
             let faulted = matches!(report.stage, Stage::Faulted(_));
             if member == finger {
                 if !faulted {
-                    return Ok(Self { task: None, polled: OnceLock::new() });
+                    return Ok(Self { finger, task: None, polled: OnceLock::new() });
                 }
                 task.place = place;
             }
@@ -89,7 +88,7 @@ impl Recovering {
         // fault of any finger stops the recovered finger again.
         let faults = hand.recovery.alarm.faults();
         task.stops.iter_mut().for_each(|stops| stops.faults = faults);
-        Ok(Self { task: Some(task), polled: OnceLock::new() })
+        Ok(Self { finger, task: Some(task), polled: OnceLock::new() })
     }
 
     /// Repairs the connection of the finger, and makes the finger take up slack. If no finger of the port runs, this
@@ -100,7 +99,8 @@ impl Recovering {
     /// Returns an error if the port or a board does not work, if a board is not the same as at open, if the servo has
     /// failed or does not run, or if the hand was closed.
     pub fn reconnect(&self) -> Result<(), HandError> {
-        let Some(Task { finger, place, ref port, recoveries, ref stops, beside_others }) = self.task else {
+        let Self { finger, task: Some(Task { place, ref port, recoveries, ref stops, beside_others }), .. } = *self
+        else {
             return Ok(());
         };
         let waiting = Instant::now();
@@ -153,13 +153,14 @@ impl Recovering {
         }
     }
 
-    /// Returns whether every finger that this recovery has repaired holds its pose.
+    /// Returns whether every finger that this recovery has repaired holds its pose. A finger of the port that faults
+    /// again does not concern the caller, unless it is the finger of this recovery.
     ///
     /// # Errors
-    /// Returns an error if such a finger faults again, or if its servo does not take it back.
+    /// Returns an error if the finger faults again, or if the servo of a finger does not take it back.
     pub fn poll(&self, hand: &Hand) -> Result<bool, HandError> {
         let mut done = true;
-        let Some(Task { port, recoveries, place: own, .. }) = &self.task else { return Ok(true) };
+        let Some(Task { port, recoveries, place: own, .. }) = &self.task else { return self.is_spring(hand) };
         let waiting = self.polled.get_or_init(Instant::now);
         for (place, &finger) in port.fingers.iter().enumerate() {
             let before = recoveries[place];
@@ -174,11 +175,21 @@ impl Recovering {
                     }
                     done = false;
                 }
-                Stage::Faulted(fault) => return Err(HandError::Faulted { finger, fault }),
+                Stage::Faulted(fault) if place == *own => return Err(HandError::Faulted { finger, fault }),
                 stage => done &= stage != Stage::Opening,
             }
         }
         Ok(done)
+    }
+
+    /// Returns whether the finger, which was not faulted at the beginning, no longer takes up slack. Another caller may
+    /// have recovered it.
+    fn is_spring(&self, hand: &Hand) -> Result<bool, HandError> {
+        let finger = self.finger;
+        match hand.dispatcher.last_report(finger)?.stage {
+            Stage::Faulted(fault) => Err(HandError::Faulted { finger, fault }),
+            stage => Ok(stage != Stage::Opening),
+        }
     }
 }
 
@@ -202,7 +213,7 @@ fn report_after_stops(mailbox: &Mailbox, begun: Instant) -> Option<FingerReport>
 impl Hand {
     /// Makes a faulted finger 1, 2 or 3 a spring again, which holds its present pose at its initial stiffness. If no
     /// finger on its port runs, the other fingers of the port recover too. The cause of the fault must be removed
-    /// first. Does nothing if the finger is not faulted.
+    /// first. If the finger is not faulted, the call only waits for a recovery of another caller.
     ///
     /// # Errors
     /// Returns the errors of [`Recovering::begin`], [`Recovering::reconnect`] and [`Recovering::poll`].

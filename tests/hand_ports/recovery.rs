@@ -173,6 +173,26 @@ fn fingers_that_recover_beside_one_that_faults_again_stay_where_they_are_found()
     close(hand);
 }
 
+/// The recovery of a finger includes the other fingers of its port. A caller that wants one of these waits for it.
+#[test]
+fn a_finger_recovers_although_another_one_of_its_port_faults_again() {
+    let _turn = turn();
+    let (_board, hand) = one_port();
+    stop_all();
+    (1..=3).for_each(|finger| assert_eq!(faults(&hand, finger), FaultKind::EmergencyStopCall));
+    let stage = |finger| hand.report(finger).expect("a report").stage;
+    std::thread::scope(|scope| {
+        let recovering = scope.spawn(|| recovers(&hand, 1));
+        wait_until("opening", || stage(3) == Stage::Opening);
+        hand.stop(2).expect("finger 2");
+        recovers(&hand, 3);
+        assert_eq!(stage(3), Stage::Running);
+        recovering.join().expect("it recovers");
+    });
+    assert_eq!((stage(1), fault(&hand, 2)), (Stage::Running, Some(FaultKind::FingerStopCall)));
+    close(hand);
+}
+
 #[test]
 fn two_threads_that_recover_fingers_of_one_port_both_succeed() {
     let _turn = turn();
