@@ -48,7 +48,7 @@ pub(super) fn refuse(name: &'static str, handle: Handle, refusal: &Refusal) -> c
     let (number, errno) = (number(refusal), refusal.errno());
     let remedy = RemedyCalls(refusal.actions(), interface);
     let stored = thread_errors::store(handle, number, errno, name, &Shown(refusal, interface), &remedy);
-    if stored && is_printed(handle, interface) && is_first_of_its_kind(refusal.kind()) {
+    if stored && is_printed(name, handle, interface) && is_first_of_its_kind(refusal.kind()) {
         thread_errors::with_newest_text(|text| report(Severity::Refusal, text));
     }
     process::set_errno(errno);
@@ -67,9 +67,11 @@ fn is_first_of_its_kind(kind: Kind) -> bool {
 }
 
 /// Returns whether the refusals of calls for this hand are printed. The handle may belong to no open hand.
-fn is_printed(handle: Handle, interface: Interface) -> bool {
+fn is_printed(name: &str, handle: Handle, interface: Interface) -> bool {
     match interface {
-        // These calls have only one hand, so its setting also applies before it is opened again.
+        // The hand whose opening is refused has no setting yet.
+        Interface::Of1990 if name == "OpenHand" => true,
+        // The other calls have only one hand, so its setting also applies before it is opened again.
         Interface::Of1990 => SILENT[DEFAULT].load(Ordering::Relaxed) == 0,
         Interface::Handles => {
             let silent = handle.place().and_then(|place| SILENT.get(place));

@@ -18,12 +18,21 @@ static void count(int severity, const char *text, void *user)
         refusals++;
 }
 
+/* Writes the configuration file that OpenHand finds. */
+static void configure(const char *text)
+{
+    FILE *file = fopen("sun2xp.toml", "w");
+
+    CHECK(file != NULL && fputs(text, file) >= 0);
+    CHECK(fclose(file) == 0);
+}
+
 /* Each refusal has a kind of its own, because only the first of a kind is reported. */
 int main(void)
 {
     static const char NoPort[] =
         "[hand]\nprint_refusals = false\nfingers = [1]\n[finger.1]\nport = \"no/such/port\"\n";
-    double far[3] = {9, 0.5, 0.9}, large[3] = {1e9, 0, 0}, position[3];
+    double far[3] = {9, 0.5, 0.9}, large[3] = {1e9, 0, 0}, stiff[9] = {99, 0, 0, 0, 1, 0, 0, 0, 1}, position[3];
     sun2xp_hand *loud, *silent, *other;
 
     CHECK(sun2xp_set_log(count, NULL) == 0);
@@ -37,5 +46,10 @@ int main(void)
     CHECK(sun2xp_open_text(NoPort, &other) < 0 && refusals == 3);
     CHECK(sun2xp_send_damping(loud, 1, 99) < 0 && refusals == 4);
     CHECK(sun2xp_position(NULL, 1, position) < 0 && refusals == 5);
-    return sun2xp_close(loud);
+    CHECK(sun2xp_close(loud) == 0);
+    configure(SILENT);
+    CHECK(OpenHand() == 0 && SendKx(1, stiff) == -1 && CloseHand() == 0 && refusals == 5);
+    configure("[hand]\nrat = 1\n");
+    CHECK(OpenHand() == -1 && refusals == 6);
+    return 0;
 }
