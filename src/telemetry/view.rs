@@ -2,7 +2,7 @@
 
 use super::message::Message;
 use super::sample::Sample;
-use crate::control::{Activity, JointSprings, Report};
+use crate::control::{Activity, ContactEstimate, JointSprings, Report};
 use crate::finger::{ControlRecord, ControllerSource, CycleRecord, FingertipState, Stage};
 use crate::model::configuration::{Configuration, ConfiguredFinger, FINGERS};
 use crate::model::{FingerNumber, Links};
@@ -90,6 +90,8 @@ impl View {
             _ => None,
         });
         let running = record.stage == Stage::Running;
+        // A calibration that begins at rest leaves the finger a spring at first, so there is an estimate of a contact.
+        let contact = if running { report.contact } else { ContactEstimate::default() };
         let springs = mechanics.springs.as_ref().filter(|_| running);
         let spring = springs.zip(set_point.as_ref());
         let state = FingertipState::new(mechanics.links, &mechanics.r, &report, spring);
@@ -121,9 +123,9 @@ impl View {
             motor_torques: report.motor_torques.into(),
             torque_scale: report.torque_scale,
             stiffness_scale: report.stiffness_scale,
-            contact_force: (-report.contact.force).into(),
-            touching: report.contact.touching,
-            slide: report.contact.slide,
+            contact_force: (-contact.force).into(),
+            touching: contact.touching,
+            slide: contact.slide,
             wake_up: microseconds(CycleStage::WakeUp),
             whole: microseconds(CycleStage::Whole),
         }
@@ -132,4 +134,35 @@ impl View {
 
 fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
     std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::{MotorCommand, SetPoint};
+    use crate::finger::ControlInput;
+    use crate::realtime::CycleTiming;
+
+    #[test]
+    fn only_a_running_finger_has_a_contact() {
+        let joints = Vector3::new(0.2, 0.6, 1.1);
+        let input = ControlInput {
+            anew_from: None,
+            activity: Activity::Follow(SetPoint::hard_finger(joints, Matrix3::identity())),
+            skipped: 0,
+            fading: None,
+            gravity: None,
+            path_begins: false,
+        };
+        let contact = ContactEstimate { force: Vector3::x(), touching: true, slide: 2.0, ..ContactEstimate::default() };
+        let report = Report { joints, contact, ..Report::default() };
+        let control = ControlRecord { controller: 0, previous: 0, input, command: MotorCommand::default(), report };
+        let (touched, none) = (([-1.0, 0.0, 0.0], true, 2.0), ([0.0; 3], false, 0.0));
+        for (stage, expected) in [(Stage::Running, touched), (Stage::Calibrating, none), (Stage::Limp, none)] {
+            let (timing, control) = (CycleTiming::default(), Some(control));
+            let record = CycleRecord { cycle: 1, began: 0, stage, timing, feedback: None, status: 0, control };
+            let sample = View::new(&Configuration::default()).sample(FingerNumber::ONE, &record);
+            assert_eq!((sample.contact_force, sample.touching, sample.slide), expected, "{stage}");
+        }
+    }
 }
