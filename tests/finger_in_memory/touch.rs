@@ -200,3 +200,21 @@ fn a_reset_of_the_board_makes_its_readings_invalid() {
     resets(&mut bench);
     assert_eq!(bench.touch.reading(1), Some(Default::default()));
 }
+
+/// A board that loses its power is silent. It has no readings when it is on again.
+#[test]
+fn a_fault_of_the_line_makes_the_readings_invalid() {
+    let mut bench = Bench::with(two_elements);
+    push(&bench, [-0.5, 0.0, 0.0]);
+    bench.cycles(3);
+    assert!(bench.touch.reading(1).expect("an element").pressed);
+    bench.with_cable(|cable| cable.inject(LineFault::Drop, 1.0, u64::MAX, 1));
+    bench.faults(FaultKind::LostReplies);
+    assert!(bench.touch.reading(1).expect("an element").pressed, "a faulted finger keeps its readings");
+    push(&bench, [0.0; 3]);
+    bench.with_finger(|finger| finger.reset());
+    bench.with_cable(|cable| cable.clear());
+    bench.repair();
+    bench.opens();
+    assert_eq!((bench.touch.reading(1), bench.touch.lost()), (Some(Default::default()), 0));
+}

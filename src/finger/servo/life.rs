@@ -115,8 +115,9 @@ impl FingerServo {
         self.mailbox.discard_groups();
         self.feedback = found(configured);
         self.status = configured.status;
-        let reset = matches!(self.report.stage, Stage::Faulted(fault) if fault.kind == FaultKind::BoardReset);
-        self.touch.recover(reset);
+        if let Stage::Faulted(fault) = self.report.stage {
+            self.touch.recover(fault.kind);
+        }
         self.sampled_at = None;
         self.command = MotorCommand::default();
         self.restart = true;

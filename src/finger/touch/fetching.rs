@@ -3,6 +3,7 @@
 use super::Elements;
 use crate::board::OutgoingRequest;
 use crate::board::protocol::{Capabilities, TactileChange, TactileEvent, TactileRequest};
+use crate::finger::FaultKind;
 use crate::finger::events::{EventKind, Occurrence};
 use crate::model::Part;
 use crate::realtime::LockedMemory;
@@ -42,13 +43,19 @@ impl TouchFetching {
 
     /// Resumes after a fault. The board may have been reset, so it may have begun to count its events again. The number
     /// of an earlier event could then delete events that were not received. If the board was not reset, one event may
-    /// come twice. `reset` says whether the fault was a reset: then the board has forgotten its readings too.
-    pub fn recover(&mut self, reset: bool) {
+    /// come twice. A board that was reset has also forgotten its readings, and never reports the end of a contact from
+    /// before the reset.
+    pub fn recover(&mut self, fault: FaultKind) {
         (self.asked, self.received, self.unanswered, self.pause) = (None, 0, 0, 0);
-        if reset {
-            self.lost = Some(0);
-            self.elements.forget_readings();
-        }
+        self.lost = match fault {
+            FaultKind::BoardReset => Some(0),
+            // The board may have lost its power. It then counts lost events from 0 again.
+            FaultKind::LostReplies | FaultKind::DamagedReplies | FaultKind::PortVanished | FaultKind::PortFailed => {
+                None
+            }
+            _ => return,
+        };
+        self.elements.forget_readings();
     }
 
     /// Returns the elements, which planners read.
