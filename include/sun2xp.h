@@ -730,14 +730,15 @@ int sun2xp_position(sun2xp_hand *hand, int finger, double *position);
  Result of sun2xp_tip. Vectors are in the finger's frame.
 
  The member force is computed from the measured tensions, so it includes friction, weight and inertia of
- the finger. It is never NaN. Near singular poses there are directions in which a force on the tip causes
- no joint torque, so that the joints cannot measure it. Along these directions, the members force and
- stiffness are zero. The member contact_force does not contain constant errors of the gauges. The member
- stiffness is the part of Kx, or of the joint stiffness, that the finger applies at present, plus three
- other springs: the soft joint limits, the spring of joint 0 while the tip is near the axis of this joint,
- and the rotational stiffness of a contact. The members contact_force, stiffness and touching are zero
- while the finger is not running. The member slide_speed is 0 while the member touching is 0. While
- touching is 1, the tip slides on the object at this speed, or tip and object move together at this speed.
+ the finger. It is never NaN. Near singular poses there are directions in which a force on the tip
+ causes no joint torque, so that the joints cannot measure it. Along these directions, the members force
+ and stiffness are zero. The member contact_force does not contain constant errors of the gauges. The
+ member stiffness is the part of Kx, or of the joint stiffness, that the present pose admits, plus three
+ other springs: the soft joint limits, the spring of joint 0 while the tip is near the axis of this
+ joint, and the rotational stiffness of a contact. A change of Kx counts in the next cycle, although the
+ finger takes 50 ms for it. The members contact_force, stiffness and touching are zero while the finger
+ is not running. The member slide_speed is 0 while the member touching is 0. While touching is 1, the
+ tip slides on the object at this speed, or tip and object move together at this speed.
  */
 struct sun2xp_tip {
     size_t size;                            /* sizeof (struct sun2xp_tip), set before the call. */
@@ -1043,8 +1044,10 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
  arrives at the joint angles that were computed for it. If a reflex has replaced the set point that was
  sent last, the condition must hold for the set point of the reflex. The same applies if the finger
  ignored the set point because a reflex inhibits set points for some time. The wait then returns only
- after this time. The event SUN2XP_EVENT_REFLEX_FIRED says that a reflex has reacted. Other calls work
- during the wait. sun2xp_close works too, and then the wait is refused.
+ after this time. If the set point that was sent last has expired, the condition must hold for the pose
+ that the finger holds since then. The events SUN2XP_EVENT_REFLEX_FIRED and SUN2XP_EVENT_EXPIRED say that
+ this has happened. Other calls work during the wait. sun2xp_close works too, and then the wait is
+ refused.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1103,10 +1106,12 @@ struct sun2xp_path_pose {
  path. A path without a Kx leaves the joint stiffness as it is.
 
  The whole path is checked before anything moves: against the joint limits, and against speed,
- acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
- slower as a whole instead. Another path, sun2xp_send_position or sun2xp_send_tip replaces the path
- without a jump, even while the finger follows it. A Kx that is sent while a path runs takes effect at
- once, and the path no longer changes Kx. After a refused call the finger continues as before.
+ acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" joint angles and Kx are clamped,
+ and a path that is too fast is made slower as a whole. A path that is out of reach, or that is outside the
+ joint limits between two poses, is refused nevertheless. Another path, sun2xp_send_position or
+ sun2xp_send_tip replaces the path without a jump, even while the finger follows it. A Kx that is sent
+ while a path runs takes effect at once, and the path no longer changes Kx. After a refused call the finger
+ continues as before.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1399,7 +1404,10 @@ struct sun2xp_touch {
    touch     result; set touch->size before the call
 
  A board reports a changed reading of an element as an event. The servo fetches one event of a finger in
- each period in which the line has time for it. A faulted finger keeps its last readings.
+ each period in which the line has time for it. A faulted finger keeps its last readings. They become
+ invalid when the finger recovers, if the board may have been reset: after SUN2XP_FAULT_BOARD_RESET,
+ SUN2XP_FAULT_LOST_REPLIES, SUN2XP_FAULT_DAMAGED_REPLIES, SUN2XP_FAULT_PORT_VANISHED and
+ SUN2XP_FAULT_PORT_FAILED.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1525,9 +1533,10 @@ int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
  default bound applies. If the bound is lowered while a path changes Kx, the Kx of the end of the path
  takes effect at once.
 
- While the finger follows a path, the whole path is checked against the new limits. With
- hand.out_of_range = "clamp" a path outside the new joint limits ends, and the finger moves to the end of
- the path at once.
+ The whole path that was sent last is checked against the new limits until it has ended, except those of
+ finger.motion, which apply to later paths. With hand.out_of_range = "clamp" a path outside the new
+ joint limits ends, and the finger moves to the end of the path at once. A pose beyond a joint limit, in
+ which the finger was found, is compared only with a limit that becomes narrower.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1891,17 +1900,17 @@ int sun2xp_stop(sun2xp_hand *hand, int finger);
 /*
  sun2xp_recover - make a faulted finger a spring again
 
-   finger   1 to 3, or SUN2XP_ALL_FINGERS: one after the other
+   finger   1 to 3, or SUN2XP_ALL_FINGERS: one after the other, up to the first that does not recover
 
  Queries the identity of the finger's board, configures the board again, and brings the tendons under
  tension. If the port has failed and finger.reconnect is true, the call reopens the port first. The finger
  holds its present pose at the configured initial stiffness. If another finger on the same port runs, it
- continues unchanged, and only this finger recovers. Otherwise all fingers on the port recover together. A
- finger that is not faulted continues unchanged. Remove the cause of the fault first: sun2xp_fault and
- sun2xp_fault_text name it.
+ continues unchanged, and only this finger recovers. Otherwise all fingers on the port recover together,
+ and the call is not refused if another one of them faults again. A finger that is not faulted continues
+ unchanged. Remove the cause of the fault first: sun2xp_fault and sun2xp_fault_text name it.
 
- Waits until the finger holds its pose or faults again, up to some seconds. Other calls work meanwhile.
- sun2xp_close works too, and this call is then refused.
+ Waits until the finger holds its pose or faults again, up to some seconds, also if another call has begun
+ the recovery. Other calls work meanwhile. sun2xp_close works too, and this call is then refused.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1966,9 +1975,10 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
               joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
               gives the remedy. The finger is then limp. There are two exceptions. (1) The finger moved
               while it was read, or its counts were not valid: the finger is then a spring or limp, as
-              before, but a path that it followed has ended. (2) Another thread has recovered the finger
-              from a fault during the calibration: the finger then holds its pose. If its new zeros had been
-              found before the fault, they are in force
+              before, but a path or an interpolated motion (finger.motion.interpolate_ms) that it followed
+              has ended. (2) Another thread has recovered the finger from a fault during the calibration:
+              the finger then holds its pose. If its new zeros had been found before the fault, they are in
+              force
    ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
    EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
               sun2xp_close
@@ -2221,13 +2231,15 @@ struct sun2xp_reflex {
  The servo evaluates the rules of a finger in every cycle while the finger is a spring. If the condition
  becomes true, the command changes within two cycles, or within three cycles for
  SUN2XP_WHEN_OTHER_FINGER. At most one rule reacts in a cycle; the others wait. Each reaction is an event
- SUN2XP_EVENT_REFLEX_FIRED with the number of the rule.
+ SUN2XP_EVENT_REFLEX_FIRED with the number of the rule. The servo of a built-in simulated finger, or of
+ hardware with in_step, waits for every reply, so SUN2XP_WHEN_LINK_LOST never becomes true for it.
 
  A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
  later calls that change a part of a set point start from the new one. The next sun2xp_send_position
- moves the finger again. The finger ignores a set point that is sent within the time in the member
- inhibition. This is no error, and the ignored set point still restarts the time after which set points
- expire. A rule stays until sun2xp_remove_reflex or sun2xp_close.
+ moves the finger again. The set point of the reaction expires when the one that was sent last would have
+ expired. The finger ignores a set point that is sent within the time in the member inhibition. This is no
+ error, and the ignored set point still restarts the time after which set points expire. A rule stays until
+ sun2xp_remove_reflex or sun2xp_close.
 
  Returns the number of the rule, above 0, or a negative number with
    EPERM    forked child

@@ -25,9 +25,10 @@ use std::ffi::{CStr, c_char, c_int};
 /// default bound applies. If the bound is lowered while a path changes Kx, the Kx of the end of the path
 /// takes effect at once.
 ///
-/// While the finger follows a path, the whole path is checked against the new limits. With
-/// hand.out_of_range = "clamp" a path outside the new joint limits ends, and the finger moves to the end of
-/// the path at once.
+/// The whole path that was sent last is checked against the new limits until it has ended, except those of
+/// finger.motion, which apply to later paths. With hand.out_of_range = "clamp" a path outside the new
+/// joint limits ends, and the finger moves to the end of the path at once. A pose beyond a joint limit, in
+/// which the finger was found, is compared only with a limit that becomes narrower.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

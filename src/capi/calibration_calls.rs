@@ -46,9 +46,10 @@ use std::ffi::c_int;
 ///              joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
 ///              gives the remedy. The finger is then limp. There are two exceptions. (1) The finger moved
 ///              while it was read, or its counts were not valid: the finger is then a spring or limp, as
-///              before, but a path that it followed has ended. (2) Another thread has recovered the finger
-///              from a fault during the calibration: the finger then holds its pose. If its new zeros had been
-///              found before the fault, they are in force
+///              before, but a path or an interpolated motion (finger.motion.interpolate_ms) that it followed
+///              has ended. (2) Another thread has recovered the finger from a fault during the calibration:
+///              the finger then holds its pose. If its new zeros had been found before the fault, they are in
+///              force
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
 ///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
 ///              sun2xp_close

@@ -120,8 +120,10 @@ pub unsafe extern "C" fn sun2xp_send_group(
 /// arrives at the joint angles that were computed for it. If a reflex has replaced the set point that was
 /// sent last, the condition must hold for the set point of the reflex. The same applies if the finger
 /// ignored the set point because a reflex inhibits set points for some time. The wait then returns only
-/// after this time. The event SUN2XP_EVENT_REFLEX_FIRED says that a reflex has reacted. Other calls work
-/// during the wait. sun2xp_close works too, and then the wait is refused.
+/// after this time. If the set point that was sent last has expired, the condition must hold for the pose
+/// that the finger holds since then. The events SUN2XP_EVENT_REFLEX_FIRED and SUN2XP_EVENT_EXPIRED say that
+/// this has happened. Other calls work during the wait. sun2xp_close works too, and then the wait is
+/// refused.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -58,10 +58,12 @@ pub struct sun2xp_path_pose {
 /// path. A path without a Kx leaves the joint stiffness as it is.
 ///
 /// The whole path is checked before anything moves: against the joint limits, and against speed,
-/// acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is made
-/// slower as a whole instead. Another path, sun2xp_send_position or sun2xp_send_tip replaces the path
-/// without a jump, even while the finger follows it. A Kx that is sent while a path runs takes effect at
-/// once, and the path no longer changes Kx. After a refused call the finger continues as before.
+/// acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" joint angles and Kx are clamped,
+/// and a path that is too fast is made slower as a whole. A path that is out of reach, or that is outside the
+/// joint limits between two poses, is refused nevertheless. Another path, sun2xp_send_position or
+/// sun2xp_send_tip replaces the path without a jump, even while the finger follows it. A Kx that is sent
+/// while a path runs takes effect at once, and the path no longer changes Kx. After a refused call the finger
+/// continues as before.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

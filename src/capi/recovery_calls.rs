@@ -76,17 +76,17 @@ pub extern "C" fn sun2xp_stop(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
 
 /// sun2xp_recover - make a faulted finger a spring again
 ///
-///   finger   1 to 3, or SUN2XP_ALL_FINGERS: one after the other
+///   finger   1 to 3, or SUN2XP_ALL_FINGERS: one after the other, up to the first that does not recover
 ///
 /// Queries the identity of the finger's board, configures the board again, and brings the tendons under
 /// tension. If the port has failed and finger.reconnect is true, the call reopens the port first. The finger
 /// holds its present pose at the configured initial stiffness. If another finger on the same port runs, it
-/// continues unchanged, and only this finger recovers. Otherwise all fingers on the port recover together. A
-/// finger that is not faulted continues unchanged. Remove the cause of the fault first: sun2xp_fault and
-/// sun2xp_fault_text name it.
+/// continues unchanged, and only this finger recovers. Otherwise all fingers on the port recover together,
+/// and the call is not refused if another one of them faults again. A finger that is not faulted continues
+/// unchanged. Remove the cause of the fault first: sun2xp_fault and sun2xp_fault_text name it.
 ///
-/// Waits until the finger holds its pose or faults again, up to some seconds. Other calls work meanwhile.
-/// sun2xp_close works too, and this call is then refused.
+/// Waits until the finger holds its pose or faults again, up to some seconds, also if another call has begun
+/// the recovery. Other calls work meanwhile. sun2xp_close works too, and this call is then refused.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -110,13 +110,15 @@ pub struct sun2xp_reflex {
 /// The servo evaluates the rules of a finger in every cycle while the finger is a spring. If the condition
 /// becomes true, the command changes within two cycles, or within three cycles for
 /// SUN2XP_WHEN_OTHER_FINGER. At most one rule reacts in a cycle; the others wait. Each reaction is an event
-/// SUN2XP_EVENT_REFLEX_FIRED with the number of the rule.
+/// SUN2XP_EVENT_REFLEX_FIRED with the number of the rule. The servo of a built-in simulated finger, or of
+/// hardware with in_step, waits for every reply, so SUN2XP_WHEN_LINK_LOST never becomes true for it.
 ///
 /// A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
 /// later calls that change a part of a set point start from the new one. The next sun2xp_send_position
-/// moves the finger again. The finger ignores a set point that is sent within the time in the member
-/// inhibition. This is no error, and the ignored set point still restarts the time after which set points
-/// expire. A rule stays until sun2xp_remove_reflex or sun2xp_close.
+/// moves the finger again. The set point of the reaction expires when the one that was sent last would have
+/// expired. The finger ignores a set point that is sent within the time in the member inhibition. This is no
+/// error, and the ignored set point still restarts the time after which set points expire. A rule stays until
+/// sun2xp_remove_reflex or sun2xp_close.
 ///
 /// Returns the number of the rule, above 0, or a negative number with
 ///   EPERM    forked child

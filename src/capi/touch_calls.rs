@@ -42,7 +42,10 @@ pub struct sun2xp_touch {
 ///   touch     result; set touch->size before the call
 ///
 /// A board reports a changed reading of an element as an event. The servo fetches one event of a finger in
-/// each period in which the line has time for it. A faulted finger keeps its last readings.
+/// each period in which the line has time for it. A faulted finger keeps its last readings. They become
+/// invalid when the finger recovers, if the board may have been reset: after SUN2XP_FAULT_BOARD_RESET,
+/// SUN2XP_FAULT_LOST_REPLIES, SUN2XP_FAULT_DAMAGED_REPLIES, SUN2XP_FAULT_PORT_VANISHED and
+/// SUN2XP_FAULT_PORT_FAILED.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -87,6 +87,18 @@ impl Manual {
         stray
     }
 
+    /// The comment above a struct, in one line.
+    pub fn comment(&self, structure: &str) -> String {
+        let end = format!("\n */\nstruct {structure} {{\n");
+        let (before, _) = self.header.split_once(&end).expect("the struct");
+        in_one_line(before.rsplit_once("/*\n").expect("every comment begins").1)
+    }
+
+    /// The entry of a call, in one line.
+    pub fn entry(&self, call: &str) -> String {
+        in_one_line(&self.entries.iter().find(|entry| entry.call == call).expect("the entry").text)
+    }
+
     /// The comment beside a member of a struct, in one line.
     pub fn member(&self, structure: &str, member: &str) -> String {
         let (_, rest) = self.header.split_once(&format!("\nstruct {structure} {{\n")).expect("the struct");

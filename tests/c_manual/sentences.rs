@@ -63,3 +63,22 @@ fn counts_of_the_status_are_those_of_the_timing() {
     let skipped = skipped.strip_suffix("up to now").expect("it says up to when");
     assert_eq!(Some(skipped), timing("skipped_periods").strip_suffix("up to the last cycle"));
 }
+
+/// A planner that does not know these rules takes another reason for what it sees.
+#[test]
+fn the_entries_say_what_else_a_result_depends_on() {
+    let manual = Manual::read(HANDLES);
+    for (call, sentence) in [
+        ("sun2xp_wait", "If the set point that was sent last has expired, the condition must hold for the pose"),
+        ("sun2xp_send_path", "With hand.out_of_range = \"clamp\" joint angles and Kx are clamped"),
+        ("sun2xp_zero", "an interpolated motion (finger.motion.interpolate_ms) that it followed has ended"),
+        ("sun2xp_recover", "one after the other, up to the first that does not recover"),
+        ("sun2xp_install_reflex", "SUN2XP_WHEN_LINK_LOST never becomes true for it"),
+        ("sun2xp_install_reflex", "expires when the one that was sent last would have expired"),
+        ("sun2xp_adjust", "except those of finger.motion, which apply to later paths"),
+    ] {
+        let entry = manual.entry(call);
+        assert!(entry.contains(sentence), "{sentence:?} is not in {entry}");
+    }
+    assert!(manual.comment("sun2xp_tip").contains("A change of Kx counts in the next cycle"));
+}
