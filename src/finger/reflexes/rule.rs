@@ -62,7 +62,7 @@ pub enum Condition {
 }
 
 /// What a finger does when a rule fires. A set point that a reaction changes is in force until the planner sends
-/// another one. A path or a motion in progress ends.
+/// another one, or until the planner's last set point would have expired. A path or a motion in progress ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reaction {
