@@ -106,13 +106,13 @@ impl Configured {
 
     /// Does the same as [`Configured::read`], but ignores ports and boards of the fingers in `with_io`.
     pub(crate) fn read_with_io(path: &Path, with_io: FingersWithIo) -> Result<Self, ConfigurationError> {
-        Self::read_with(path, &|text| with_io.parse(text))
+        Self::read_with(path, |text| with_io.parse(text))
     }
 
     /// Reads one configuration file. `parse` reads and checks its text.
     fn read_with(
         path: &Path,
-        parse: &dyn Fn(&str) -> Result<(Configuration, Said), Wrong>,
+        parse: impl FnOnce(&str) -> Result<(Configuration, Said), Wrong>,
     ) -> Result<Self, ConfigurationError> {
         let file = path.to_path_buf();
         let text = read_regular_file(path, LARGEST)

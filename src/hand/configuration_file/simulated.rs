@@ -38,7 +38,7 @@ impl Configured {
             }
             of_board
         };
-        Self::read_with(path, &|text| parse_with(text, None, &simulate))
+        Self::read_with(path, |text| parse_with(text, None, &simulate))
     }
 }
 
