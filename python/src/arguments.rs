@@ -3,15 +3,27 @@
 use crate::errors::Refusal;
 use numpy::ndarray::Dimension;
 use numpy::{PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 
 /// Returns the numbers of an array with this shape, row by row.
 pub fn numbers(object: &Bound<'_, PyAny>, name: &str, shape: &[usize]) -> PyResult<Vec<f64>> {
-    let array = as_array(object)?;
+    let array = as_array(object, name)?;
     if array.shape() != shape {
         let (wanted, found) = (tuple(shape), tuple(array.shape()));
         let text = format!("{name} has the shape {found}: pass an array with the shape {wanted}");
+        return Err(Refusal::Argument(text).raise(object.py()));
+    }
+    let array = array.try_readonly()?;
+    Ok(array.as_array().iter().copied().collect())
+}
+
+/// Returns the numbers of an array with one dimension.
+pub fn list(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
+    let array = as_array(object, name)?;
+    if array.ndim() != 1 {
+        let text = format!("{name} has the shape {}: pass an array with the shape (n,)", tuple(array.shape()));
         return Err(Refusal::Argument(text).raise(object.py()));
     }
     let array = array.try_readonly()?;
@@ -48,7 +60,7 @@ pub fn rows(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3]; 3]> {
 }
 
 /// Returns the array itself, or a new one with the same numbers as `float64`.
-pub fn as_array<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+pub fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     if let Ok(array) = object.cast::<PyArrayDyn<f64>>()
         && is_regular(array)
     {
@@ -56,8 +68,20 @@ pub fn as_array<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayD
     }
     let py = object.py();
     // `array` copies an irregular array, which `asarray` does not.
-    let array = py.import("numpy")?.call_method1(intern!(py, "array"), (object, intern!(py, "float64")))?;
-    Ok(array.cast_into::<PyArrayDyn<f64>>()?)
+    let array = py.import("numpy")?.call_method1(intern!(py, "array"), (object, intern!(py, "float64")));
+    Ok(array.map_err(|error| not_numbers(py, name, error))?.cast_into::<PyArrayDyn<f64>>()?)
+}
+
+/// Returns the refusal of an argument that numpy does not convert. Other exceptions, such as those of the handlers of
+/// signals, stay.
+fn not_numbers(py: Python<'_>, name: &str, error: PyErr) -> PyErr {
+    if !error.is_instance_of::<PyTypeError>(py) && !error.is_instance_of::<PyValueError>(py) {
+        return error;
+    }
+    let text = format!("{name} is no array of numbers ({}): pass numbers", error.value(py));
+    let refused = Refusal::Argument(text).raise(py);
+    refused.set_cause(py, Some(error));
+    refused
 }
 
 /// Whether the address of each number of the array is a multiple of the number's size. A column of a structured array
@@ -66,6 +90,52 @@ fn is_regular<D: Dimension>(array: &Bound<'_, PyArray<f64, D>>) -> bool {
     const SIZE: usize = size_of::<f64>();
     array.data().addr().is_multiple_of(SIZE)
         && array.strides().iter().all(|stride| stride.unsigned_abs().is_multiple_of(SIZE))
+}
+
+/// Returns the number of a finger.
+pub fn finger(object: &Bound<'_, PyAny>) -> PyResult<i32> {
+    let refused = || format!("there is no finger {object}: fingers are 1, 2 and 3");
+    in_range(object, object.extract(), refused)
+}
+
+/// Returns the number of a finger; none if it is None.
+pub fn some_finger(object: &Bound<'_, PyAny>) -> PyResult<Option<i32>> {
+    if object.is_none() { Ok(None) } else { finger(object).map(Some) }
+}
+
+/// Returns the numbers of fingers.
+pub fn fingers(object: &Bound<'_, PyAny>) -> PyResult<Vec<i32>> {
+    object.try_iter()?.map(|number| finger(&number?)).collect()
+}
+
+/// Returns the number of a joint.
+pub fn joint(object: &Bound<'_, PyAny>) -> PyResult<usize> {
+    in_range(object, object.extract(), || format!("there is no joint {object}: joints are 0, 1 and 2"))
+}
+
+/// Returns the number of a tactile element.
+pub fn element(object: &Bound<'_, PyAny>) -> PyResult<usize> {
+    in_range(object, object.extract(), || format!("there is no tactile element {object}: elements count from 0"))
+}
+
+/// Returns the priority of a reflex.
+pub fn priority(object: &Bound<'_, PyAny>) -> PyResult<u8> {
+    in_range(object, object.extract(), || format!("there is no priority {object}: pass a number from 0 to 255"))
+}
+
+/// Returns the number of a reflex; none if it is None.
+pub fn some_reflex(object: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
+    let refused = || format!("there is no reflex {object}: use the number that install_reflex has returned");
+    in_range(object, object.extract(), refused)
+}
+
+/// Refuses an integer that `T` cannot have, such as a negative one. Python's integers have no limits.
+pub fn in_range<T>(object: &Bound<'_, PyAny>, extracted: PyResult<T>, refused: impl FnOnce() -> String) -> PyResult<T> {
+    let py = object.py();
+    extracted.map_err(|error| match error.is_instance_of::<PyOverflowError>(py) {
+        true => Refusal::Argument(refused()).raise(py),
+        false => error,
+    })
 }
 
 fn tuple(shape: &[usize]) -> String {

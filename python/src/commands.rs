@@ -1,10 +1,10 @@
 //! The methods of `Hand` that send set points and paths.
 
-use crate::arguments::{as_array, numbers, optional, rows, vector};
+use crate::arguments::{self, as_array, list, numbers, optional, rows, vector};
 use crate::errors::Refusal;
 use crate::hand::Hand;
-use crate::waiting::duration;
-use numpy::{PyArrayMethods, PyUntypedArrayMethods};
+use crate::waiting::validity;
+use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use sun2xp::groups::{FingerCommand, Pose};
 use sun2xp::model::FingerNumber;
@@ -15,30 +15,41 @@ use sun2xp::{Contact, ContactError, HandError, SetPointError};
 #[pymethods]
 impl Hand {
     /// Sends the desired angles of joints 0, 1 and 2 of a finger, rad: shape (3,). They take effect within a cycle.
-    /// `valid` is the time for which they are valid, s. Without it, the configured time `motion.valid_ms` applies.
+    /// `valid` is the time for which they are valid, s. If it is infinite, they do not expire. Without it, the
+    /// configured time `motion.valid_ms` applies.
     #[pyo3(signature = (finger, position, *, valid=None))]
     fn send_position(
         &self,
         py: Python<'_>,
-        finger: i32,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
         position: &Bound<'_, PyAny>,
         valid: Option<f64>,
     ) -> PyResult<()> {
         let joints = vector(position, "position")?;
-        match duration(py, "valid", valid)? {
+        match validity(py, valid)? {
             None => self.quick(py, |hand| hand.send_position(finger, joints)),
             valid => self.quick(py, |hand| hand.send_position_for(finger, joints, valid)),
         }
     }
 
     /// Sends the desired position of a fingertip in the finger's frame, cm: shape (3,).
-    fn send_tip(&self, py: Python<'_>, finger: i32, tip: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn send_tip(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+        tip: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
         let tip = vector(tip, "tip")?;
         self.quick(py, |hand| hand.send_tip(finger, tip))
     }
 
     /// Sends the stiffness Kx of a fingertip in the finger's frame, N/cm: shape (3, 3), symmetric.
-    fn send_stiffness(&self, py: Python<'_>, finger: i32, stiffness: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn send_stiffness(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+        stiffness: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
         let rows = rows(stiffness, "stiffness")?;
         self.quick(py, |hand| hand.send_stiffness(finger, rows))
     }
@@ -51,7 +62,7 @@ impl Hand {
     fn send_contact(
         &self,
         py: Python<'_>,
-        finger: i32,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
         stiffness: &Bound<'_, PyAny>,
         normal: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
@@ -65,19 +76,34 @@ impl Hand {
 
     /// Sends the stiffness of the joints of a finger, N cm/rad: shape (3, 3), symmetric. It replaces the
     /// stiffness of the tip.
-    fn send_joint_stiffness(&self, py: Python<'_>, finger: i32, stiffness: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn send_joint_stiffness(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+        stiffness: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
         let rows = rows(stiffness, "stiffness")?;
         self.quick(py, |hand| hand.send_joint_stiffness(finger, rows))
     }
 
     /// Sends a constant torque of joints 0, 1 and 2 of a finger, N cm: shape (3,). It acts in addition to the spring.
-    fn send_joint_torque(&self, py: Python<'_>, finger: i32, torque: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn send_joint_torque(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+        torque: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
         let torque = vector(torque, "torque")?;
         self.quick(py, |hand| hand.send_joint_torque(finger, torque))
     }
 
     /// Sends the damping of a finger, relative to the damping that the controller chooses. The ratio is 1 after open.
-    fn send_damping(&self, py: Python<'_>, finger: i32, ratio: f64) -> PyResult<()> {
+    fn send_damping(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+        ratio: f64,
+    ) -> PyResult<()> {
         self.quick(py, |hand| hand.send_damping(finger, ratio))
     }
 
@@ -87,22 +113,22 @@ impl Hand {
         self.quick(py, |hand| hand.send_group(&commands))
     }
 
-    /// Sends a path. `times` are the times of the poses since the beginning of the path, s: shape (n,). The poses are
-    /// `joints`, rad, or `tips` in the finger's frame, cm: shape (n, 3). `stiffness` is Kx at each pose, N/cm: shape
-    /// (n, 3, 3). `valid` is how long the path stays valid after its end, s; without it, `motion.valid_ms` applies.
+    /// Sends a path: poses and their times, s, from the beginning of the path: shape (n,). The poses are joint angles,
+    /// rad, or positions of the tip, cm: shape (n, 3). `stiffness` has Kx of each pose, N/cm: shape (n, 3, 3). `valid`
+    /// is the time for which the path stays valid after its end, s, as in `send_position`.
     #[pyo3(signature = (finger, times, *, joints=None, tips=None, stiffness=None, valid=None))]
     #[expect(clippy::too_many_arguments, reason = "the keywords of a Python call")]
     fn send_path(
         &self,
         py: Python<'_>,
-        finger: i32,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
         times: &Bound<'_, PyAny>,
         joints: Option<&Bound<'_, PyAny>>,
         tips: Option<&Bound<'_, PyAny>>,
         stiffness: Option<&Bound<'_, PyAny>>,
         valid: Option<f64>,
     ) -> PyResult<()> {
-        let times: Vec<f64> = as_array(times)?.try_readonly()?.as_array().iter().copied().collect();
+        let times = list(times, "times")?;
         let count = times.len();
         let places = match (joints, tips) {
             (Some(joints), None) => numbers(joints, "joints", &[count, 3])?,
@@ -123,12 +149,17 @@ impl Hand {
             stiffness: stiffness.as_ref().map(|all| kx(index, all)),
         };
         let poses: Vec<PathPose> = times.iter().enumerate().map(of_pose).collect();
-        let valid = duration(py, "valid", valid)?;
+        let valid = validity(py, valid)?;
         self.slow(py, |hand| hand.send_path(finger, &poses, valid))
     }
 
     /// Changes keys of the configuration of a finger while it runs, such as "tendon.minimum = 6".
-    fn adjust(&self, py: Python<'_>, finger: i32, keys: &str) -> PyResult<()> {
+    fn adjust(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+        keys: &str,
+    ) -> PyResult<()> {
         self.slow(py, |hand| hand.adjust(finger, keys))
     }
 
@@ -139,7 +170,12 @@ impl Hand {
     }
 
     /// Pushes the tip of a simulated finger with a force in the finger's frame, N: shape (3,), until the next call.
-    fn push(&self, py: Python<'_>, finger: i32, force: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn push(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+        force: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
         let force = vector(force, "force")?;
         self.slow(py, |hand| hand.push_simulated(finger, force))
     }
@@ -151,7 +187,7 @@ fn contact(
     stiffness: &Bound<'_, PyAny>,
     normal: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Result<Contact, ContactError>> {
-    let shape = as_array(stiffness)?.shape().to_vec();
+    let shape = as_array(stiffness, "stiffness")?.shape().to_vec();
     let numbers = numbers(stiffness, "stiffness", &shape)?;
     let direction = normal.map(|normal| vector(normal, "normal")).transpose()?.map(Vector3::from);
     Ok(match (shape.as_slice(), direction) {
@@ -170,7 +206,7 @@ fn contact(
 
 /// Converts a `SetPoint`.
 fn command(set_point: &Bound<'_, PyAny>) -> PyResult<FingerCommand> {
-    let finger: i32 = set_point.getattr("finger")?.extract()?;
+    let finger = arguments::finger(&set_point.getattr("finger")?)?;
     let mut command = FingerCommand::new(finger);
     let (position, tip) = (optional(set_point, "position")?, optional(set_point, "tip")?);
     if position.is_some() && tip.is_some() {

@@ -58,7 +58,7 @@ impl Queue {
         }
     }
 
-    /// Whether the hand is closed. Then there are no later events.
+    /// Whether the hand is closed or being closed. While it is being closed, events may still come.
     #[getter]
     fn closed(&self) -> bool {
         self.queue.is_closed()
@@ -100,8 +100,7 @@ fn record<'py>(py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyAny>> {
     fields.set_item("time", event.time)?;
     fields.set_item("kind", kind(py, event.kind)?)?;
     fields.set_item("part", event.part.to_string())?;
-    let places: usize = event.kind.description().values.iter().map(|value| value.places()).sum();
-    fields.set_item("values", PyTuple::new(py, &event.values[..places])?)?;
+    fields.set_item("values", PyTuple::new(py, &event.values[..places(event.kind)])?)?;
     fields.set_item("text", text(event))?;
     records::record(py, "Event", &fields)
 }
@@ -127,4 +126,16 @@ fn text(event: &Event) -> String {
 #[pyfunction]
 pub fn event_kinds() -> Vec<(u8, &'static str)> {
     EventKind::ALL.iter().map(|kind| (kind.number(), kind.description().constant)).collect()
+}
+
+/// The numbers of all kinds of events, and how many values an event of each kind has, for the comparison with
+/// sun2xp/remote/_receiver.py.
+#[pyfunction]
+pub fn event_values() -> Vec<(u8, usize)> {
+    EventKind::ALL.iter().map(|&kind| (kind.number(), places(kind))).collect()
+}
+
+/// The number of values of an event.
+fn places(kind: EventKind) -> usize {
+    kind.description().values.iter().map(|value| value.places()).sum()
 }

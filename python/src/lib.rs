@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _sun2xp {
     #[pymodule_export]
-    use super::events::{Queue, event_kinds};
+    use super::events::{Queue, event_kinds, event_values};
     #[pymodule_export]
     use super::hand::Hand;
     #[pymodule_export]

@@ -5,6 +5,7 @@
 //! Python (sun2xp/_log.py).
 
 use crate::fork;
+use crate::waiting::SLICE;
 use parking_lot::{Condvar, Mutex};
 use pyo3::prelude::*;
 use std::collections::VecDeque;
@@ -106,19 +107,28 @@ pub fn end_messages() {
 }
 
 /// Waits until all messages are in the log, but at most for one second: a handler of the log may wait for the caller.
+/// An exception of the handler of a signal ends the wait.
 #[pyfunction]
-pub fn flush_messages(py: Python<'_>) {
+pub fn flush_messages(py: Python<'_>) -> PyResult<()> {
     if !has_thread() {
-        return;
+        return Ok(());
     }
-    py.detach(|| {
-        let mut messages = MESSAGES.lock();
-        let sent = messages.sent;
-        let deadline = Instant::now() + LONGEST_FLUSH;
-        while messages.open && messages.logged < sent {
-            if CHANGED.wait_until(&mut messages, deadline).timed_out() {
-                break;
-            }
+    let sent = MESSAGES.lock().sent;
+    let deadline = Instant::now() + LONGEST_FLUSH;
+    while !py.detach(|| are_logged(sent, deadline.min(Instant::now() + SLICE))) && Instant::now() < deadline {
+        py.check_signals()?;
+    }
+    Ok(())
+}
+
+/// Waits until this number of messages is in the log, but not longer than until `deadline`. Returns whether there is
+/// nothing more to wait for.
+fn are_logged(sent: u64, deadline: Instant) -> bool {
+    let mut messages = MESSAGES.lock();
+    while messages.open && messages.logged < sent {
+        if CHANGED.wait_until(&mut messages, deadline).timed_out() {
+            return false;
         }
-    });
+    }
+    true
 }

@@ -1,6 +1,6 @@
 //! The methods of `Hand` that read the state of a finger.
 
-use crate::arguments::vector as vector_of;
+use crate::arguments::{self, vector as vector_of};
 use crate::errors::Refusal;
 use crate::hand::Hand;
 use crate::records::{self, matrix, vector};
@@ -15,32 +15,53 @@ const STAGES: [&str; CycleStage::ALL.len()] = ["wake_up", "write", "wire", "read
 #[pymethods]
 impl Hand {
     /// The measured angles of joints 0, 1 and 2 of a finger, rad, at most one cycle old: shape (3,).
-    fn position<'py>(&self, py: Python<'py>, finger: i32) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    fn position<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let joints = self.quick(py, |hand| hand.position(finger))?;
         Ok(vector(py, &joints))
     }
 
     /// Position, force and stiffness of a fingertip, and the tendon tensions, at most one cycle old.
-    fn tip<'py>(&self, py: Python<'py>, finger: i32) -> PyResult<Bound<'py, PyAny>> {
+    fn tip<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let tip = self.quick(py, |hand| hand.fingertip(finger))?;
         records::tip(py, &tip)
     }
 
     /// The stage of a finger, the rate and the errors of its servo.
-    fn status<'py>(&self, py: Python<'py>, finger: i32) -> PyResult<Bound<'py, PyAny>> {
+    fn status<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let status = self.quick(py, |hand| hand.status(finger))?;
         records::status(py, &status)
     }
 
     /// The fault that has stopped a finger, and its warnings.
-    fn fault<'py>(&self, py: Python<'py>, finger: i32) -> PyResult<Bound<'py, PyAny>> {
+    fn fault<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let fault = self.quick(py, |hand| hand.fault(finger))?;
         records::finger_fault(py, &fault)
     }
 
     /// The duration of a stage of the cycles of a finger.
     #[pyo3(signature = (finger, stage="wake_up"))]
-    fn timing<'py>(&self, py: Python<'py>, finger: i32, stage: &str) -> PyResult<Bound<'py, PyAny>> {
+    fn timing<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+        stage: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let Some(place) = STAGES.iter().position(|name| *name == stage) else {
             let text = format!("there is no stage {stage:?}: the stages of a cycle are {}", STAGES.join(", "));
             return Err(Refusal::Argument(text).raise(py));
@@ -50,18 +71,26 @@ impl Hand {
     }
 
     /// Resets timings and losses of a finger.
-    fn reset_timing(&self, py: Python<'_>, finger: i32) -> PyResult<()> {
+    fn reset_timing(&self, py: Python<'_>, #[pyo3(from_py_with = arguments::finger)] finger: i32) -> PyResult<()> {
         self.quick(py, |hand| hand.reset_timing(finger))
     }
 
     /// Numbers of cycles and errors of a finger since open or the last reset.
-    fn losses<'py>(&self, py: Python<'py>, finger: i32) -> PyResult<Bound<'py, PyAny>> {
+    fn losses<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let losses = self.quick(py, |hand| hand.losses(finger))?;
         records::losses(py, &losses)
     }
 
     /// Measured and commanded joint torques of a finger, N cm, at most one cycle old.
-    fn joint_torques<'py>(&self, py: Python<'py>, finger: i32) -> PyResult<Bound<'py, PyAny>> {
+    fn joint_torques<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let torques = self.quick(py, |hand| hand.joint_torques(finger))?;
         let fields = PyDict::new(py);
         fields.set_item("measured", vector(py, &torques.measured))?;
@@ -70,7 +99,11 @@ impl Hand {
     }
 
     /// Angles, rates and torques of the joints of a finger in its last cycle, and the time of this cycle.
-    fn joint_state<'py>(&self, py: Python<'py>, finger: i32) -> PyResult<Bound<'py, PyAny>> {
+    fn joint_state<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let (report, torques) = self.quick(py, |hand| Ok((hand.report(finger)?, hand.joint_torques(finger)?)))?;
         let fields = PyDict::new(py);
         fields.set_item("time", report.last)?;
@@ -81,7 +114,11 @@ impl Hand {
     }
 
     /// Pose of a finger and of its tip in the palm's frame.
-    fn palm_pose<'py>(&self, py: Python<'py>, finger: i32) -> PyResult<Bound<'py, PyAny>> {
+    fn palm_pose<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let pose = self.quick(py, |hand| hand.palm_pose(finger))?;
         let fields = PyDict::new(py);
         fields.set_item("base", vector(py, &pose.base))?;
@@ -96,7 +133,7 @@ impl Hand {
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
-        finger: i32,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
         position: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let joints = position.map(|position| vector_of(position, "position")).transpose()?;
@@ -108,7 +145,7 @@ impl Hand {
     fn forward_kinematics<'py>(
         &self,
         py: Python<'py>,
-        finger: i32,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
         position: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let joints = vector_of(position, "position")?;
@@ -120,7 +157,7 @@ impl Hand {
     fn inverse_kinematics<'py>(
         &self,
         py: Python<'py>,
-        finger: i32,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
         tip: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let tip = vector_of(tip, "tip")?;
@@ -129,7 +166,11 @@ impl Hand {
     }
 
     /// The limits of a finger, from its configuration in force.
-    fn limits<'py>(&self, py: Python<'py>, finger: i32) -> PyResult<Bound<'py, PyAny>> {
+    fn limits<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let (limits, configured) = self.quick(py, |hand| Ok((hand.limits(finger)?, hand.calibrated(finger)?)))?;
         let fields = PyDict::new(py);
         fields.set_item("joints", matrix(py, &[limits.joint_minimum, limits.joint_maximum])?)?;
@@ -149,7 +190,11 @@ impl Hand {
     }
 
     /// The finger's configuration in force, as JSON text.
-    fn _configuration(&self, py: Python<'_>, finger: i32) -> PyResult<String> {
+    fn _configuration(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+    ) -> PyResult<String> {
         let configured = self.quick(py, |hand| hand.calibrated(finger))?;
         serde_json::to_string(&configured).map_err(|error| Refusal::Argument(error.to_string()).raise(py))
     }
@@ -168,7 +213,12 @@ impl Hand {
     }
 
     /// The newest reading of a tactile element of a finger. Elements count from 0.
-    fn touch<'py>(&self, py: Python<'py>, finger: i32, element: usize) -> PyResult<Bound<'py, PyAny>> {
+    fn touch<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+        #[pyo3(from_py_with = arguments::element)] element: usize,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let reading = self.quick(py, |hand| hand.touch(finger, element))?;
         let fields = PyDict::new(py);
         fields.set_item("valid", reading.valid)?;
@@ -179,17 +229,26 @@ impl Hand {
     }
 
     /// The number of tactile events of a finger that were lost since open.
-    fn lost_touch_events(&self, py: Python<'_>, finger: i32) -> PyResult<u64> {
+    fn lost_touch_events(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+    ) -> PyResult<u64> {
         self.quick(py, |hand| hand.lost_touch_events(finger))
     }
 
     /// Makes the newest count of each tactile element of a finger its zero, and returns the zeros.
-    fn tare_touch(&self, py: Python<'_>, finger: i32) -> PyResult<Vec<u16>> {
+    fn tare_touch(&self, py: Python<'_>, #[pyo3(from_py_with = arguments::finger)] finger: i32) -> PyResult<Vec<u16>> {
         self.quick(py, |hand| hand.tare_touch(finger).and_then(|()| hand.touch_zeros(finger)))
     }
 
     /// Returns the time of `count` calls of the Rust function behind `position`, s. For the benchmark of the package.
-    fn _time_position(&self, py: Python<'_>, finger: i32, count: u32) -> PyResult<f64> {
+    fn _time_position(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+        count: u32,
+    ) -> PyResult<f64> {
         let began = std::time::Instant::now();
         for _ in 0..count {
             std::hint::black_box(self.quick(py, |hand| hand.position(finger))?);

@@ -33,11 +33,13 @@ struct Contents {
     cycles: BTreeMap<i32, Cycles>,
     marks: Vec<MarkTuple>,
     complete: bool,
+    /// The earliest beginning of a cycle in the file, ns, also of a finger that is not read.
+    begin: Option<u64>,
 }
 
 /// The description as JSON; for each finger the fields and the bytes of its cycles; the marks; whether the file is
-/// complete.
-type Read<'py> = (String, BTreeMap<i32, (Vec<Field>, Bound<'py, PyByteArray>)>, Vec<MarkTuple>, bool);
+/// complete; the beginning of its first cycle, ns.
+type Read<'py> = (String, BTreeMap<i32, (Vec<Field>, Bound<'py, PyByteArray>)>, Vec<MarkTuple>, bool, Option<u64>);
 
 /// Reads a recording or a black box.
 #[pyfunction]
@@ -46,7 +48,7 @@ pub fn read_file(py: Python<'_>, path: PathBuf, fingers: Vec<i32>) -> PyResult<R
     let contents = contents.map_err(|text| Refusal::Recording(text).raise(py))?;
     let array = |cycles: Cycles| (cycles.fields, PyByteArray::new(py, &cycles.bytes));
     let cycles = contents.cycles.into_iter().map(|(finger, cycles)| (finger, array(cycles))).collect();
-    Ok((contents.description, cycles, contents.marks, contents.complete))
+    Ok((contents.description, cycles, contents.marks, contents.complete, contents.begin))
 }
 
 fn read(path: &std::path::Path, fingers: &[i32]) -> Result<Contents, String> {
@@ -54,8 +56,12 @@ fn read(path: &std::path::Path, fingers: &[i32]) -> Result<Contents, String> {
     let wanted = |finger: i32| fingers.is_empty() || fingers.contains(&finger);
     let (description, complete) = trace::read_with(path, &|_| {}, &mut |item| {
         match item {
-            Item::Cycle(row) if wanted(row.sample.finger.get()) => {
-                contents.cycles.entry(row.sample.finger.get()).or_default().add(&row);
+            Item::Cycle(row) => {
+                let (finger, began) = (row.sample.finger.get(), row.sample.began);
+                contents.begin = Some(contents.begin.map_or(began, |begin| begin.min(began)));
+                if wanted(finger) {
+                    contents.cycles.entry(finger).or_default().add(&row);
+                }
             }
             Item::Mark(Mark { time, finger, cycle, kind, text }) if finger.is_none_or(wanted) => {
                 contents.marks.push((time, finger, cycle, kind.name(), text));

@@ -1,6 +1,6 @@
 //! The methods of `Hand` that install reflexes.
 
-use crate::arguments::{rows, vector};
+use crate::arguments::{self, rows, vector};
 use crate::errors::Refusal;
 use crate::hand::Hand;
 use pyo3::prelude::*;
@@ -19,10 +19,10 @@ impl Hand {
     fn install_reflex(
         &self,
         py: Python<'_>,
-        finger: i32,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
         when: &Bound<'_, PyTuple>,
         then: &Bound<'_, PyTuple>,
-        priority: u8,
+        #[pyo3(from_py_with = arguments::priority)] priority: u8,
         refractory: f64,
         inhibition: f64,
     ) -> PyResult<u32> {
@@ -33,7 +33,12 @@ impl Hand {
 
     /// Removes a reflex of a finger. Without a number, removes all of its reflexes.
     #[pyo3(signature = (finger, number=None))]
-    fn remove_reflex(&self, py: Python<'_>, finger: i32, number: Option<u32>) -> PyResult<()> {
+    fn remove_reflex(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+        #[pyo3(from_py_with = arguments::some_reflex)] number: Option<u32>,
+    ) -> PyResult<()> {
         self.quick(py, |hand| match number {
             Some(number) => hand.remove_reflex(finger, number),
             None => hand.clear_reflexes(finger),
@@ -49,8 +54,8 @@ fn condition(when: &Bound<'_, PyTuple>) -> PyResult<Condition> {
         "force_above" => Condition::ForceAbove(one()?.extract()?),
         "tension_above" => Condition::TensionAbove(one()?.extract()?),
         "tension_below" => Condition::TensionBelow(one()?.extract()?),
-        "joint_above" => Condition::JointAbove { joint: one()?.extract()?, angle: other()?.extract()? },
-        "joint_below" => Condition::JointBelow { joint: one()?.extract()?, angle: other()?.extract()? },
+        "joint_above" => Condition::JointAbove { joint: arguments::joint(&one()?)?, angle: other()?.extract()? },
+        "joint_below" => Condition::JointBelow { joint: arguments::joint(&one()?)?, angle: other()?.extract()? },
         "link_lost" => Condition::LinkLost(one()?.extract()?),
         "planner_silent" => Condition::PlannerSilent(one()?.extract()?),
         _ => return Err(unknown(when, "condition", "sun2xp.when")),
@@ -86,13 +91,13 @@ fn value<'py>(tuple: &Bound<'py, PyTuple>, place: usize) -> PyResult<Bound<'py, 
 
 /// Returns the kind of event with the number of a member of `EventKind`.
 fn event(number: &Bound<'_, PyAny>) -> PyResult<EventKind> {
-    let found = EventKind::from_number(number.extract()?);
     let text = || format!("there is no kind of event {number}: use the members of sun2xp.EventKind");
+    let found = EventKind::from_number(arguments::in_range(number, number.extract(), text)?);
     found.ok_or_else(|| Refusal::Argument(text()).raise(number.py()))
 }
 
 fn number(finger: &Bound<'_, PyAny>) -> PyResult<FingerNumber> {
-    let found = FingerNumber::try_from(finger.extract::<i32>()?);
+    let found = FingerNumber::try_from(arguments::finger(finger)?);
     found.map_err(|error| Refusal::Hand(error).raise(finger.py()))
 }
 

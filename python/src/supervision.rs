@@ -1,5 +1,6 @@
 //! The methods of `Hand` that wait, stop, recover and calibrate.
 
+use crate::arguments;
 use crate::errors::Refusal;
 use crate::hand::Hand;
 use crate::records::{self, vector};
@@ -16,7 +17,13 @@ use sun2xp::{Calibrating, CalibrationState, Findings, Identified, Progress, Reco
 #[pymethods]
 impl Hand {
     /// Waits until fingers have arrived at their set points, or have settled.
-    fn _wait(&self, py: Python<'_>, fingers: Vec<i32>, condition: &str, timeout: Option<f64>) -> PyResult<()> {
+    fn _wait(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::fingers)] fingers: Vec<i32>,
+        condition: &str,
+        timeout: Option<f64>,
+    ) -> PyResult<()> {
         let condition = match condition {
             "arrived" => Until::Arrived,
             "settled" => Until::Settled,
@@ -32,7 +39,7 @@ impl Hand {
 
     /// Makes a faulted finger a spring again. The finger holds its present pose at its initial stiffness. The cause of
     /// the fault must be removed first. Does nothing if the finger is not faulted.
-    fn recover(&self, py: Python<'_>, finger: i32) -> PyResult<()> {
+    fn recover(&self, py: Python<'_>, #[pyo3(from_py_with = arguments::finger)] finger: i32) -> PyResult<()> {
         // After a stop, this call waits until the servo has carried out the stop.
         let recovering = self.slow(py, |hand| Recovering::begin(hand, finger))?;
         let (recovering, reconnected) = in_thread(py, move || {
@@ -46,7 +53,7 @@ impl Hand {
     /// Stops a finger, or all fingers: they fault at the beginning of their next cycle, and stay faulted until they
     /// recover.
     #[pyo3(signature = (finger=None))]
-    fn stop(&self, py: Python<'_>, finger: Option<i32>) -> PyResult<()> {
+    fn stop(&self, py: Python<'_>, #[pyo3(from_py_with = arguments::some_finger)] finger: Option<i32>) -> PyResult<()> {
         self.quick(py, |hand| match finger {
             Some(finger) => hand.stop(finger),
             None => hand.fingers().numbers().try_for_each(|finger| hand.stop(finger)),
@@ -58,7 +65,7 @@ impl Hand {
     fn _calibrate<'py>(
         &self,
         py: Python<'py>,
-        finger: i32,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
         task: &str,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -84,12 +91,21 @@ impl Hand {
 
     /// Stores the results of calibrations of a finger in the configuration file. Returns False if there is nothing to
     /// store, or if the hand was opened without a file.
-    fn store_calibration(&self, py: Python<'_>, finger: i32) -> PyResult<bool> {
+    fn store_calibration(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+    ) -> PyResult<bool> {
         self.slow(py, |hand| hand.store_calibration(finger))
     }
 
     /// Writes the last two seconds of a finger into a file for `sun2xp replay`.
-    fn write_black_box(&self, py: Python<'_>, finger: i32, path: PathBuf) -> PyResult<()> {
+    fn write_black_box(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::finger)] finger: i32,
+        path: PathBuf,
+    ) -> PyResult<()> {
         self.slow(py, |hand| hand.write_black_box(finger, &path))
     }
 }

@@ -60,12 +60,17 @@ pub fn until<T: Send>(py: Python<'_>, mut poll: impl FnMut() -> Result<Option<T>
     }
 }
 
-/// Returns the duration of a time in s; none without a limit.
+/// Returns the duration of a time in s; none without a limit. A time that is too long for a `Duration` is no limit.
 pub fn duration(py: Python<'_>, name: &str, seconds: Option<f64>) -> PyResult<Option<Duration>> {
-    let Some(seconds) = seconds else { return Ok(None) };
-    if seconds == f64::INFINITY {
-        return Ok(None);
+    match seconds {
+        None => Ok(None),
+        Some(seconds) if seconds >= 0.0 => Ok(Duration::try_from_secs_f64(seconds).ok()),
+        Some(seconds) => Err(Refusal::Argument(format!("{name} is {seconds} s: pass a time of 0 s or more")).raise(py)),
     }
-    let refused = || Refusal::Argument(format!("{name} is {seconds} s: pass a time of 0 s or more")).raise(py);
-    Duration::try_from_secs_f64(seconds).map(Some).map_err(|_| refused())
+}
+
+/// Returns the time for which a set point is valid; none for the configured time. A time without a limit is longer than
+/// every time that a servo counts, so the set point does not expire.
+pub fn validity(py: Python<'_>, seconds: Option<f64>) -> PyResult<Option<Duration>> {
+    Ok(duration(py, "valid", seconds)?.or(seconds.map(|_| Duration::MAX)))
 }

@@ -60,6 +60,9 @@ class Scripted:
         self.records["stage"] = _messages.STAGES.index("running")
         self._subscribers = {}
         self.hand = sun2xp.remote.RemoteHand(self, "hand", stale=10.0)
+        #: The time since the newest message, s. The tests take no time.
+        self.silence = 0.0
+        self.hand._receiver.silence = lambda: self.silence
         self.hand.acquire()
 
     def get(self, key, payload, _timeout):

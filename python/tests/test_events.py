@@ -2,6 +2,7 @@
 
 import asyncio
 import select
+import threading
 
 import pytest
 
@@ -38,6 +39,16 @@ def test_the_descriptor_is_readable_while_there_are_events(hand):
     assert events.closed and events.wait() is None
     with pytest.raises(sun2xp.Closed):
         hand.events()
+
+
+def test_a_queue_is_closed_as_soon_as_the_hand_is_being_closed(hand):
+    events = hand.events()
+    closing = threading.Thread(target=hand.close)
+    closing.start()
+    while not events.closed:
+        pass
+    assert closing.is_alive() and "being closed" in sun2xp.Events.closed.__doc__
+    closing.join()
 
 
 def test_asyncio_follows_events_until_the_hand_is_closed(hand):

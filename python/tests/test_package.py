@@ -63,3 +63,10 @@ def test_mypy_accepts_the_package_and_a_program(tmp_path):
     program.write_text("import sun2xp\nsun2xp.simulated().send_position('one', [0, 0, 0])\n")
     status, said = check("program.py")
     assert status == 1 and "arg-type" in said, said
+    for opened in ("sun2xp.simulated()", "sun2xp.remote.open()", "sun2xp.remote.connect().open()"):
+        # The target of `with` has the type of the hand.
+        program.write_text(f"import sun2xp.remote\nwith {opened} as hand:\n    hand.send_position('one', [0, 0, 0])\n")
+        status, said = check("program.py")
+        assert status == 1 and "arg-type" in said, said
+    program.write_text("import sun2xp.remote\nprint(sun2xp.remote.open().status().owner)\n")
+    assert check("program.py")[0] == 0, check("program.py")

@@ -78,11 +78,19 @@ def test_a_recording_becomes_a_table(tmp_path):
     assert {"event", "fault"} <= {mark.kind for mark in recording.marks}
     stopped = recording.cycles[3]
     assert stopped["stage"][-1] == "faulted" and stopped["fault"][-1] > 0
-    assert len(sun2xp.read_recording(file, fingers=[2]).cycles) == 1
+    for finger in (1, 2, 3):
+        part = sun2xp.read_recording(file, fingers=[finger])
+        # The seconds of a finger do not depend on the fingers that are read.
+        assert list(part.cycles) == [finger] and (part.seconds(finger) == recording.seconds(finger)).all()
     table = recording.to_pandas(2)
     assert len(table) == len(moved) and table.index.name == "seconds"
     assert numpy.array_equal(table["joints_2"], moved[:, 2], equal_nan=True)
     assert {"kx_0_1", "stage", "tensions_3"} <= set(table.columns)
+
+
+def test_a_minute_takes_as_much_memory_as_the_page_says(hand):
+    minute = 60_000 * hand.black_box(1).cycles[1].dtype.itemsize
+    assert f"takes {minute * 1e-6:.0f} MB" in sun2xp.read_recording.__doc__
 
 
 def test_what_is_no_recording_is_refused(tmp_path):

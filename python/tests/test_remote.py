@@ -205,7 +205,7 @@ def test_events_reach_every_queue(double, hand):
 
 def test_the_status_and_the_cycles_are_read(double, hand):
     status = hand.status()
-    assert (status.owner, status.catch, status.end, status.counts.ended) == ("planner", 0.1, 1.0, 7)
+    assert (status.owner, status.catch, status.end, status.counts.ended) == ("planner", 0.1, 10.0, 7)
     assert hand.status(1).joints.tolist() == [[-0.5, 0, 0], [0.5, 1.5, 1.5]]
     assert list(sun2xp.remote.discover(double.endpoint)) == ["hand"]
     hand.cycles()

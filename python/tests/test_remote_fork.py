@@ -21,9 +21,11 @@ def hold():
 
 threading.Thread(target=hold).start()
 held.wait()
+events = hand.events()
 child = os.fork()
 if child == 0:
-    calls = [hand.status, hand.wait, hand.acquire, hand._network.hands]
+    calls = [hand.status, hand.wait, hand.acquire, hand.release, hand._network.hands]
+    calls += [hand.cycles, events.take, events.wait, lambda: next(iter(events))]
     for call in [*calls, lambda: hand.position(1), lambda: hand.send_position(1, [0.0, 0.6, 0.9])]:
         try:
             call()

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import enum
-from typing import Any
+import errno as system
+from typing import Any, Optional
 
 
 class ErrorNumber(enum.IntEnum):
@@ -29,6 +30,29 @@ class ErrorNumber(enum.IntEnum):
     REAL_TIME = 18
 
 
+#: The errno for errors of this package. The library gives the errno of its own errors.
+_ERRNOS = {
+    ErrorNumber.DEFECT: system.EIO,
+    ErrorNumber.FORKED: system.EPERM,
+    ErrorNumber.EXITING: system.ESHUTDOWN,
+    ErrorNumber.NO_HAND: system.ENODEV,
+    ErrorNumber.BUSY: system.EBUSY,
+    ErrorNumber.TOO_MANY: system.ENOSPC,
+    ErrorNumber.ARGUMENT: system.EINVAL,
+    ErrorNumber.LIMIT: system.ERANGE,
+    ErrorNumber.FAULTED: system.EIO,
+    ErrorNumber.CONFIGURATION: system.EINVAL,
+    ErrorNumber.PORT: system.EIO,
+    ErrorNumber.SYSTEM: system.EIO,
+    ErrorNumber.NO_MEMORY: system.ENOMEM,
+    ErrorNumber.TIMED_OUT: system.ETIMEDOUT,
+    ErrorNumber.CALIBRATION: system.ECANCELED,
+    ErrorNumber.NOT_SUPPORTED: system.ENOTSUP,
+    ErrorNumber.NOT_FOUND: system.ENOENT,
+    ErrorNumber.REAL_TIME: system.EPERM,
+}
+
+
 class Error(Exception):
     """A call that was refused or that failed. A refused call changes nothing.
 
@@ -44,11 +68,16 @@ class Error(Exception):
     errno: int
     remedy: str
 
-    def __init__(self, text: str, *, number: int = 1, errno: int = 0, remedy: str = "") -> None:
+    def __init__(
+        self, text: str, *, number: int = 1, errno: Optional[int] = None, remedy: Optional[str] = None
+    ) -> None:
         super().__init__(text)
         self.text = text
         self.number = ErrorNumber(number)
-        self.errno = errno
+        self.errno = _ERRNOS[self.number] if errno is None else errno
+        if remedy is None:
+            # A text ends with its remedy, after its last colon.
+            remedy = text.rpartition(": ")[2] if ": " in text else ""
         self.remedy = remedy
 
 

@@ -11,7 +11,7 @@ from ._types import Event
 
 class Events(_sun2xp.Queue):
     """A queue of all events of a hand, from `Hand.events`. Iteration waits for each event, and ends when the hand is
-    closed.
+    closed or being closed. `take` returns the events that come while it is being closed.
 
     Every queue gets all events. A queue that is not read keeps the newest 4096 of each finger, and counts in `lost` how
     many it has lost.

@@ -7,6 +7,7 @@ import os
 from typing import Any, AsyncIterator, Callable, Dict, Iterable, Optional, Union
 
 from . import _log, _sun2xp
+from ._errors import Error
 from ._events import Events
 from ._recording import Recording, black_box
 from ._types import Event, Identified, Signs, Zeros
@@ -23,7 +24,8 @@ class Hand(_sun2xp.Hand):
     the hand.
 
     All methods except `close` raise Closed if the hand is closed, Refused if there is no such finger or if an argument
-    is wrong, and Fault if the finger is faulted and the method needs it to run.
+    is wrong, and Fault if the finger is faulted and the method needs it to run. They raise TypeError if an argument
+    that is no array has a wrong type.
     """
 
     def events(self) -> Events:
@@ -48,7 +50,8 @@ class Hand(_sun2xp.Hand):
 
         Args:
             fingers: a finger, or several. The default is all fingers of the hand.
-            condition: "arrived": every joint is at the set point. "settled": every joint is at rest.
+            condition: "arrived": every joint has been at the set point since. "settled": the joints have come to rest
+                since. The finger may have been pushed away meanwhile.
             timeout: time limit, s.
 
         Raises:
@@ -80,9 +83,10 @@ class Hand(_sun2xp.Hand):
             store: whether to store the zeros in the configuration file with which the hand was opened.
 
         Raises:
-            ConfigurationError: the zeros could not be stored. They are in force until the hand is closed.
-            Error: the calibration failed, and the previous one is in force. If the finger faulted after its zeros had
-                been found, the new zeros are in force.
+            ConfigurationError: the zeros could not be stored. They are in force until the hand is closed. Or the finger
+                cannot be zeroed with its configuration, or cannot use it with the zeros. Then nothing has changed.
+            Error: the calibration failed, and the previous one is in force. If the finger faulted when the zeros had
+                been found already, the zeros are in force.
         """
         return self._calibrated(finger, "zero", progress, store)
 
@@ -143,6 +147,10 @@ def simulated(name: str = "nominal", *, rate: float = 1000.0, text: str = "") ->
 def _opened(function: Callable[..., _sun2xp.Opened], *arguments: Any) -> Hand:
     _log.start()
     try:
-        return Hand(function(*arguments))
-    finally:
+        hand = Hand(function(*arguments))
+    except Error:
+        # The log has the messages of an opening that failed. Ctrl-C does not wait for the log.
         _log.flush()
+        raise
+    _log.flush()
+    return hand

@@ -22,8 +22,8 @@ class Recording:
     """A recording, from `sun2xp.read_recording` or `Hand.black_box`.
 
     Attributes:
-        cycles: for each finger, 1 to 3, a structured array with one row for each cycle. docs/python.md lists its
-            fields. A number that a cycle does not have is NaN.
+        cycles: for each finger with cycles, 1 to 3, a structured array with one row for each cycle. docs/python.md
+            lists its fields. A number that a cycle does not have is NaN.
         marks: events, warnings, faults, gaps and changes of the stage, in the order of the file.
         description: the hand: its name, the time at which it was opened, and its configuration.
         complete: whether the recorder has finished the file. False while the recorder runs, and if it was killed.
@@ -35,15 +35,16 @@ class Recording:
     complete: bool
 
     def __init__(self, path: Union[str, os.PathLike[str]], fingers: Iterable[int] = ()) -> None:
-        description, cycles, marks, self.complete = _sun2xp.read_file(path, list(fingers))
+        description, cycles, marks, self.complete, begin = _sun2xp.read_file(path, list(fingers))
+        self._begin = begin or 0
         self.description = json.loads(description)
         self.cycles = {finger: _array(fields, rows) for finger, (fields, rows) in cycles.items()}
         self.marks = [Mark(*mark) for mark in marks]
 
     def seconds(self, finger: int) -> numpy.ndarray:
-        """The times of the cycles of a finger since the first cycle of the recording, s: shape (n,)."""
-        first = min((cycles["time"][0] for cycles in self.cycles.values() if len(cycles)), default=0)
-        return (self.cycles[finger]["time"] - first) * 1e-9
+        """The times of the cycles of a finger since the first cycle of the recording, s: shape (n,). This is the first
+        cycle of the whole file, even if its finger was not read."""
+        return (self.cycles[finger]["time"] - self._begin) * 1e-9
 
     def to_pandas(self, finger: int) -> "pandas.DataFrame":
         """The cycles of a finger as a table, with the seconds since the first cycle as its index. A vector has a column
@@ -72,7 +73,8 @@ def read_recording(path: Union[str, os.PathLike[str]], fingers: Iterable[int] = 
 
     Args:
         path: the file.
-        fingers: the fingers to read; all if empty. A minute of a finger at 1000 Hz takes 45 MB of memory.
+        fingers: the fingers to read; all if empty. A minute of a finger at 1000 Hz takes 34 MB of memory, and up to
+            three times as much while it is read.
 
     Raises:
         Error: the file cannot be read, or is neither a recording nor a black box.

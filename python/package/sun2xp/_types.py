@@ -237,7 +237,8 @@ class FingerFault:
 
     #: The fault that has stopped the finger; None if it has not stopped.
     stopped: Optional[FaultDescription]
-    #: The newest warning of the last second.
+    #: The newest warning of the last second. If there is none and the system does not permit real time, the warning
+    #: about that, which `warnings` does not count.
     warning: Optional[FaultDescription]
     #: Number of warnings since open. A warning that persists counts once.
     warnings: int

@@ -66,15 +66,14 @@ def open(
         stale: largest age of the state that `position`, `tip` and `state` return, s.
 
     Raises:
-        ConfigurationError: no hand or client can have this name, or a certificate cannot be read.
-        NoAnswer: there is no connection or no such hand, or this client may not use the hand.
+        ConfigurationError: a name that no hand or client can have, or a file of TLS that cannot be read.
+        NoAnswer: no connection, no such hand, or this client may not use it.
         NotOwner: another client commands the hand.
+        Fault: a finger has a fault whose cause is still there.
     """
     network = Network(endpoint, client=client, tls=tls)
     try:
-        opened: RemoteHand = network.open(
-            hand, read_only=read_only, take_over=take_over, recover=recover, stale=stale
-        )
+        opened = network.open(hand, read_only=read_only, take_over=take_over, recover=recover, stale=stale)
     except BaseException:
         network.close()
         raise

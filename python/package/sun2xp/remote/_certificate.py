@@ -31,7 +31,8 @@ def common_name(path: Union[str, os.PathLike[str]]) -> str:
         reason = str(error)
     except (ValueError, IndexError, StopIteration):
         reason = "its certificate has no common name"
-    raise ConfigurationError(f"{path} is not the certificate of a client: {reason}", number=ErrorNumber.CONFIGURATION)
+    text = f"{path} is not the certificate of a client ({reason}): name the .pem file of this client in tls"
+    raise ConfigurationError(text, number=ErrorNumber.CONFIGURATION)
 
 
 def _subject_name(certificate: bytes) -> str:

@@ -8,8 +8,30 @@ from .._errors import Closed, Error, ErrorNumber, Fault, Refused, TimedOut
 from ._messages import Answer
 
 
+#: The code of an Answer: the hand refused an argument, or a recovery or calibration failed.
+_REFUSED = 6
+
 #: The code of an Answer: a finger has stopped.
 FAULTED = 7
+
+#: The numbers of the errors for the codes of an Answer.
+_NUMBERS = {
+    3: ErrorNumber.ARGUMENT,
+    4: ErrorNumber.BUSY,
+    5: ErrorNumber.BUSY,
+    _REFUSED: ErrorNumber.LIMIT,
+    FAULTED: ErrorNumber.FAULTED,
+    8: ErrorNumber.NO_HAND,
+    9: ErrorNumber.BUSY,
+}
+
+#: The numbers of the errors for Requests that have failed. The hand refuses no argument of them.
+_FAILURES = {
+    "acquire": ErrorNumber.PORT,
+    "recover": ErrorNumber.PORT,
+    "calibrate": ErrorNumber.CALIBRATION,
+    "identify": ErrorNumber.CALIBRATION,
+}
 
 
 class NotOwner(Error):
@@ -32,25 +54,29 @@ def forked() -> Error:
     return Error(f"{text} connection: {remedy}", number=ErrorNumber.FORKED, remedy=remedy)
 
 
-def error_of(answer: Answer, finger: int = 0, fault: int = 0) -> Optional[Error]:
-    """Returns the exception for an Answer, or None if its code is 0.
+def refusal_of(answer: Answer) -> Refused:
+    """Returns the exception for the refusal of a Target."""
+    return Refused(answer.text, number=_NUMBERS.get(answer.code, ErrorNumber.NOT_SUPPORTED))
+
+
+def error_of(answer: Answer, action: str, finger: int = 0, fault: int = 0) -> Optional[Error]:
+    """Returns the exception for the Answer to a Request, or None if its code is 0.
 
     Args:
+        action: the action of the Request.
         finger, fault: the finger that has stopped and the number of its fault, for Fault.
     """
     code, text = answer.code, answer.text
     if code == 0:
         return None
-    if code == 3:
-        return Refused(text, number=ErrorNumber.ARGUMENT)
+    if code == _REFUSED and action in _FAILURES:
+        return Error(text, number=_FAILURES[action])
+    if code in (3, _REFUSED, 9):
+        return Refused(text, number=_NUMBERS[code])
     if code in (4, 5):
-        return NotOwner(text, number=ErrorNumber.BUSY)
-    if code == 6:
-        return Refused(text, number=ErrorNumber.LIMIT)
+        return NotOwner(text, number=_NUMBERS[code])
     if code == FAULTED:
-        return Fault(text, number=ErrorNumber.FAULTED, finger=finger, fault=fault)
+        return Fault(text, number=_NUMBERS[code], finger=finger, fault=fault)
     if code == 8:
-        return Closed(text, number=ErrorNumber.NO_HAND)
-    if code == 9:
-        return Refused(text, number=ErrorNumber.BUSY)
+        return Closed(text, number=_NUMBERS[code])
     return Error(text or f"the server answers with code {code}", number=ErrorNumber.NOT_SUPPORTED)

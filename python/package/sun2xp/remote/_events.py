@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Iterator, Optional
 
 from .._types import Event
+from ._errors import forked
 from ._receiver import Receiver
 
 
@@ -13,7 +14,8 @@ class RemoteEvents:
     the hand or the queue is closed.
 
     Every queue gets all events. A queue that is not read keeps the newest 4096. The times of events are those of the
-    server's clock.
+    server's clock. The server sends the part of a fault or a warning as a number, whose meaning depends on the fault
+    (docs/faults.md). Such an event has the part "part N", or "finger" if the number is 0.
     """
 
     def __init__(self, receiver: Receiver) -> None:
@@ -27,6 +29,8 @@ class RemoteEvents:
 
     def take(self) -> Optional[Event]:
         """Takes the next event, if there is one."""
+        if self._receiver.forked:
+            raise forked()
         with self._receiver.changed:
             return self._queue.popleft() if self._queue else None
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import functools
 import time
-from typing import Iterable, List, Optional, Sequence, Tuple, Union
+from typing import Iterable, List, Optional, Sequence, Union
 
 import numpy.typing
 
 from .._errors import Error, ErrorNumber, Fault, Refused, TimedOut
 from .._types import SetPoint
 from . import _messages, _parts
-from ._errors import FAULTED, NoAnswer, error_of
+from ._errors import FAULTED, error_of, forked
 from ._messages import STAGES, Answer, Part
 from ._network import ANSWER_TIME, Network
 from ._owner import Owner
@@ -76,16 +76,19 @@ class RemoteHand(Reading):
 
         Raises:
             NotOwner: another client commands the hand.
+            Fault: a finger has a fault whose cause is still there.
         """
         # The server may have been started again with other limits.
         self.status()
         answer = self._request("acquire", 0, timeout=_RECOVERY_TIME, take_over=take_over, recover=recover)
         with self._network.sender.lock:
-            self._owner.begin(answer)
+            self._owner.begin(answer, self._status.end)
             self._owner.publish(time.monotonic_ns())
 
     def release(self) -> None:
         """Gives the hand back. Every finger goes to its end state."""
+        if self._network.forked:
+            raise forked()
         with self._network.sender.lock:
             epoch = self._owner.epoch
             self._owner.end()
@@ -103,13 +106,20 @@ class RemoteHand(Reading):
         except Error:
             # If the owner sends no more Targets, the server brings the fingers to their end states by itself.
             pass
+        finally:
+            # Ctrl-C ends the wait for the answer, but the hand is closed nevertheless.
+            self._disconnect()
+
+    def _disconnect(self) -> None:
         self._network.sender.remove(self._owner)
         self._receiver.close()
-        for declared in self._declared:
-            declared.undeclare()
         self._network.forget(self)
-        if self._owns_network:
-            self._network.close()
+        try:
+            for declared in self._declared:
+                declared.undeclare()
+        finally:
+            if self._owns_network:
+                self._network.close()
 
     def send_position(self, finger: int, position: numpy.typing.ArrayLike) -> None:
         """Sends the joint angles at which the finger shall be, rad: shape (3,).
@@ -168,12 +178,13 @@ class RemoteHand(Reading):
 
         Args:
             fingers: a finger, or several. The default is all to which this client has sent something.
-            condition: "applied": the server has taken the set point. "arrived": every joint is at the set point.
-                "settled": every joint is at rest.
+            condition: "applied": the server has taken the set point. "arrived": every joint has been at the set point
+                since. "settled": the joints have come to rest since. The finger may have been pushed away meanwhile.
             timeout: time limit, s.
 
         Raises:
-            TimedOut: the time limit has expired.
+            TimedOut: the time limit is over.
+            Stale, which is also a TimedOut: no State has arrived for a second, or for `stale` if that is longer.
             NotOwner: this client does not command the hand, or has lost it.
             Refused: the server has refused the set point.
             Fault: a finger is faulted.
@@ -200,9 +211,9 @@ class RemoteHand(Reading):
             if holds:
                 return
             if left <= 0:
-                text = f'the condition "{condition}" did not hold for fingers {wanted} within {timeout} s'
-                remedy = "check what keeps the fingers from moving, and the line to the server, or wait longer"
-                raise TimedOut(f"{text}: {remedy}", number=ErrorNumber.TIMED_OUT, remedy=remedy)
+                remedy = "check what keeps them from moving, or wait longer"
+                text = f"fingers {wanted} are not {condition} after {timeout} s: {remedy}"
+                raise TimedOut(text, number=ErrorNumber.TIMED_OUT)
 
     def recover(self, finger: int = 0) -> None:
         """Recovers a finger that has stopped: it becomes a spring again. Without an argument, recovers every such
@@ -223,10 +234,12 @@ class RemoteHand(Reading):
         Raises:
             Error: the calibration failed. The previous one is in force.
         """
+        self._check(finger)
         self._request("calibrate", finger, self._owner.epoch, timeout=_CALIBRATION_TIME)
 
     def identify(self, finger: int) -> None:
         """Measures gauge gains, friction and tendon stiffness of a finger. Errors are those of `zero`."""
+        self._check(finger)
         self._request("identify", finger, self._owner.epoch, timeout=_CALIBRATION_TIME)
 
     def _hold(self, fingers: List[int], bits: int) -> bool:
@@ -238,18 +251,9 @@ class RemoteHand(Reading):
         record = self._receiver.newest(finger, max(self._stale, _PAUSE))
         if STAGES[record["stage"]] == "faulted":
             number = int(record["fault"])
-            text = self._ask_status().fingers[finger].fault_text or f"finger {finger} has fault {number}"
-            raise Fault(text, number=ErrorNumber.FAULTED, finger=finger, fault=number, remedy="hand.recover(finger)")
-
-    def _stopped(self, finger: int) -> Tuple[int, int]:
-        """Returns the finger that an Answer concerns, and the number of its fault, or 0 if the fault is not known. If
-        `finger` is 0, the Answer concerns the first finger that has stopped."""
-        try:
-            fingers = self._ask_status().fingers
-        except NoAnswer:
-            fingers = {}
-        stopped = [number for number in sorted(fingers) if fingers[number].fault and finger in (0, number)]
-        return (stopped[0], fingers[stopped[0]].fault) if stopped else (finger, 0)
+            remedy = f"remove the cause (docs/faults.md), and call hand.recover({finger})"
+            text = f"{self._fault_text(finger) or f'finger {finger} has fault {number}'}: {remedy}"
+            raise Fault(text, number=ErrorNumber.FAULTED, finger=finger, fault=number)
 
     def _send(self, parts: List[Part]) -> None:
         self._network.sender.send([(self._owner, parts)])
@@ -282,7 +286,7 @@ class RemoteHand(Reading):
             if answer is not None:
                 self._receiver.answered(answer.time)
                 finger, fault = self._stopped(finger) if answer.code == FAULTED else (finger, 0)
-                error = error_of(answer, finger, fault)
+                error = error_of(answer, action, finger, fault)
                 if error is not None:
                     raise error
                 return answer

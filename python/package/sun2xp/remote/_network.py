@@ -9,14 +9,17 @@ import os
 import re
 import threading
 import weakref
-from typing import Any, Callable, Dict, List, Optional
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional
 
-from .._errors import ConfigurationError, Error, ErrorNumber
+from .._errors import Closed, ConfigurationError, ErrorNumber
 from . import _messages
 from ._certificate import common_name
 from ._errors import NoAnswer, forked
 from ._owner import Sender
 from ._types import Status, Tls, status
+
+if TYPE_CHECKING:
+    from ._hand import RemoteHand
 
 #: Where `sun2xp serve` listens by default.
 LOOPBACK = "tcp/127.0.0.1:7447"
@@ -74,6 +77,21 @@ def checked_client(name: Optional[str], tls: Optional[Tls]) -> str:
     return name
 
 
+def check_files(tls: Tls) -> None:
+    """Checks that the files of TLS can be read, because Zenoh reports only that a connection was refused.
+
+    Raises:
+        ConfigurationError: a file cannot be read.
+    """
+    for path in (tls.authority, tls.certificate, tls.key):
+        try:
+            with open(path, "rb"):
+                pass
+        except OSError as error:
+            text = f"{os.fspath(path)} cannot be read ({error.strerror}): name the files of this client in tls"
+            raise ConfigurationError(text, number=ErrorNumber.CONFIGURATION) from error
+
+
 def configuration(endpoint: str, tls: Optional[Tls]) -> Dict[str, Any]:
     """Returns the configuration of Zenoh for a client that knows one endpoint, and searches for no other."""
     settings: Dict[str, Any] = {
@@ -106,12 +124,14 @@ class Network:
         tls: the files of mutual TLS. A server that listens on more than loopback needs them.
 
     Raises:
-        ConfigurationError: no client can have this name, or a certificate cannot be read.
+        ConfigurationError: a name that no client can have, or a file of TLS that cannot be read.
         NoAnswer: nobody listens at the endpoint, or the certificates do not fit.
     """
 
     def __init__(self, endpoint: str = LOOPBACK, *, client: Optional[str] = None, tls: Optional[Tls] = None) -> None:
         self.endpoint = endpoint
+        if tls is not None:
+            check_files(tls)
         self.client = checked_client(client, tls)
         #: Whether this process is a child of the one that has connected.
         self.forked = False
@@ -121,10 +141,9 @@ class Network:
             self.session = self._zenoh.open(self._zenoh.Config.from_json5(text))
         except self._zenoh.ZError as error:
             # The text ends with a place in the source of Zenoh.
-            reason = str(error).split(" at /")[0].rstrip("! ")
-            remedy = "Check the endpoint and the certificates, and whether sun2xp serve runs"
-            text = f"no connection to {endpoint}: {reason}. {remedy}."
-            raise NoAnswer(text, number=ErrorNumber.TIMED_OUT, remedy=remedy) from error
+            reason = str(error).split(" at /")[0].rstrip("!. ")
+            remedy = "check the endpoint, the certificates, and sun2xp serve"
+            raise NoAnswer(f"no connection to {endpoint} ({reason}): {remedy}", number=ErrorNumber.TIMED_OUT) from error
         self.sender = Sender()
         self._hands: List[Any] = []
         self._lock = threading.Lock()
@@ -154,6 +173,8 @@ class Network:
         `timeout` s. Ctrl-C ends it."""
         if self.forked:
             raise forked()
+        if self.session.is_closed():
+            raise Closed("the connection is closed: connect again", number=ErrorNumber.NO_HAND)
         answers: List[tuple] = []
         ended = threading.Event()
 
@@ -192,7 +213,7 @@ class Network:
         take_over: bool = False,
         recover: bool = True,
         stale: float = 0.1,
-    ) -> Any:
+    ) -> "RemoteHand":
         """Opens a hand over this connection. Arguments and errors are those of `sun2xp.remote.open`."""
         from ._hand import RemoteHand
 
@@ -202,7 +223,8 @@ class Network:
         try:
             if not read_only:
                 opened.acquire(take_over=take_over, recover=recover)
-        except Error:
+        except BaseException:
+            # Also Ctrl-C ends an acquire.
             opened.close()
             raise
         return opened

@@ -9,7 +9,7 @@ from typing import Callable, Dict, Iterable, List, Optional, Tuple
 
 from .._errors import Closed, ErrorNumber, Refused
 from . import _messages
-from ._errors import NotOwner
+from ._errors import NotOwner, refusal_of
 from ._messages import Answer, Part, State, Target
 from ._receiver import Receiver
 from ._slot import Slot
@@ -29,6 +29,7 @@ class Owner:
         self._receiver = receiver
         self._epoch = 0
         self._validity = 0
+        self._end = float("inf")
         #: The number of the epoch, and the server's time from which every State contains this number.
         self._number = self._since = 0
         #: The number of restarts of the server's machine at the beginning of the epoch.
@@ -39,16 +40,18 @@ class Owner:
         self._slots: Dict[int, Slot] = {}
         #: Bits of the newest record of each finger in this epoch.
         self._bits: Dict[int, int] = {}
-        self._refusals: Dict[int, str] = {}
+        #: What the server has refused of each finger, and no call has raised yet.
+        self._refusals: Dict[int, Refused] = {}
 
     @property
     def epoch(self) -> int:
         """The epoch; 0 if this client is not the owner."""
+        self._notice_silence()
         return self._epoch
 
-    def begin(self, answer: Answer) -> None:
-        """Begins the epoch of an Answer to acquire."""
-        self._epoch, self._validity = answer.epoch, answer.catch_ms
+    def begin(self, answer: Answer, end: float) -> None:
+        """Begins the epoch of an Answer to acquire. `end` is the age of a Target, s, at which the server ends it."""
+        self._epoch, self._validity, self._end = answer.epoch, answer.catch_ms, end
         self._number, self._since, self._sequence = answer.number, answer.time, 0
         self._restarts = self._receiver.restarts
         self._slots, self._bits, self._refusals = {}, {}, {}
@@ -56,6 +59,11 @@ class Owner:
     def end(self) -> None:
         """Ends the epoch: nothing more is sent."""
         self._epoch = 0
+
+    def _notice_silence(self) -> None:
+        """Ends the epoch if nothing was heard of the server for so long that all Targets are too old for it."""
+        if self._receiver.silence() > self._end:
+            self._epoch = 0
 
     def heard(self, state: State) -> None:
         """Processes what a State has shown: the number of the owner's epoch, and the records of this epoch."""
@@ -79,7 +87,7 @@ class Owner:
             return
         for finger, slot in self._slots.items():
             if slot.refuse(answer.number):
-                self._refusals[finger] = answer.text
+                self._refusals[finger] = refusal_of(answer)
 
     def commanded(self) -> List[int]:
         """Returns the fingers to which this client has sent something in this epoch."""
@@ -100,12 +108,13 @@ class Owner:
             NotOwner: this client is not the owner.
             Refused: the server has refused what was sent before. This is raised once.
         """
-        if self._epoch == 0:
+        if self.epoch == 0:
             remedy = "hand.acquire() gets the hand, if no other client owns it"
-            raise NotOwner(f"this client does not command the hand. {remedy}.", number=5, remedy=remedy)
-        texts = {self._refusals.pop(finger) for finger in fingers if finger in self._refusals}
+            raise NotOwner(f"this client does not command the hand: {remedy}", number=ErrorNumber.BUSY)
+        refusals = [self._refusals.pop(finger) for finger in fingers if finger in self._refusals]
+        texts = sorted({refusal.text for refusal in refusals})
         if texts:
-            raise Refused(" ".join(sorted(texts)), number=ErrorNumber.LIMIT)
+            raise Refused(" ".join(texts), number=refusals[0].number)
 
     def command(self, changes: List[Part]) -> None:
         """Accepts new set points. Each contains only the values that shall change. All other values stay the same."""
@@ -127,7 +136,7 @@ class Owner:
         Args:
             sent: time, ns of the local clock.
         """
-        if self._epoch == 0:
+        if self.epoch == 0:
             return
         self._sequence += 1
         self._renew()
@@ -169,7 +178,7 @@ class Sender:
         """
         with self.lock:
             if any(owner not in self._owners for owner, _ in commands):
-                raise Closed("the hand is closed", number=ErrorNumber.NO_HAND)
+                raise Closed("the hand is closed: open it again", number=ErrorNumber.NO_HAND)
             for owner, changes in commands:
                 owner.check(change.finger for change in changes)
             for owner, changes in commands:

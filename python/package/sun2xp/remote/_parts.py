@@ -29,7 +29,7 @@ def group(set_points: Sequence[SetPoint], fingers: Dict[int, FingerStatus]) -> L
     """
     numbers = [set_point.finger for set_point in set_points]
     if not numbers or len(set(numbers)) < len(numbers):
-        raise _refused(f"the set points are for the fingers {numbers}: send one set point for each finger of a group")
+        raise _refused(f"the group has set points of the fingers {numbers}: pass one for each finger that shall change")
     return [_part(set_point, fingers[set_point.finger]) for set_point in set_points]
 
 
@@ -46,7 +46,7 @@ def _part(set_point: SetPoint, status: FingerStatus) -> Part:
     if set_point.damping is not None:
         part.damping = float(_array("damping", set_point.damping, ()))
     if part.place == NO_PLACE and part.stiffness is None and part.damping is None:
-        raise _refused(f"the set point of finger {set_point.finger} is empty: set position, tip, stiffness or damping")
+        raise _refused(f"the set point of finger {set_point.finger} changes nothing: set one of its other fields")
     return part
 
 
@@ -62,9 +62,9 @@ def path(
     instants = _array("times", times, (None,))
     count = len(instants)
     if not 1 <= count <= MOST_POSES:
-        raise _refused(f"the path has {count} poses: send 1 to {MOST_POSES} poses, and further ones as another path")
+        raise _refused(f"the path has {count} poses: send 1 to {MOST_POSES}, and further ones as another path")
     if instants[0] <= 0 or (numpy.diff(instants) <= 0).any():
-        raise _refused(f"the times of the path are {instants.tolist()} s: send times above 0, each later than the last")
+        raise _refused(f"the times of the path are {instants.tolist()}: send times above 0 that rise")
     poses = _joints(finger, joints, (count, 3), status)
     return Part(finger, 0, PATH, poses=[(instant, *pose) for instant, pose in zip(instants, poses)])
 
@@ -75,20 +75,20 @@ def _joints(finger: int, angles: Any, shape: tuple, status: FingerStatus) -> Arr
     rounding = _ROUNDING * numpy.maximum(abs(low), abs(high))
     if (array < low - rounding).any() or (array > high + rounding).any():
         limits = f"{low.round(4).tolist()} to {high.round(4).tolist()} rad"
-        text = f"{array.tolist()} rad is outside the limits of finger {finger}, {limits}: send angles within the limits"
-        raise _refused(text, ErrorNumber.LIMIT)
+        text = f"{array.tolist()} rad is outside the limits of finger {finger}, {limits}"
+        raise _refused(f"{text}: send angles within the limits", ErrorNumber.LIMIT)
     return array
 
 
 def _symmetric(finger: int, kx: Any, status: FingerStatus) -> List[float]:
     array = _array("Kx", kx, (3, 3))
     if not numpy.allclose(array, array.T, rtol=0, atol=_ASYMMETRY * abs(array).max()):
-        raise _refused(f"Kx of finger {finger} is {array.tolist()}, not symmetric: send a symmetric Kx")
+        raise _refused(f"Kx of finger {finger}, {array.tolist()}, is not symmetric: send a symmetric Kx")
     largest = numpy.linalg.eigvalsh((array + array.T) / 2)[-1]
     if largest > status.stiffness * (1 + 8 * _ROUNDING):
-        bound = f"above the bound of {status.stiffness:.3g} N/cm: send a softer Kx"
-        text = f"the largest eigenvalue of Kx of finger {finger} is {largest:.3g} N/cm, {bound}"
-        raise _refused(text, ErrorNumber.LIMIT)
+        bound = f"the bound of {status.stiffness:.3g} N/cm"
+        text = f"the largest eigenvalue of Kx of finger {finger}, {largest:.3g} N/cm, exceeds {bound}"
+        raise _refused(f"{text}: send a softer Kx", ErrorNumber.LIMIT)
     return array.ravel().tolist()
 
 
@@ -96,12 +96,12 @@ def _array(name: str, value: Any, shape: tuple) -> Array:
     try:
         array = numpy.asarray(value, dtype=numpy.float64)
     except (TypeError, ValueError) as error:
-        raise _refused(f"{name}: {error}") from error
+        raise _refused(f"{name} is no array of numbers ({error}): pass numbers") from error
     if len(array.shape) != len(shape) or any(want not in (None, have) for want, have in zip(shape, array.shape)):
         wanted = str(shape).replace("None", "n")
-        raise _refused(f"the shape of {name} is {array.shape}: pass an array with the shape {wanted}")
+        raise _refused(f"{name} has the shape {array.shape}: pass an array with the shape {wanted}")
     if not numpy.isfinite(array).all():
-        raise _refused(f"{name} = {array.tolist()}: every entry must be a finite number")
+        raise _refused(f"{name} is {array.tolist()}: pass finite numbers")
     return array
 
 

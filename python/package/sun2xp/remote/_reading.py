@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import Any, List, Optional, Union
+from typing import Any, List, Optional, Tuple, Union, overload
 
 import numpy
 
@@ -83,8 +83,15 @@ class Reading:
     def cycles(self) -> Records:
         """Returns the cycles that have arrived since the last call, in the order of their arrival: an array with the
         fields of the record of State. It has at most the cycles of the last 1000 States."""
+        if self._network.forked:
+            raise forked()
         taken = self._receiver.take()
         return numpy.concatenate(taken) if taken else numpy.zeros(0, _messages.RECORD)
+
+    @overload
+    def status(self, finger: None = None) -> Status: ...
+    @overload
+    def status(self, finger: int) -> FingerStatus: ...
 
     def status(self, finger: Optional[int] = None) -> Union[Status, FingerStatus]:
         """Asks the server for the status of the hand, or of one finger.
@@ -106,12 +113,12 @@ class Reading:
         if self._network.forked:
             raise forked()
         if self._closed:
-            raise Closed("the hand is closed", number=ErrorNumber.NO_HAND)
+            raise Closed("the hand is closed: open it again", number=ErrorNumber.NO_HAND)
         for finger in fingers:
             # A float equals the number of a finger, but the messages need an integer.
             if not hasattr(finger, "__index__") or finger not in self._status.fingers:
-                text = f"there is no finger {finger!r}: the hand {self.name} has the fingers {self.fingers}"
-                raise Refused(text, number=ErrorNumber.ARGUMENT)
+                remedy = f"the hand {self.name} has the fingers {self.fingers}"
+                raise Refused(f"there is no finger {finger!r}: {remedy}", number=ErrorNumber.ARGUMENT)
 
     def _record(self, finger: int) -> Any:
         self._check(finger)
@@ -123,6 +130,23 @@ class Reading:
             if message is not None:
                 return status(message)
         raise self._no_answer("the status")
+
+    def _fault_text(self, finger: int) -> str:
+        try:
+            return self._ask_status().fingers[finger].fault_text
+        except NoAnswer:
+            # The State has told of the fault already.
+            return ""
+
+    def _stopped(self, finger: int) -> Tuple[int, int]:
+        """Returns the finger that an Answer concerns, and the number of its fault, or 0 if the fault is not known. If
+        `finger` is 0, the Answer concerns the first finger that has stopped."""
+        try:
+            fingers = self._ask_status().fingers
+        except NoAnswer:
+            fingers = {}
+        stopped = [number for number in sorted(fingers) if fingers[number].fault and finger in (0, number)]
+        return (stopped[0], fingers[stopped[0]].fault) if stopped else (finger, 0)
 
     def _answers(self, key: str, payload: Optional[bytes], timeout: float) -> List[tuple]:
         """Asks again if a get has reached nobody: just after a client has connected, Zenoh may not know the way to the
@@ -137,6 +161,6 @@ class Reading:
 
     def _no_answer(self, asked: str) -> NoAnswer:
         where = f"{self._network.endpoint} as {self._network.client}"
-        remedy = "Check the names of the hand and of the client, [serve.clients] of the server, and the line"
-        text = f"the hand {self.name} has not answered to {asked} at {where}. {remedy}."
-        return NoAnswer(text, number=ErrorNumber.TIMED_OUT, remedy=remedy)
+        remedy = "check the names of the hand and of the client, [serve.clients] of the server, and the line"
+        text = f"the hand {self.name} has not answered to {asked} at {where}: {remedy}"
+        return NoAnswer(text, number=ErrorNumber.TIMED_OUT)

@@ -10,6 +10,7 @@ from typing import Callable, Deque, Dict, List, Optional
 import numpy
 import numpy.typing
 
+from .._errors import ErrorNumber
 from .._types import Event, EventKind
 from . import _messages
 from ._errors import Stale
@@ -27,6 +28,28 @@ _DRIFT = 1e-3
 #: If an Answer is earlier than the newest State by more than this, ns, the server's machine was started again. The
 #: Answer cannot have been on its way for so long.
 _RESTARTED = 10_000_000_000
+
+#: Number of values of an event of each kind (docs/events.md). An Event always has four.
+VALUES = {
+    EventKind.TOUCH_MADE: 2,
+    EventKind.TOUCH_LOST: 2,
+    EventKind.TOUCH_SLIP: 2,
+    EventKind.TOUCH_PRESSURE: 2,
+    EventKind.CONTACT: 3,
+    EventKind.CONTACT_LOST: 3,
+    EventKind.SLIP: 3,
+    EventKind.TENSION_BOUND: 2,
+    EventKind.FORCE_BOUND: 4,
+    EventKind.JOINT_AT_LIMIT: 2,
+    EventKind.ARRIVED: 3,
+    EventKind.SETTLED: 3,
+    EventKind.FAULT: 2,
+    EventKind.WARNING: 2,
+    EventKind.REFLEX_FIRED: 1,
+    EventKind.PATH_ENDED: 3,
+    EventKind.EXPIRED: 1,
+    EventKind.TOUCH_INVALID: 1,
+}
 
 Records = numpy.typing.NDArray[numpy.void]
 
@@ -47,11 +70,15 @@ class Receiver:
         self.changed = threading.Condition()
         #: The newest time of the server's clock that has arrived, ns: *seen* of the protocol.
         self.seen = 0
+        #: The local time at which the newest State or Answer has arrived, ns.
+        self._heard = time.monotonic_ns()
         #: Number of times that the server's clock has started anew, because its machine was started again.
         self.restarts = 0
         #: Cycles that the server has not sent, and States that have not arrived.
         self.missing = [0, 0]
         self.closed = False
+        #: Whether this process is a child of the one that receives.
+        self.forked = False
         self._newest: Dict[int, numpy.void] = {}
         self._states: Deque[Records] = collections.deque(maxlen=_KEPT_STATES)
         self._queues: List[Deque[Event]] = []
@@ -103,7 +130,7 @@ class Receiver:
         offset: float = now - published
         if self._offset is not None:
             offset = min(offset, self._offset + _DRIFT * (now - self._arrived))
-        self._offset, self._arrived = offset, now
+        self._offset, self._arrived, self._heard = offset, now, now
         self.seen = max(self.seen, published)
 
     def answered(self, published: int) -> None:
@@ -111,6 +138,7 @@ class Receiver:
         with self.changed:
             if published < self._published - _RESTARTED:
                 self._restart()
+            self._heard = time.monotonic_ns()
             self.seen = max(self.seen, published)
 
     def event(self, data: bytes) -> None:
@@ -124,7 +152,8 @@ class Receiver:
             return
         part = _part(kind, message.part)
         text = f"finger {message.finger}, {part}: {kind.name.lower().replace('_', ' ')}"
-        event = Event(message.finger, message.cycle, message.time, kind, part, message.values, text)
+        values = message.values[: VALUES[kind]]
+        event = Event(message.finger, message.cycle, message.time, kind, part, values, text)
         with self.changed:
             for queue in self._queues:
                 queue.append(event)
@@ -144,13 +173,18 @@ class Receiver:
 
     def leave(self) -> None:
         """Ends the waits in a child of `os.fork`. A thread of the parent may have had the lock."""
-        self.changed, self.closed = threading.Condition(), True
+        self.changed, self.closed, self.forked = threading.Condition(), True, True
 
     def close(self) -> None:
         """Ends the waits of other threads."""
         with self.changed:
             self.closed = True
             self.changed.notify_all()
+
+    def silence(self) -> float:
+        """Returns the time since the newest State or Answer has arrived, s. Does not lock, because callers have locked
+        the owners, and a wait locks in the opposite order."""
+        return (time.monotonic_ns() - self._heard) * 1e-9
 
     def age(self) -> float:
         """Returns the smallest age that the newest State can have, s: the time since its publication, less the shortest
@@ -179,8 +213,9 @@ class Receiver:
             known = f"the state of finger {finger} is {age * 1e3:.0f} ms old"
             if record is None:
                 known = f"no state of finger {finger} has arrived"
-            remedy = "Check the line and sun2xp serve, or raise stale to allow older data"
-            raise Stale(f"{known}, and {stale * 1e3:.0f} ms are allowed. {remedy}.", number=14, remedy=remedy)
+            remedy = "check the line and sun2xp serve, or allow older data with stale"
+            text = f"{known}, and {stale * 1e3:.0f} ms are allowed: {remedy}"
+            raise Stale(text, number=ErrorNumber.TIMED_OUT)
         return record
 
     def take(self) -> List[Records]:
