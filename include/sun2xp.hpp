@@ -381,11 +381,13 @@ public:
         return event([this](struct sun2xp_event *to) { return sun2xp_next_event(hand_, to); });
     }
 
-    /// Waits for an event. Returns std::nullopt if no event occurs within the time.
+    /// Waits for an event. Returns std::nullopt if no event occurs within the time. A time that is not above 0 is no
+    /// wait, and an infinite time is no limit.
     std::optional<struct sun2xp_event> wait_event(seconds longest)
     {
-        const auto take = [&](struct sun2xp_event *to) { return sun2xp_wait_event(hand_, to, longest.count()); };
-        return event(take);
+        // The C call waits without a limit if the time is negative, for example because a deadline has passed.
+        const double limit = longest.count() > 0 ? longest.count() : 0;
+        return event([&](struct sun2xp_event *to) { return sun2xp_wait_event(hand_, to, limit); });
     }
 
     /// Calls a function with each event. An empty function ends these calls.

@@ -108,11 +108,13 @@ class Commands:
             self._hand.send_position(path.finger, path.joints[0])
 
     def _hold(self, fingers: Sequence[int]) -> None:
-        """Sends these fingers the pose that they have."""
+        """Sends these fingers the pose that they have. A finger can be slightly beyond a limit, which the hand would
+        refuse. Such a finger gets the limit."""
         refused: Optional[sun2xp.Error] = None
         for finger in fingers:
             try:
-                self._hand.send_position(finger, self._hand.position(finger))
+                low, high = self._hand.limits(finger).joints
+                self._hand.send_position(finger, numpy.clip(self._hand.position(finger), low, high))
             except sun2xp.Error as refusal:
                 refused = refusal
         if refused is not None:

@@ -5,7 +5,7 @@ The servos are threads of the library that run no Python, so nothing here delays
 from __future__ import annotations
 
 import logging
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import rclpy
 import sun2xp
@@ -29,6 +29,9 @@ N_CM_PER_N_M = 100.0
 
 #: The fingers that a hand may have.
 FINGERS = (1, 2, 3)
+
+#: Interval at which the node looks for new faults, s. It does not depend on the rates of the topics.
+FAULT_WATCH = 0.01
 
 
 class _ToRos(logging.Handler):
@@ -56,7 +59,10 @@ class HandNode(Node):
         super().__init__("sun2xp", **options)
         self._handler = _ToRos(self)
         logging.getLogger("sun2xp").addHandler(self._handler)
+        # A parameter that is wrong ends the node before the hand moves.
         self._prefix: str = self._parameter("prefix", "", "prefix of the names of joints and frames")
+        rate = self._parameter("rate", 100.0, "rate of joint states and wrenches, Hz", (1.0, 1000.0))
+        slow = self._parameter("diagnostics_rate", 1.0, "rate of diagnostics, Hz", (0.1, 10.0))
         self.hand = self._open()
         self.fingers = [finger for finger in FINGERS if self._has(finger)]
         self._publish_description()
@@ -68,14 +74,14 @@ class HandNode(Node):
         self._described = [
             FingerDiagnostics(self.hand, finger, f"{self._prefix}finger{finger}") for finger in self.fingers
         ]
-        self._before: Dict[int, sun2xp.JointState] = {}
+        #: The newest measurement of each finger in a message, and the mean rates of that message.
+        self._before: Dict[int, Tuple[sun2xp.JointState, Any]] = {}
         self._faults = [described.fault() for described in self._described]
         self._takes = Commands(self, self.hand, self.fingers, self._prefix)
         self._serves = Services(self, self.hand, self.fingers, self._takes.forget)
-        rate = self._parameter("rate", 100.0, "rate of joint states and wrenches, Hz", (1.0, 1000.0))
-        slow = self._parameter("diagnostics_rate", 1.0, "rate of diagnostics, Hz", (0.1, 10.0))
         self.create_timer(1.0 / rate, self._publish_measurements)
         self.create_timer(1.0 / slow, self._publish_diagnostics)
+        self.create_timer(FAULT_WATCH, self._watch_faults)
 
     def destroy_node(self) -> None:
         """Closes the hand, which brings every finger to its end state, and ends the node."""
@@ -130,18 +136,25 @@ class HandNode(Node):
         # The time of the oldest measurement.
         message.header.stamp = now.time_of(min(times, default=now.monotonic)).to_msg()
         self._joint_states.publish(message)
+
+    def _watch_faults(self) -> None:
         faults = [described.fault() for described in self._described]
         if faults != self._faults:
             self._faults = faults
             self._publish_diagnostics()
 
     def _mean_rate(self, finger: int, state: sun2xp.JointState) -> Any:
-        """The mean rate since the previous message. The rate in a single cycle has the noise of the encoders."""
-        before = self._before.get(finger)
-        self._before[finger] = state
-        if before is None or state.time <= before.time:
-            return state.rate
-        return (state.position - before.position) / (state.time - before.time) * 1e9
+        """The mean rate since the previous message. The rate in a single cycle has the noise of the encoders. A message
+        that follows before the next cycle repeats the mean rate of the message before."""
+        if finger not in self._before:
+            mean = state.rate
+        else:
+            before, mean = self._before[finger]
+            if state.time <= before.time:
+                return mean
+            mean = (state.position - before.position) / (state.time - before.time) * 1e9
+        self._before[finger] = (state, mean)
+        return mean
 
     def _publish_wrench(self, finger: int, stamp: Any) -> None:
         tip, pose = self.hand.tip(finger), self.hand.palm_pose(finger)

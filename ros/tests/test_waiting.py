@@ -3,6 +3,7 @@
 import time
 import types
 
+import numpy
 import pytest
 import sun2xp
 from builtin_interfaces.msg import Time as Stamp
@@ -61,6 +62,8 @@ class Hand:
         self.calls = []
         #: The finger that refuses paths; 0 if none does.
         self.refusing = 0
+        #: The pose of every finger, and the last pose that one got.
+        self.pose, self.sent = [0.0, 0.0, 0.0], None
 
     def palm_pose(self, _finger):
         return self
@@ -68,14 +71,21 @@ class Hand:
     base = rotation = None
 
     def position(self, _finger):
-        return [0.0, 0.0, 0.0]
+        return self.pose
+
+    def limits(self, _finger):
+        return types.SimpleNamespace(joints=numpy.array([[-0.5, 0.0, 0.0], [0.5, 1.5, 1.5]]))
 
     def send_path(self, finger, times, joints):
         if finger == self.refusing:
             raise sun2xp.Fault(f"finger {finger} is faulted", number=9, finger=finger)
         self.calls.append(("path", finger, times.tolist()))
 
-    def send_position(self, finger, _joints):
+    def send_position(self, finger, joints):
+        low, high = self.limits(finger).joints
+        if (joints < low).any() or (joints > high).any():
+            raise sun2xp.Refused("outside the limits: send angles within the limits")
+        self.sent = list(joints)
         self.calls.append(("position", finger))
 
     def status(self, _finger):
@@ -154,6 +164,13 @@ def test_a_later_command_replaces_a_trajectory_that_waits(one):
     take(message([]))
     node.advance_to(14.0)
     assert hand.calls[3:] == [("position", 1), ("position", 3)] and not node.timers and not node.logger.lines
+
+
+def test_a_finger_beyond_a_limit_is_stopped_at_the_limit(one):
+    node, hand, _ = one
+    hand.pose = [0.1, -0.002, 1.501]
+    node.takes["joint_trajectory"](message([]))
+    assert hand.calls == [("position", 1), ("position", 3)] and hand.sent == [0.1, 0.0, 1.5] and not node.logger.lines
 
 
 def test_a_trajectory_that_no_hand_can_execute_is_refused_at_once(one):

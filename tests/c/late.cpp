@@ -1,10 +1,12 @@
 // late.cpp - sun2xp.hpp with a library that still calls a callback after its removal, and refuses to close a hand. This
 // program defines the calls of such a library itself.
+#include <cmath>
 #include "sun2xp.hpp"
 #include "check.hpp"
 
 static char place;
 static int result_of_close, closed;
+static double waited;
 static void (*callback)(const struct sun2xp_event *, void *);
 static void *context;
 
@@ -18,6 +20,12 @@ int sun2xp_close(sun2xp_hand *)
 {
     closed++;
     return result_of_close;
+}
+
+int sun2xp_wait_event(sun2xp_hand *, struct sun2xp_event *, double seconds)
+{
+    waited = seconds;
+    return 0;
 }
 
 int sun2xp_on_event(sun2xp_hand *, void (*next)(const struct sun2xp_event *, void *), void *its_context)
@@ -70,11 +78,28 @@ static void is_refused()
     CHECK(hand.handle() == nullptr);
 }
 
+// A negative time would be no limit for the C call.
+static void does_not_wait_after_a_deadline()
+{
+    sun2xp::hand hand = sun2xp::hand::named("nominal");
+
+    for (const double past : {-1e-9, -5.0, -HUGE_VAL, std::nan("")}) {
+        waited = 1;
+        CHECK(!hand.wait_event(sun2xp::seconds(past)));
+        CHECK(waited == 0);
+    }
+    hand.wait_event(std::chrono::milliseconds(20));
+    CHECK(waited == 0.02);
+    hand.wait_event(sun2xp::seconds(HUGE_VAL));
+    CHECK(waited == HUGE_VAL);
+}
+
 int main()
 {
     is_called_late();
     CHECK(closed == 1);
     is_refused();
     CHECK(closed == 3);
+    does_not_wait_after_a_deadline();
     return 0;
 }
