@@ -104,20 +104,22 @@ impl Cycles {
         let number = i32::from(finger.number());
         let known = sun2xp::FingerNumber::try_from(number).expect("the protocol and the hand number fingers alike");
         let sample = self.view.sample(known, record);
+        // In the cycle of a fault, the sample has the set point and the force of the cycle before.
+        let stopped = matches!(record.stage, Stage::Faulted(_) | Stage::Closed);
         Record {
             finger,
             stage: stage(&record.stage),
             command: goals[finger.index()].command_at(record.began),
             cycle: record.cycle,
             begin: record.began,
-            touching: sample.touching,
+            touching: sample.touching && !stopped,
             caught: false,
             arrived: false,
             settled: false,
             joints: sample.joints,
-            set_point: sample.joint_set_point,
+            set_point: sample.joint_set_point.filter(|_| !stopped),
             tip: self.hand.tip_at(number, sample.joints).unwrap_or_default(),
-            force: sample.tip_force,
+            force: if stopped { [0.0; 3] } else { sample.tip_force },
             tensions: sample.tensions,
         }
     }
@@ -189,6 +191,9 @@ pub fn stage(stage: &Stage) -> SentStage {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::thread::sleep;
+    use std::time::{Duration, Instant};
+    use sun2xp::{Configuration, RealTime};
 
     fn record(finger: usize, cycle: u64) -> Record {
         let (finger, stage, none) = (Finger::ALL[finger], SentStage::Running, [0.0; 3]);
@@ -210,6 +215,31 @@ mod tests {
             tip,
             force,
             tensions,
+        }
+    }
+
+    /// The protocol says so of every record of a finger that has stopped, also of that of the cycle of its fault.
+    #[test]
+    fn a_finger_that_stops_has_neither_set_point_nor_force() {
+        let mut configuration = Configuration::default();
+        configuration.hand.real_time = RealTime::Ignore;
+        let hand = Arc::new(Hand::open(configuration).expect("the simulated hand"));
+        let mut cycles = Cycles::new(hand.clone());
+        let begun = Instant::now();
+        let mut take = || {
+            // The machine of the tests may be busy.
+            assert!(begun.elapsed() < Duration::from_secs(60), "no such record in time");
+            sleep(Duration::from_millis(2));
+            cycles.take(&Goals::default(), &Default::default()).records
+        };
+        while !take().iter().any(|record| record.set_point.is_some()) {}
+        hand.stop(1).expect("finger 1");
+        let mut stopped = 0;
+        while stopped < 3 {
+            for record in take().iter().filter(|record| matches!(record.stage, SentStage::Faulted(_))) {
+                assert_eq!((record.set_point, record.force, record.touching), (None, [0.0; 3], false));
+                stopped += 1;
+            }
         }
     }
 
