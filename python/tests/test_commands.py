@@ -133,6 +133,12 @@ def test_the_jacobian_is_the_derivative_of_the_tip(shared):
     assert shared.jacobian(1).shape == (3, 3)
 
 
+def test_the_urdf_has_only_the_fingers_of_the_hand():
+    with sun2xp.simulated(text="[hand]\nfingers = [2]\n") as hand:
+        urdf = hand.urdf()
+        assert "finger2_joint0" in urdf and "finger1" not in urdf and "finger3" not in urdf
+
+
 def test_arrays_with_any_layout_have_the_same_numbers(hand):
     packed = numpy.array([(0.1, 1), (0.5, 2), (0.9, 3)], [("angle", "f8"), ("joint", "i4")])
     bytes_of = numpy.zeros(25, "u1")

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import time
@@ -25,6 +26,17 @@ def test_the_tool_is_installed():
     assert wrong.returncode == 2 and "lunch" in wrong.stderr
     failed = tool("replay", "/dev/null")
     assert failed.returncode == 1 and failed.stderr.startswith("sun2xp: ")
+
+
+def test_the_tool_starts_the_server_beside_it(tmp_path):
+    command, server = tmp_path / "sun2xp", tmp_path / "sun2xp-serve"
+    shutil.copy(TOOL, command)
+    missing = subprocess.run([command, "serve", "--router"], capture_output=True, text=True, timeout=100)
+    assert missing.returncode == 1 and f"{server} is missing" in missing.stderr
+    server.write_text('#!/bin/sh\necho "served $*"\n')
+    server.chmod(0o755)
+    found = subprocess.run([command, "serve", "--router"], capture_output=True, text=True, timeout=100)
+    assert (found.returncode, found.stdout) == (0, "served --router\n"), found
 
 
 def test_control_c_ends_the_tool(tmp_path):

@@ -9,7 +9,7 @@ export class Hand3d {
   constructor(geometry) {
     this.group = new Group();
     this.group.add(solid(geometry.palm, paint(0xffffff, { vertexColors: true })));
-    this.fingers = new Map(geometry.fingers.map((finger, index) => [index + 1, new Finger3d(finger, index + 1)]));
+    this.fingers = new Map(geometry.fingers.map((finger) => [finger.number, new Finger3d(finger, finger.number)]));
     for (const finger of this.fingers.values()) this.group.add(finger.group);
     onColours(() => {
       for (const finger of this.fingers.values()) finger.colours();

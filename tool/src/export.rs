@@ -11,6 +11,7 @@ use columns::{Column, Value, columns, object_columns};
 use output::Output;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use sun2xp::simulated::ObjectState;
@@ -164,11 +165,23 @@ impl Files<'_> {
     fn finish(mut self) -> Result<(), Failure> {
         self.open.values_mut().try_for_each(Output::flush)?;
         let force = self.arguments.force;
-        let paths = self.open.into_values().map(|output| output.place(force)).collect::<Result<Vec<_>, _>>()?;
-        let mut paths: Vec<PathBuf> = paths.into_iter().flatten().collect();
+        let mut paths: Vec<PathBuf> = Vec::new();
+        for output in self.open.into_values() {
+            match output.place(force) {
+                Ok(path) => paths.extend(path),
+                Err(failure) => {
+                    // Without --force, none of these names existed before.
+                    for path in paths.iter().filter(|_| !force) {
+                        let _ = fs::remove_file(path);
+                    }
+                    return Err(failure);
+                }
+            }
+        }
         paths.sort();
         for path in paths {
-            writeln!(io::stdout(), "{}", path.display())?;
+            // The files are written, also if nobody reads their names.
+            let _ = writeln!(io::stdout(), "{}", path.display());
         }
         Ok(())
     }
@@ -197,4 +210,28 @@ impl Arguments {
 fn quoted(text: &str) -> String {
     let special = text.contains([',', '"', '\n', '\r']);
     if special { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn if_a_file_does_not_get_its_name_no_file_gets_one() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |name: &str| folder.path().join(name);
+        let (file, output) = (path("hand.mcap"), Some(folder.path().to_path_buf()));
+        let arguments = Arguments { file, output, format: Format::Wide, fingers: Vec::new(), force: false };
+        let mut files = Files { arguments: &arguments, standard_output: false, start: None, open: BTreeMap::new() };
+        for finger in [1, 2] {
+            files.file(finger, "time_s").expect("begun");
+        }
+        // Somebody else makes the second file meanwhile.
+        fs::write(path("hand-finger2.csv"), "other").expect("written");
+        assert!(files.finish().is_err());
+        let names: Vec<_> =
+            fs::read_dir(folder.path()).expect("a folder").flatten().map(|one| one.file_name()).collect();
+        assert_eq!(names, ["hand-finger2.csv"]);
+        assert_eq!(fs::read_to_string(path("hand-finger2.csv")).expect("read"), "other");
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 use std::fmt::{self, Display, Formatter};
-use std::io;
+use std::io::{self, Write};
 use sun2xp::model::one_line;
 
 /// The reason why a command failed. The tool prints its text, which names cause and remedy, in one line.
@@ -48,7 +48,13 @@ pub fn wrong_usage(reason: impl Into<String>) -> Failure {
 pub fn report(failure: &Failure) -> ExitStatus {
     let closed = |error: &io::Error| error.kind() == io::ErrorKind::BrokenPipe;
     if !failure.downcast_ref().is_some_and(closed) {
-        eprintln!("sun2xp: {}", one_line(&failure.to_string()));
+        complain(&failure.to_string());
     }
     if failure.is::<WrongUsage>() { ExitStatus::WRONG_USAGE } else { ExitStatus::FAILURE }
+}
+
+/// Prints a line on standard error. A line that cannot be written, for example because the reader of the pipe has
+/// ended, is lost. It must not change the exit status.
+pub fn complain(text: &str) {
+    let _ = writeln!(io::stderr(), "sun2xp: {}", one_line(text));
 }

@@ -61,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut configuration = match &arguments.config {
         Some(file) => hand::read_configuration(file)?,
         None => {
-            println!("The hand is simulated, because no configuration file was named (--config FILE).");
+            writeln!(io::stdout(), "The hand is simulated, because no configuration file was named (--config FILE).")?;
             Configuration::default()
         }
     };
@@ -72,7 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if real && !arguments.yes {
         confirm(&configuration)?;
     }
-    println!("opening the hand ...");
+    writeln!(io::stdout(), "opening the hand ...")?;
     // A signal while the tendons are tightened closes the hand as soon as it is open.
     let interrupt = Interrupt::watch()?;
     let hand = Arc::new(Hand::open(configuration.clone())?);

@@ -35,6 +35,7 @@ mod web;
 use crate::failure::ExitStatus;
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
+use std::path::Path;
 use sun2xp::model::configuration::Configuration;
 
 /// Tools for a hand that the sun2xp library drives.
@@ -74,6 +75,12 @@ enum Tool {
 
 /// Runs the tool with these arguments, the first of which is its name, and returns its exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    run_script(arguments, None)
+}
+
+/// Runs the tool as [`run`] does. `script` is the file of the tool if this process is an interpreter that runs a
+/// script.
+pub fn run_script(arguments: impl IntoIterator<Item = OsString>, script: Option<&Path>) -> u8 {
     let parsed = command().try_get_matches_from(arguments).and_then(|matches| Arguments::from_arg_matches(&matches));
     let arguments = match parsed {
         Ok(arguments) => arguments,
@@ -103,7 +110,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Tool::Replay(arguments) => replay::run(&arguments),
         Tool::Schedule(arguments) => schedule::run(&arguments),
         Tool::Sensors(arguments) => sensors::run(&arguments).map(|()| ExitStatus::SUCCESS),
-        Tool::Serve(arguments) => serve::run(&arguments),
+        Tool::Serve(arguments) => serve::run(&arguments, script),
         Tool::Size(arguments) => size::run(&arguments),
         Tool::Status(arguments) => status::run(&arguments),
     };

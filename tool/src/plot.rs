@@ -127,7 +127,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let bytes = if as_png { png::draw(&svg)? } else { svg.into_bytes() };
     replace_file(&output, |file| file.write_all(&bytes))
         .map_err(|error| format!("cannot write {}: {error}", ShownPath(&output)))?;
-    writeln!(io::stdout(), "{}", output.display())?;
+    // The picture is written, also if nobody reads its name.
+    let _ = writeln!(io::stdout(), "{}", output.display());
     Ok(())
 }
 

@@ -6,8 +6,7 @@ mod measured;
 mod off_line;
 mod report;
 
-use crate::failure::ExitStatus;
-use crate::failure::Failure;
+use crate::failure::{ExitStatus, Failure, complain};
 use crate::print::{self, Screen};
 use crate::virtual_machine::is_virtual;
 use measured::measure;
@@ -94,10 +93,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
         return Ok(ExitStatus::SUCCESS);
     }
     let rate = configuration.hand.rate;
-    eprintln!(
-        "sun2xp: at {rate:.0} Hz a deadline may be missed: lower hand.rate, raise finger.baud or spread the fingers \
-         over cores"
-    );
+    complain(&format!(
+        "at {rate:.0} Hz a deadline may be missed: lower hand.rate, raise finger.baud or spread the fingers over cores"
+    ));
     Ok(ExitStatus::FAILURE)
 }
 

@@ -55,7 +55,7 @@ impl Reading {
     /// first reply of the board.
     fn take(hand: &Hand, finger: i32) -> Result<Option<Self>, Failure> {
         let kept = hand.record(finger, None)?;
-        let first = kept.newest.saturating_sub(AVERAGED - 1).max(kept.oldest);
+        let first = (kept.newest + 1).saturating_sub(AVERAGED).max(kept.oldest);
         // The black box may overwrite the oldest cycles meanwhile.
         let feedback = (first..=kept.newest).filter_map(|cycle| hand.record(finger, Some(cycle)).ok()?.record.feedback);
         let feedback: Vec<_> = feedback.collect();

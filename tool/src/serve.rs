@@ -21,9 +21,13 @@ pub struct Arguments {
     options: Vec<OsString>,
 }
 
-/// Runs the command. Does not return if the program starts, because the program takes the place of this one.
-pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
-    let program = beside(&std::env::current_exe()?);
+/// Runs the command. Does not return if the program starts, because the program takes the place of this one. `script`
+/// is the file of the tool if this process is an interpreter that runs a script.
+pub fn run(arguments: &Arguments, script: Option<&Path>) -> Result<ExitStatus, Failure> {
+    let program = match script {
+        Some(script) => beside(script),
+        None => beside(&std::env::current_exe()?),
+    };
     let error = Command::new(&program).args(&arguments.options).exec();
     let shown = program.display();
     Err(match error.kind() {
@@ -35,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     .into())
 }
 
-/// The program beside this one.
+/// The program beside the tool.
 fn beside(own: &Path) -> PathBuf {
     own.with_file_name(PROGRAM)
 }

@@ -1,7 +1,6 @@
 //! `sun2xp status`: the state of the open hands, as text or as JSON.
 
-use crate::failure::ExitStatus;
-use crate::failure::Failure;
+use crate::failure::{ExitStatus, Failure, complain};
 use crate::monitor::finger_state::FingerState;
 use crate::monitor::state::{HandState, Tracker};
 use crate::monitor::words::{span, wrap};
@@ -56,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
                 Ok(hand) => hands.push(hand),
                 // A hand that ends or does not answer does not hide the others.
                 Err(failure) => {
-                    eprintln!("sun2xp: {failure}");
+                    complain(&failure.to_string());
                     failed = true;
                 }
             }

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, complain};
 use crate::print::Progress;
 use crate::recording::{self, Entry, Recording};
 use std::path::Path;
@@ -98,7 +98,7 @@ pub fn read(file: &Path, what: &str, visit: Visit) -> Result<(), Failure> {
     let (_, complete) = read_with(file, &reach, visit)?;
     drop(progress);
     if !complete {
-        eprintln!("sun2xp: {} has no end: its recorder was killed, or still runs", ShownPath(file));
+        complain(&format!("{} has no end: its recorder was killed, or still runs", ShownPath(file)));
     }
     Ok(())
 }

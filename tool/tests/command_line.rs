@@ -42,12 +42,13 @@ fn the_help_of_every_command_names_its_exit_statuses_and_fits_the_terminal() {
 
 #[test]
 fn wrong_usage_has_the_exit_status_2() {
-    let wrong: [&[&str]; 7] = [
+    let wrong: [&[&str]; 8] = [
         &[],
         &["doctr"],
         &["doctor", "--second", "1"],
         &["doctor", "--seconds", "99"],
         &["bound", "--write"],
+        &["record", "--seconds", "1e30"],
         &["board", "--order", "shove 1"],
         &["board", "--order", "cut 1 9"],
     ];
@@ -134,6 +135,15 @@ fn a_terminal_shows_a_bar_that_disappears() {
     // The last picture is erased before the result appears.
     assert!(bar.trim_end().ends_with("\u{1b}[2K") || bar.trim_end().ends_with("\u{1b}[1A"), "{bar:?}");
     assert!(result.contains("───") && !result.contains("| thread"), "{result}");
+}
+
+/// Nobody reads standard error.
+#[test]
+fn an_exit_status_does_not_depend_on_the_reader_of_the_message() {
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    let status = Command::new(TOOL).args(["replay", "/dev/null"]).stderr(writer).status().expect("the tool runs");
+    assert_eq!(status.code(), Some(1));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 
@@ -12,7 +13,8 @@ def main() -> int:
     """Runs the tool with the arguments of the process."""
     # Python's own handler would only note SIGINT, and raise KeyboardInterrupt after the tool has ended.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    return _sun2xp.run_tool(["sun2xp", *sys.argv[1:]])
+    # `sun2xp serve` starts a program beside the command, and not beside the interpreter.
+    return _sun2xp.run_tool(["sun2xp", *sys.argv[1:]], os.path.abspath(sys.argv[0]))
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ const TIP_RATIO: f64 = 0.85;
 pub struct Geometry {
     /// The palm, in the palm's frame.
     pub palm: Vec<Shape>,
-    /// Fingers 1, 2 and 3.
+    /// The fingers that the hand has (`hand.fingers`).
     pub fingers: Vec<Finger>,
     /// The object of the simulated hand.
     pub object: Option<Object>,
@@ -36,6 +36,8 @@ pub struct Geometry {
 /// A finger: a base that is fixed to the palm, and three links.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finger {
+    /// 1 to 3.
+    pub number: FingerNumber,
     /// `finger1` to `finger3`.
     pub name: String,
     /// Position of the base in the palm's frame.
@@ -105,12 +107,20 @@ pub struct Table {
 
 /// Returns the geometry of a hand. Masses, moment arms and stops are those of the simulated hand.
 pub fn geometry(configuration: &Configuration) -> Geometry {
-    let fingers: Vec<Finger> = FingerNumber::ALL.into_iter().map(|number| finger(configuration, number)).collect();
+    let fingers: Vec<Finger> =
+        configuration.hand.fingers.members().map(|number| finger(configuration, number)).collect();
     Geometry {
         palm: palm::shapes(&fingers),
         fingers,
         object: configuration.hand.simulated_object.as_ref().map(|object| self::object(object, configuration)),
         gravity: configuration.hand.gravity,
+    }
+}
+
+impl Finger {
+    /// The configuration of this finger.
+    pub fn configured<'a>(&self, configuration: &'a Configuration) -> &'a ConfiguredFinger {
+        &configuration.fingers[self.number.index()]
     }
 }
 
@@ -121,6 +131,7 @@ fn finger(configuration: &Configuration, number: FingerNumber) -> Finger {
     let ratios = &configured.simulation.moment_arm_ratio;
     let r = Matrix3x4::from_fn(|joint, tendon| configured.geometry.r[joint][tendon] * ratios[joint][tendon]);
     Finger {
+        number,
         name: format!("finger{number}"),
         base: in_palm.translation.vector.into(),
         // The rotation of a finger in the palm is about z.

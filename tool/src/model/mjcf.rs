@@ -26,8 +26,8 @@ pub fn mjcf(geometry: &Geometry, configuration: &Configuration) -> Result<String
     surroundings(&mut xml);
     xml.open("body", &[("name", &"palm")]);
     shapes(&mut xml, &geometry.palm);
-    for (finger, configured) in geometry.fingers.iter().zip(&configuration.fingers) {
-        self::finger(&mut xml, finger, configured);
+    for finger in &geometry.fingers {
+        self::finger(&mut xml, finger, finger.configured(configuration));
     }
     xml.close();
     if let Some(object) = &geometry.object {
@@ -172,9 +172,10 @@ fn object(xml: &mut Xml, object: &Object) {
 
 /// Writes the tendons with what the rotors add at the tendon: inertia, viscous and dry friction.
 fn tendons(xml: &mut Xml, geometry: &Geometry, configuration: &Configuration) {
-    let each = || geometry.fingers.iter().zip(&configuration.fingers).flat_map(|each| (0..4).map(move |of| (each, of)));
+    let each = || geometry.fingers.iter().flat_map(|finger| (0..4).map(move |tendon| (finger, tendon)));
     xml.open("tendon", &[]);
-    for ((finger, configured), tendon) in each() {
+    for (finger, tendon) in each() {
+        let configured = finger.configured(configuration);
         let simulation = &configured.simulation;
         let radius = configured.geometry.motor_radius[tendon] / 100.0;
         let attributes: [Attribute; 4] = [
@@ -192,9 +193,9 @@ fn tendons(xml: &mut Xml, geometry: &Geometry, configuration: &Configuration) {
     }
     xml.close();
     xml.open("actuator", &[]);
-    for ((finger, configured), tendon) in each() {
+    for (finger, tendon) in each() {
         let name = format!("{}_tendon{}", finger.name, tendon + 1);
-        let range = numbers([0.0, configured.tendon.maximum]);
+        let range = numbers([0.0, finger.configured(configuration).tendon.maximum]);
         xml.empty("motor", &[("name", &name), ("tendon", &name), ("ctrlrange", &range)]);
     }
     xml.close();
@@ -208,7 +209,7 @@ fn start(xml: &mut Xml, geometry: &Geometry, configuration: &Configuration) -> R
         pose.extend([1.0, 0.0, 0.0, 0.0]);
     }
     let mut pull = Vec::new();
-    for finger in &configuration.fingers {
+    for finger in geometry.fingers.iter().map(|finger| finger.configured(configuration)) {
         pull.extend(finger.true_tendons()?.pretension(finger.tendon.minimum).iter());
     }
     xml.open("keyframe", &[]);

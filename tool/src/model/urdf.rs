@@ -21,8 +21,8 @@ pub fn urdf(geometry: &Geometry, configuration: &Configuration) -> String {
     xml.open("link", &[("name", &"palm")]);
     shapes(&mut xml, &geometry.palm);
     xml.close();
-    for (finger, configured) in geometry.fingers.iter().zip(&configuration.fingers) {
-        self::finger(&mut xml, finger, configured);
+    for finger in &geometry.fingers {
+        self::finger(&mut xml, finger, finger.configured(configuration));
     }
     xml.finish()
 }

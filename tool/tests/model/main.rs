@@ -219,6 +219,20 @@ fn the_json_has_the_same_hand() {
 }
 
 #[test]
+fn a_model_has_only_the_fingers_of_the_hand() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("hand.toml");
+    std::fs::write(&file, "[hand]\nfingers = [2]\n[finger]\nport = \"simulated\"\n").expect("written");
+    let file = file.to_str().expect("a plain name");
+    for format in ["--urdf", "--mjcf", "--json"] {
+        let run = tool(&[format, "--config", file]);
+        let model = String::from_utf8_lossy(&run.stdout);
+        assert!(run.status.success() && model.contains("finger2"), "{run:?}");
+        assert!(!model.contains("finger1") && !model.contains("finger3"), "{format}: {model}");
+    }
+}
+
+#[test]
 fn a_format_must_be_chosen() {
     let run = tool(&[]);
     assert_eq!(run.status.code(), Some(2), "{run:?}");

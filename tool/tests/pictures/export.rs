@@ -142,6 +142,27 @@ fn a_refused_or_failed_export_leaves_the_folder_as_it_was() {
     assert_eq!(fs::read_to_string(path("hand-finger2.csv")).expect("read"), "old");
 }
 
+/// Nobody reads the names of the files.
+#[test]
+fn work_that_is_done_is_a_success_whoever_reads_its_names() {
+    let recorded = recorded();
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = recorded.file();
+    let file = file.to_str().expect("a name");
+    let output = folder.path().to_str().expect("a name");
+    for (arguments, made) in [
+        (&["export", file, "--output", output][..], "finger-2-finger2.csv"),
+        (&["plot", file, "--output", "step.svg"], "step.svg"),
+        (&["record", "--from-black-box", file, "-o", "hand.mcap"], "hand.mcap"),
+    ] {
+        let (reader, writer) = io::pipe().expect("a pipe");
+        drop(reader);
+        let mut tool = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+        let status = tool.args(arguments).current_dir(folder.path()).stdout(writer).status().expect("the tool runs");
+        assert!(status.code() == Some(0) && folder.path().join(made).exists(), "{arguments:?}: {status}");
+    }
+}
+
 /// An export that returns has removed its files. The tool is held up by a full pipe until it is interrupted.
 #[test]
 fn an_interrupted_export_returns() {
