@@ -86,6 +86,10 @@ template <class Struct, class Call> Struct filled(Call call)
     return result;
 }
 
+/// The limit of a wait, s. A negative time, for example because a deadline has passed, is no wait. For the C calls it
+/// would be no limit, or an error.
+inline double limit(seconds longest) noexcept { return longest.count() > 0 ? longest.count() : 0; }
+
 /// A function that gets events.
 using event_callback = std::function<void(const struct sun2xp_event &)>;
 
@@ -259,11 +263,12 @@ public:
         return position;
     }
 
-    /// Waits until the condition holds. Returns false if it does not hold within the time. If the hand is on another
-    /// machine, also returns false if no reports arrive from it. Accepts all_fingers.
+    /// Waits until the condition holds. Returns false if it does not hold within the time, and for a hand on another
+    /// machine also if no reports arrive from it. A time that is not above 0 is no wait, and an infinite time is no
+    /// limit. Accepts all_fingers.
     bool wait(until condition, seconds longest)
     {
-        const int result = sun2xp_wait(hand_, number_, static_cast<int>(condition), longest.count());
+        const int result = sun2xp_wait(hand_, number_, static_cast<int>(condition), detail::limit(longest));
         return result != -SUN2XP_ERROR_TIMED_OUT && detail::checked(result) == 0;
     }
 
@@ -385,8 +390,7 @@ public:
     /// wait, and an infinite time is no limit.
     std::optional<struct sun2xp_event> wait_event(seconds longest)
     {
-        // The C call waits without a limit if the time is negative, for example because a deadline has passed.
-        const double limit = longest.count() > 0 ? longest.count() : 0;
+        const double limit = detail::limit(longest);
         return event([&](struct sun2xp_event *to) { return sun2xp_wait_event(hand_, to, limit); });
     }
 

@@ -28,6 +28,12 @@ int sun2xp_wait_event(sun2xp_hand *, struct sun2xp_event *, double seconds)
     return 0;
 }
 
+int sun2xp_wait(sun2xp_hand *, int, int, double seconds)
+{
+    waited = seconds;
+    return -SUN2XP_ERROR_TIMED_OUT;
+}
+
 int sun2xp_on_event(sun2xp_hand *, void (*next)(const struct sun2xp_event *, void *), void *its_context)
 {
     // The last function is kept, to be called later.
@@ -78,7 +84,7 @@ static void is_refused()
     CHECK(hand.handle() == nullptr);
 }
 
-// A negative time would be no limit for the C call.
+// For the C calls, a negative time would be no limit, or an error.
 static void does_not_wait_after_a_deadline()
 {
     sun2xp::hand hand = sun2xp::hand::named("nominal");
@@ -86,6 +92,9 @@ static void does_not_wait_after_a_deadline()
     for (const double past : {-1e-9, -5.0, -HUGE_VAL, std::nan("")}) {
         waited = 1;
         CHECK(!hand.wait_event(sun2xp::seconds(past)));
+        CHECK(waited == 0);
+        waited = 1;
+        CHECK(!hand.finger(1).wait(sun2xp::until::settled, sun2xp::seconds(past)));
         CHECK(waited == 0);
     }
     hand.wait_event(std::chrono::milliseconds(20));
