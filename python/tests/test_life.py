@@ -58,12 +58,13 @@ def test_a_hand_on_another_machine_is_not_replaced_by_a_simulated_one(tmp_path):
             opening()
 
 
-def test_a_simulated_hand_ignores_boards_and_names_of_its_text():
+def test_a_simulated_hand_ignores_rate_boards_and_names_of_its_text():
     board = "thread = 1\nbaud = 2000000\nboard = '00 01 02 03 04 05 06 07 08 09 0a 0b'"
-    text = f"[finger]\n{board}\n[finger.simulation]\nhand = 'worn'\nstart_degrees = [2, 30, 40]\n"
+    text = f"[hand]\nrate = 7\n[finger]\n{board}\n[finger.simulation]\nhand = 'worn'\nstart_degrees = [2, 30, 40]\n"
     with sun2xp.simulated("cheap", text=text) as hand:
         simulation = hand.configuration(1)["simulation"]
         assert (simulation["hand"], simulation["start_degrees"]) == ("cheap", [2, 30, 40])
+        assert hand.status(1).rate == 1000
         # Only a simulated finger can be pushed.
         hand.push(1, [0, 0, 0])
 

@@ -75,12 +75,19 @@ mod tests {
     }
 
     #[test]
-    fn a_text_is_checked_at_the_rate_of_the_hand() {
-        // State feedback, the default from 750 Hz up, needs more tension than the report's controller.
-        let text = "[hand]\nrate = 500\n[finger.tendon]\nmaximum = 10\n";
-        assert!(Configured::simulated("nominal", 500.0, text).is_ok());
-        let refusal = Configured::simulated("nominal", 1000.0, text).expect_err("refused").to_string();
-        assert!(refusal.starts_with("configuration text:4: finger.1.tendon.maximum: "), "{refusal}");
-        assert!(Configured::simulated("nominal", 500.0, &text.replace("500", "1000")).is_ok());
+    fn the_text_is_checked_with_the_rate_of_the_call() {
+        // The bound of Kx depends on the rate.
+        let bound = |rate| ConfiguredFinger::default().stiffness_bound(rate);
+        let stiff = (bound(500.0) + bound(1000.0)) / 2.0;
+        let text =
+            format!("finger.stiffness.initial = [[{stiff}, 0.0, 0.0], [0.0, {stiff}, 0.0], [0.0, 0.0, {stiff}]]");
+        for rate in [500.0, 1000.0] {
+            assert_eq!(Configured::simulated("nominal", rate, &text).is_ok(), stiff < bound(rate), "{rate} Hz");
+        }
+        // A rate of the text that no hand can have is ignored like every other one.
+        for rate in ["7", "\"fast\""] {
+            let hand = Configured::simulated("nominal", 500.0, &format!("[hand]\nrate = {rate}\n"));
+            assert_eq!(hand.map(|hand| hand.configuration.hand.rate).ok(), Some(500.0), "{rate}");
+        }
     }
 }

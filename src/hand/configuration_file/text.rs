@@ -10,7 +10,7 @@ use crate::hand::opening::check;
 use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, FINGERS};
 use crate::model::{FingerNumber, Section, Shown, UnusableConfiguration};
 use std::ops::Range;
-use toml_edit::{Document, Item, Table, Value};
+use toml_edit::{Document, Item, Table, Value, value};
 
 /// The tables that a configuration file may have. Other programs read the tables `serve` and `remote`.
 const TABLES: [&str; 5] = ["hand", "telemetry", "finger", "serve", "remote"];
@@ -33,12 +33,12 @@ pub(super) fn parse(text: &str) -> Result<(Configuration, Said), Wrong> {
     parse_with(text, None, &|_, _| false)
 }
 
-/// Reads and checks the text of a configuration file. In the text of a simulated hand with a name and a rate, Hz, the
-/// name replaces `simulation.hand` of every finger, and the rate replaces `hand.rate`. `replace_port` can replace the
-/// port of a finger before the ports are checked, and returns whether it did.
+/// Reads and checks the text of a configuration file. `named` has a name and a rate, Hz. The name replaces
+/// `simulation.hand` of every finger, and the rate replaces `hand.rate`, before anything is checked. `replace_port` can
+/// replace the port of a finger before the ports are checked, and returns whether it did.
 pub(super) fn parse_with(
     text: &str,
-    simulated: Option<(&str, f64)>,
+    named: Option<(&str, f64)>,
     replace_port: &dyn Fn(FingerNumber, &mut ConfiguredFinger) -> bool,
 ) -> Result<(Configuration, Said), Wrong> {
     let document = Document::parse(text).map_err(Wrong::in_syntax)?;
@@ -47,8 +47,11 @@ pub(super) fn parse_with(
         let reason = format!("unknown key `{}`, expected `{}`", Shown(key), TABLES.join("`, `"));
         return Err(Wrong::at(span_of_key(root, key), reason));
     }
-    let mut hand: ConfiguredHand = deserialize(&table(root, "hand")?).map_err(|wrong| wrong.in_key("hand"))?;
-    hand.rate = simulated.map_or(hand.rate, |(_, rate)| rate);
+    let mut of_hand = table(root, "hand")?;
+    if let Some((_, rate)) = named {
+        of_hand.insert("rate", value(rate));
+    }
+    let hand: ConfiguredHand = deserialize(&of_hand).map_err(|wrong| wrong.in_key("hand"))?;
     let telemetry = deserialize(&table(root, "telemetry")?).map_err(|wrong| wrong.in_key("telemetry"))?;
     let all = table(root, "finger")?;
     let numbers = || (1..=FINGERS).map(|number| number.to_string());
@@ -66,6 +69,7 @@ pub(super) fn parse_with(
     for ((number, finger), port_named) in FingerNumber::ALL.into_iter().zip(&mut fingers).zip(&mut ports) {
         let section = format!("finger.{number}");
         let own = table(&all, &number.to_string()).map_err(|wrong| wrong.in_key("finger"))?;
+        let name = named.map(|(name, _)| name);
         (*finger, *port_named) = finger_of(&common, &own, name).map_err(|wrong| wrong.in_key(&section))?;
         *port_named |= replace_port(number, finger);
     }
