@@ -63,13 +63,12 @@ pub(super) fn parse_with(
     for number in numbers() {
         common.remove(&number);
     }
-    let name = simulated.map(|(name, _)| name);
+    let name = named.map(|(name, _)| name);
     let mut fingers: [ConfiguredFinger; FINGERS] = Default::default();
     let mut ports = [false; FINGERS];
     for ((number, finger), port_named) in FingerNumber::ALL.into_iter().zip(&mut fingers).zip(&mut ports) {
         let section = format!("finger.{number}");
         let own = table(&all, &number.to_string()).map_err(|wrong| wrong.in_key("finger"))?;
-        let name = named.map(|(name, _)| name);
         (*finger, *port_named) = finger_of(&common, &own, name).map_err(|wrong| wrong.in_key(&section))?;
         *port_named |= replace_port(number, finger);
     }
