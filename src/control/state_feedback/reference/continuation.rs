@@ -1,12 +1,20 @@
 //! Continuations of the reference: with another time constant, and along another path.
 
-use super::{Reference, ReferenceMotion, ReferenceState};
+use super::{ORDER, Reference, ReferenceMotion, ReferenceState};
 use crate::control::motion::Motion;
 use nalgebra::Vector3;
+
+/// Largest distance of a stage from the reference after the time constant has become longer, relative to the largest
+/// such distance before. With 0.02 after 0.008 s, a reference at full speed stays below it.
+const STRETCH: f64 = 3.0;
 
 impl Reference {
     /// Converts the stages of `previous`, a filter with another time constant, so that the reference keeps its motion.
     /// The parameters are those of [`Reference::advance_along`].
+    ///
+    /// A filter with a much longer time constant would continue the acceleration of a fast filter for so long that the
+    /// reference would run far past the set point. So the conversion bounds the first stages. The reference then keeps
+    /// only its place and its rates.
     pub fn take_over(
         &self,
         previous: &Self,
@@ -23,15 +31,22 @@ impl Reference {
             let ReferenceMotion { joints, rates, accelerations, jerk, snap } = previous.motion(state);
             ReferenceState::of(&joints, &Motion { rates, accelerations, jerk, snap }, self.lag)
         };
-        let ahead = *anchor - state.0[0];
-        *state = converted(state);
-        *along = along.as_ref().map(converted);
-        // The first stage keeps its rate, too. With a longer time constant, the anchor must be farther ahead of the
-        // first stage for this rate. It could then be beyond a set point at rest. So the anchor stays in this case, and
-        // the reference slows down.
-        if longer < 1.0 || along.is_some() {
-            *anchor = state.0[0] + ahead * longer;
+        // The set point moves by itself. The conversion must not disturb its motion, but only that of the deviation.
+        let moved = along.unwrap_or_default();
+        let deviation = state.combine(&moved, |stage, moved| stage - moved);
+        let mut input = *anchor - moved.0[0];
+        let (moved, mut next) = (converted(&moved), converted(&deviation));
+        if longer > 1.0 {
+            // For the same rate of the first stage, the input would have to be farther ahead of this stage. It could
+            // then be beyond a set point at rest. So the input stays, and the reference slows down.
+            next.limit(&deviation, &input);
+        } else {
+            // The first stage keeps its rate, too.
+            input = next.0[0] + (input - deviation.0[0]) * longer;
         }
+        *anchor = moved.0[0] + input;
+        *state = moved.combine(&next, |moved, next| moved + next);
+        *along = along.map(|_| moved);
     }
 
     /// Makes the reference follow the motion of another set point, which now has the angles `joints` and the motion
@@ -47,6 +62,23 @@ impl Reference {
         if along.is_some() {
             let (joints, motion) = before(joints, motion, period);
             *along = Some(ReferenceState::of(&joints, &motion, self.lag));
+        }
+    }
+}
+
+impl ReferenceState {
+    /// Bounds the outputs of the first stages to [`STRETCH`] times the range of the stages `before` and of their
+    /// `input`, seen from the last output. The last two outputs stay, because they are the place and the rates.
+    fn limit(&mut self, before: &Self, input: &Vector3<f64>) {
+        let joints = before.0[ORDER - 1];
+        let (mut low, mut high) = (Vector3::zeros(), Vector3::zeros());
+        for value in before.0.iter().chain([input]) {
+            let ahead = value - joints;
+            (low, high) = (ahead.inf(&low), ahead.sup(&high));
+        }
+        let (low, high) = (joints + low * STRETCH, joints + high * STRETCH);
+        for stage in &mut self.0[..ORDER - 2] {
+            *stage = stage.sup(&low).inf(&high);
         }
     }
 }
@@ -108,6 +140,65 @@ mod tests {
             let fastest = all.iter().fold(0.0f64, |fastest, motion| fastest.max(motion.rates.amax()));
             assert!(fastest < 5.3, "{time} {cycles}: {fastest}");
             assert!((all[799].joints - Vector3::x()).amax() < 1e-3, "{time} {cycles}");
+        }
+    }
+
+    /// Runs a reference toward 0.3 rad. The time constants `times`, s, follow each other, the second from cycle `at` on
+    /// and each later one `gap` cycles after its predecessor.
+    fn with_time_constants(times: &[f64], at: usize, gap: usize) -> Vec<ReferenceMotion> {
+        let (goal, slew) = (Vector3::x() * 0.3, Slew::new(5.0, RATE));
+        let (mut anchor, mut along) = (Vector3::zeros(), None);
+        let mut filter = Reference::new(times[0], RATE);
+        let mut state = filter.start(&anchor);
+        let mut all = Vec::new();
+        for cycle in 0..1000 {
+            if let Some(place) = (1..times.len()).find(|place| cycle == at + gap * (place - 1)) {
+                let next = Reference::new(times[place], RATE);
+                next.take_over(&filter, &mut state, &mut anchor, &mut along);
+                filter = next;
+            }
+            slew.advance(&mut anchor, &goal);
+            all.push(filter.advance(&mut state, &anchor));
+        }
+        all
+    }
+
+    /// Two adjustments shortly after each other can make the time constant twenty times as long.
+    #[test]
+    fn a_much_longer_time_constant_does_not_carry_the_reference_past_its_set_point() {
+        let cases: [(&[f64], usize); 3] =
+            [(&[0.001, 0.02], 1), (&[0.008, 0.001, 0.02], 5), (&[0.001, 0.003, 0.009, 0.02], 20)];
+        for (times, gap) in cases {
+            for at in (1..120).step_by(7) {
+                let all = with_time_constants(times, at, gap);
+                let fastest = all.iter().fold(0.0f64, |fastest, motion| fastest.max(motion.rates.amax()));
+                let farthest = all.iter().fold(0.0f64, |farthest, motion| farthest.max(motion.joints.x));
+                assert!(fastest < 5.01 && farthest < 0.35, "{times:?} {at}: {fastest} rad/s, {farthest} rad");
+                assert!((all[999].joints.x - 0.3).abs() < 1e-6, "{times:?} {at}");
+            }
+        }
+    }
+
+    /// The reference begins 0.4 rad away from the path. The time constant changes on the way to the path.
+    #[test]
+    fn a_much_longer_time_constant_does_not_disturb_a_path() {
+        let (first, second, slew) = (Reference::new(0.001, RATE), Reference::new(0.02, RATE), Slew::new(5.0, RATE));
+        for at in (1..200).step_by(9) {
+            let (mut anchor, mut along) = (Vector3::x() * -0.4, None);
+            let mut state = first.start(&anchor);
+            let mut deviation = Vector3::zeros();
+            for cycle in 0..1000 {
+                let (joints, motion) = path(f64::from(cycle) / RATE);
+                let filter = if cycle < at { &first } else { &second };
+                if cycle == at {
+                    second.take_over(&first, &mut state, &mut anchor, &mut along);
+                }
+                let followed = filter.advance_along(&mut state, &mut anchor, &mut along, &slew, (&joints, &motion));
+                deviation = followed.joints - joints;
+                let faster = (followed.rates - motion.rates).amax();
+                assert!(deviation.x < 0.05 && faster < 5.01, "{at} {cycle}: {deviation} rad, {faster} rad/s");
+            }
+            assert!(deviation.amax() < 1e-6, "{at}: {deviation}");
         }
     }
 
