@@ -11,6 +11,7 @@ use sun2xp::groups::{FingerCommand, Until};
 use sun2xp::hand::{Hand, HandError, SetPointError};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
+use sun2xp::motion::{PathPose, Pose};
 
 const LIMIT: Duration = Duration::from_secs(20);
 
@@ -104,6 +105,73 @@ fn a_group_with_a_refused_command_changes_no_finger() {
     }
     sent(&hand, &[good]);
     hand.wait(&[1], Until::Arrived, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    hand.close();
+}
+
+fn kx(stiffness: f64) -> [[f64; 3]; 3] {
+    (Matrix3::identity() * stiffness).into()
+}
+
+/// The order is that of the manual: EINVAL, EDOM, ERANGE. The order of the fingers does not matter.
+#[test]
+fn a_group_is_refused_for_the_reason_that_its_manual_lists_first() {
+    let hand = open();
+    let skew = [[1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let far = [9.0, 0.6, 1.1];
+    let (one, two) = (FingerCommand::new(1), FingerCommand::new(2));
+    for (commands, errno) in [
+        (vec![one.stiffness(kx(99.0)), two.stiffness(skew)], libc::EDOM),
+        (vec![one.joints(far), two.stiffness(skew)], libc::EDOM),
+        (vec![one.joints(far).stiffness(skew), two], libc::EDOM),
+        (vec![one.joints(far).stiffness(skew)], libc::EDOM),
+        (vec![one.stiffness(skew), two.stiffness(kx(99.0))], libc::EDOM),
+        (vec![one.stiffness(skew), two.joints([f64::NAN; 3])], libc::EINVAL),
+        (vec![one.stiffness(kx(99.0)), two.joints(far)], libc::ERANGE),
+    ] {
+        let error = hand.send_group(&commands).expect_err("refused");
+        assert_eq!(error.errno(), errno, "{error}");
+    }
+    hand.close();
+}
+
+#[test]
+fn a_group_with_paths_is_sent_as_a_whole() {
+    let hand = open();
+    let set_point = |finger: i32| hand.report(finger).expect("a report").set_point;
+    let before = [1, 2, 3].map(set_point);
+    let pose = |joints| [PathPose { time: 0.5, pose: Pose::Joints(joints), stiffness: None }];
+    let (near, far) = (pose([0.1, 0.5, 1.0]), pose([9.0, 0.5, 1.0]));
+    let soft = FingerCommand::new(1).stiffness(kx(1.0));
+    // Every part but one is admitted.
+    for (commands, paths) in [
+        (vec![soft], vec![(2, &near[..]), (3, &far[..])]),
+        (vec![soft, FingerCommand::new(3).joints([9.0; 3])], vec![(2, &near[..])]),
+        (vec![soft, FingerCommand::new(3).damping(99.0)], vec![(2, &near[..])]),
+        (vec![soft], vec![(2, &near[..]), (2, &near[..])]),
+    ] {
+        hand.send_group_with_paths(&commands, &paths).expect_err("refused");
+    }
+    hand.stop(3).expect("a finger");
+    while !matches!(hand.report(3).expect("a report").stage, Stage::Faulted(_)) {
+        std::thread::yield_now();
+    }
+    let faulted = hand.send_group_with_paths(&[soft], &[(2, &near[..]), (3, &near[..])]).expect_err("faulted");
+    assert_eq!(faulted.errno(), libc::EIO, "{faulted}");
+    let cycles = hand.report(1).expect("a report").losses.cycles;
+    while hand.report(1).expect("a report").losses.cycles < cycles + 10 {
+        std::thread::yield_now();
+    }
+    for finger in [1, 2] {
+        assert_eq!(set_point(finger), before[finger as usize - 1], "finger {finger}");
+    }
+    // The path of finger 2 begins with the damping of its command.
+    let damped = FingerCommand::new(2).damping(1.1);
+    hand.send_group_with_paths(&[soft, damped], &[(2, &near[..])]).unwrap_or_else(|error| panic!("{error}"));
+    hand.wait(&[1, 2], Until::Arrived, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    let (first, second) = (set_point(1), set_point(2));
+    assert!((first.stiffness[(0, 0)] - 1.0).abs() < 1e-9 && first.joints == before[0].joints, "{first:?}");
+    let off = (second.joints - Vector3::new(0.1, 0.5, 1.0)).amax();
+    assert!(off < 1e-9 && second.damping == 1.1 && second.motion.is_none(), "{second:?}");
     hand.close();
 }
 

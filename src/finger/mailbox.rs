@@ -9,7 +9,7 @@
 mod adjustments;
 pub(super) mod groups;
 mod last_path;
-mod paths;
+pub(super) mod paths;
 mod requests;
 mod validity;
 

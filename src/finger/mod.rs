@@ -47,6 +47,7 @@ pub use link_watch::Fading;
 pub use losses::Losses;
 pub use mailbox::Mailbox;
 pub use mailbox::groups::PreparedSetPoint;
+pub use mailbox::paths::PreparedPath;
 pub use order::{CalibrationRun, Order};
 pub use outlet::{Keyframe, Outlet};
 pub use path_buffer::{MOST_PIECES, MOST_POSES};

@@ -19,7 +19,8 @@ pub(super) struct PathBuffer {
     /// The period of the servo in which the path begins, as in [`Reference::period`](crate::finger::Reference::period).
     pub origin: u64,
     /// The stiffness with which the path begins, as in [`SetPoint::stiffness`](crate::control::SetPoint::stiffness);
-    /// none for the stiffness that is in force when the servo takes the path.
+    /// none if it is the stiffness in force. A planner may have sent it so shortly before the path that the servo gets
+    /// only the path.
     pub begin: Option<Matrix6<f64>>,
     pieces: Pages<[Piece]>,
     piece_count: usize,

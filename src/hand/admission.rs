@@ -135,7 +135,7 @@ impl DampingAdmission {
     }
 
     /// Returns the spring with the narrowest range of damping.
-    pub fn stiffest(&self, springs: [Matrix6<f64>; 3]) -> Result<Matrix6<f64>, SetPointError> {
+    pub fn stiffest(&self, springs: [Matrix6<f64>; 2]) -> Result<Matrix6<f64>, SetPointError> {
         let mut stiffest = (f64::NEG_INFINITY, Matrix6::zeros());
         for spring in springs {
             let largest = self.largest(&spring)?;

@@ -1,11 +1,10 @@
 //! Groups: one call sends set points to several fingers, and all of them take effect in the same period.
 
 use crate::control::{Law, SetPoint};
-use crate::finger::{PreparedSetPoint, Replaced, Validity};
+use crate::finger::{Replaced, Validity};
 use crate::hand::admission::Admission;
 use crate::hand::{Hand, HandError, SetPointError};
 use crate::model::FingerNumber;
-use crate::model::configuration::FINGERS;
 use nalgebra::Vector3;
 
 /// A desired pose of a finger.
@@ -72,7 +71,8 @@ impl FingerCommand {
         Self { validity, ..self }
     }
 
-    fn replaced(&self) -> Replaced {
+    /// Returns what the command replaces.
+    pub(super) fn replaced(&self) -> Replaced {
         match (self.pose, self.stiffness) {
             (Some(_), _) => Replaced::Place,
             (None, Some(_)) => Replaced::Stiffness,
@@ -81,7 +81,7 @@ impl FingerCommand {
     }
 
     /// Refuses NaN and infinity in every quantity.
-    fn check_finite(&self, admission: &Admission) -> Result<(), SetPointError> {
+    pub(super) fn check_finite(&self, admission: &Admission) -> Result<(), SetPointError> {
         match &self.pose {
             None => {}
             Some(Pose::Joints(joints)) => admission.finite("Pos", joints)?,
@@ -92,19 +92,24 @@ impl FingerCommand {
     }
 
     /// Checks the command. Returns a function that changes the set point. That function returns an error if it refuses
-    /// the resulting damping. `present` is the pose of the finger, rad.
-    fn admit(
+    /// the resulting damping. `present` is the pose of the finger, rad. A Kx that is no spring is refused before a value
+    /// that is out of range, as the manual of sun2xp_send_group lists the reasons.
+    pub(super) fn admit(
         &self,
         admission: &Admission,
         present: &Vector3<f64>,
     ) -> Result<impl FnOnce(&mut SetPoint) -> Result<(), SetPointError> + use<>, SetPointError> {
         self.check_finite(admission)?;
+        let stiffness = match self.stiffness.map(|rows| admission.stiffness(rows)).transpose() {
+            Err(error) if error.is_no_spring() => return Err(error),
+            checked => checked,
+        };
         let pose = match self.pose {
             None => None,
             Some(Pose::Joints(joints)) => Some((admission.joints(joints)?, admission.law)),
             Some(Pose::Tip(tip)) => Some((admission.tip(tip, present)?, Law::Exact)),
         };
-        let stiffness = self.stiffness.map(|rows| admission.stiffness(rows)).transpose()?;
+        let stiffness = stiffness?;
         let ratio = self.damping;
         let damping = admission.damping;
         Ok(move |set_point: &mut SetPoint| {
@@ -141,59 +146,6 @@ impl Hand {
             let what = (alone.replaced(), alone.validity);
             return self.send(finger, what, |admission| alone.admit(admission, &present));
         }
-        let mut by_finger: [Option<&FingerCommand>; FINGERS] = [None; FINGERS];
-        for command in commands {
-            let finger = FingerNumber::try_from(command.finger)?;
-            self.dispatcher.member(finger)?;
-            if by_finger[finger.index()].replace(command).is_some() {
-                return Err(SetPointError::TwiceInGroup(finger).into());
-            }
-        }
-        // The locks are taken in the order of the fingers, and held until every finger has its command. Each kind of
-        // check is made for all fingers before the next kind, so that the reported reason does not depend on the
-        // finger.
-        let mut admissions = [const { None }; FINGERS];
-        for number in FingerNumber::ALL {
-            let Some(command) = by_finger[number.index()] else { continue };
-            let member = self.dispatcher.member(number)?;
-            command.check_finite(admissions[number.index()].insert(member.admission.read()))?;
-        }
-        let mut changes = [const { None }; FINGERS];
-        for number in FingerNumber::ALL {
-            let (Some(command), Some(admission)) = (by_finger[number.index()], &admissions[number.index()]) else {
-                continue;
-            };
-            let member = self.dispatcher.member(number)?;
-            changes[number.index()] = Some(command.admit(admission, &member.mailbox.report().cycle.joints)?);
-        }
-        let mut prepared: [Option<PreparedSetPoint<'_>>; FINGERS] = [const { None }; FINGERS];
-        let mut refusal = None;
-        for number in FingerNumber::ALL {
-            let (Some(command), Some(change)) = (by_finger[number.index()], changes[number.index()].take()) else {
-                continue;
-            };
-            let member = self.dispatcher.member(number)?;
-            let faulted = |fault| HandError::Faulted { finger: number, fault };
-            match member.mailbox.prepare((command.replaced(), command.validity), change).map_err(faulted)? {
-                Ok(set_point) => prepared[number.index()] = Some(set_point),
-                // The fault of a later finger is reported instead, as for a command of a single finger.
-                Err(error) => refusal = refusal.or(Some(error)),
-            }
-        }
-        match refusal {
-            Some(refusal) => Err(refusal.into()),
-            None => self.send_prepared(prepared),
-        }
-    }
-
-    /// Sends the set points of a group, unless a finger has no room for another group.
-    fn send_prepared(&self, prepared: [Option<PreparedSetPoint<'_>>; FINGERS]) -> Result<(), HandError> {
-        for number in FingerNumber::ALL {
-            if prepared[number.index()].as_ref().is_some_and(|set_point| !set_point.has_room()) {
-                return Err(SetPointError::GroupsWaiting(number).into());
-            }
-        }
-        self.dispatcher.gate.send(prepared);
-        Ok(())
+        self.send_together(commands, &[])
     }
 }

@@ -6,10 +6,7 @@ mod tips;
 
 pub use plan::{Plan, plan_path};
 
-use crate::control::motion::PathExtent;
-use crate::finger::{Stage, Validity};
-use crate::hand::{Hand, HandError, PathError, Pose};
-use crate::model::FingerNumber;
+use crate::hand::{Hand, HandError, Pose};
 use std::time::Duration;
 
 /// A pose of a path.
@@ -42,40 +39,8 @@ impl Hand {
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if the finger is faulted or is not a spring, if the path is refused
-    /// ([`PathError`]), or if a Kx is too stiff for the damping ratio. Then the call changes nothing.
+    /// ([`PathError`](super::PathError)), or if a Kx is too stiff for the damping ratio. Then the call changes nothing.
     pub fn send_path(&self, finger: i32, poses: &[PathPose], valid: Option<Duration>) -> Result<(), HandError> {
-        let finger = FingerNumber::try_from(finger)?;
-        let member = self.dispatcher.member(finger)?;
-        // The lock is held throughout, so that the limits do not change between the check and the sending.
-        let admission = member.admission.read();
-        let report = self.dispatcher.last_report(finger)?;
-        let plan = admission.path(&report.reference, poses)?;
-        if report.stage != Stage::Running {
-            return Err(member.refusal(report.stage));
-        }
-        let (damping, law) = (admission.damping, plan.law);
-        let (along, end) = (plan.stiffest(), plan.end());
-        let (lowest, highest) = plan.table().bounds();
-        let in_force = report.set_point.stiffness;
-        let sent = member.mailbox.send_path(
-            (report.springs, report.reference.period, Validity::hold_after(valid)),
-            &plan.table(),
-            |set_point| {
-                (set_point.joints, set_point.law) = (end, law);
-                let begin = set_point.stiffness;
-                for &stiffness in &along {
-                    set_point.stiffen_tip(stiffness);
-                    damping.admit(set_point)?;
-                }
-                // A stiffness that was sent just before may not be in force when the path begins.
-                let stiffest = along.first().map(|&first| damping.stiffest([first, begin, in_force])).transpose()?;
-                Ok(PathExtent { lowest, highest, stiffest })
-            },
-        );
-        match sent.map_err(|fault| HandError::Faulted { finger, fault })? {
-            Ok(Some(_)) => Ok(()),
-            Ok(None) => Err(PathError::Moved(finger).into()),
-            Err(refusal) => Err(HandError::SetPoint(refusal)),
-        }
+        self.send_together(&[], &[(finger, poses, valid)])
     }
 }

@@ -18,6 +18,7 @@ mod locked_memory;
 mod motion;
 mod named_hands;
 mod opening;
+mod path_stiffness;
 mod reflexes;
 mod refused_paths;
 mod rig;

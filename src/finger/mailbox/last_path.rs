@@ -2,6 +2,7 @@
 
 use crate::control::SetPoint;
 use crate::control::motion::PathExtent;
+use nalgebra::Matrix6;
 
 /// The path that was sent last, as far as later changes of the set point depend on it.
 #[derive(Default)]
@@ -10,6 +11,8 @@ pub(super) struct LastPath {
     pub number: u32,
     /// Number of the set point to which the path leads.
     pub set_point: u32,
+    /// The stiffness with which the path begins; none if it is the stiffness in force.
+    pub begin: Option<Matrix6<f64>>,
     pub extent: PathExtent,
 }
 

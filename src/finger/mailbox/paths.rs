@@ -1,12 +1,24 @@
 //! Paths on their way to the servo.
 
-use super::last_path::LastPath;
-use super::{Mailbox, PlannersEnd, ServoEnd};
+use super::last_path::{self, LastPath};
+use super::{Mailbox, PlannersEnd, SentSetPoint, ServoEnd};
 use crate::control::SetPoint;
 use crate::control::motion::{PathExtent, PathTable};
 use crate::finger::path_buffer::PathBuffer;
 use crate::finger::sent::SentPath;
 use crate::finger::{Fault, Replaced, Validity};
+use nalgebra::Matrix6;
+use std::sync::MutexGuard;
+
+/// A path of one finger, before it is sent. No other planner can change the finger's set point meanwhile. Dropping this
+/// value changes nothing.
+pub struct PreparedPath<'a> {
+    planners: MutexGuard<'a, PlannersEnd>,
+    next: SentSetPoint,
+    last: LastPath,
+    origin: u64,
+    path: PathTable<'a>,
+}
 
 impl Mailbox {
     /// Sends a path that begins in period `origin`. `change` gets a copy of the set point that was sent last, moves it
@@ -20,26 +32,46 @@ impl Mailbox {
     /// Nothing is sent in these cases.
     pub fn send_path<E>(
         &self,
-        (spring, origin, valid): (u32, u64, Validity),
+        when: (u32, u64, Validity),
         path: &PathTable,
         change: impl FnOnce(&mut SetPoint) -> Result<PathExtent, E>,
     ) -> Result<Result<Option<u32>, E>, Fault> {
-        let planners = &mut *self.planners.lock();
+        let no_command = None::<(Replaced, fn(&mut SetPoint) -> Result<(), E>)>;
+        let prepared = self.prepare_path(when, path, no_command, change)?;
+        Ok(prepared.map(|prepared| prepared.map(PreparedPath::send)))
+    }
+
+    /// Prepares a path, as [`Mailbox::send_path`] sends it. `command` changes the set point before the path begins, as
+    /// [`Mailbox::try_send`] does, and says which part it replaces. The same rule for the order of fingers applies as
+    /// for [`Mailbox::prepare`].
+    ///
+    /// # Errors
+    /// Returns the fault if the finger is faulted. If `command` or `change` refuses the set point, the inner result is
+    /// its error.
+    pub fn prepare_path<'a, E>(
+        &'a self,
+        (spring, origin, valid): (u32, u64, Validity),
+        path: &PathTable<'a>,
+        command: Option<(Replaced, impl FnOnce(&mut SetPoint) -> Result<(), E>)>,
+        change: impl FnOnce(&mut SetPoint) -> Result<PathExtent, E>,
+    ) -> Result<Result<Option<PreparedPath<'a>>, E>, Fault> {
+        let mut planners = self.planners.lock();
         planners.begin()?;
         if planners.sent.spring != spring {
             return Ok(Ok(None));
         }
+        let mut next = planners.sent;
+        if let Some((replaced, command)) = command {
+            let path_kept = planners.path_kept_by(replaced);
+            if let Err(refusal) = last_path::change_along(path_kept, &mut next.set_point, command) {
+                return Ok(Err(refusal));
+            }
+            next.replace(replaced, valid);
+        }
         let stiffness = !path.stiffness.is_empty();
-        let stiffens = planners.path_ahead().is_some_and(|ahead| ahead.stiffest.is_some());
-        let present = planners.reports.read().set_point.stiffness;
-        // The servo may not have taken a stiffness that was sent just before. It then takes only the newer set point of
-        // the path. If an earlier path changes the stiffness, this one begins with the stiffness that is in force.
-        let begin = (!stiffens).then_some(planners.sent.set_point.stiffness);
-        let next = planners.set_points.input_buffer_mut();
-        *next = planners.sent;
-        if stiffness && stiffens {
-            // The set point that was sent has the stiffness of the end of the previous path.
-            next.set_point.stiffness = present;
+        let (first, begin) = planners.begin_of_stiffness(&next);
+        if stiffness {
+            next.set_point.stiffness = first;
         }
         let extent = match change(&mut next.set_point) {
             Ok(extent) => extent,
@@ -51,13 +83,8 @@ impl Mailbox {
         next.valid = valid;
         next.number = next.number.wrapping_add(1);
         next.planned = next.number;
-        planners.path = LastPath { number, set_point: next.number, extent };
-        planners.sent = *next;
-        // The path is published before the set point, so that a servo that has the set point also has the path.
-        planners.paths.input_buffer_mut().fill(number, origin, begin, path);
-        planners.paths.publish();
-        planners.set_points.publish();
-        Ok(Ok(Some(number)))
+        let last = LastPath { number, set_point: next.number, begin, extent };
+        Ok(Ok(Some(PreparedPath { planners, next, last, origin, path: *path })))
     }
 
     /// Returns the extent of the path that leads to the set point that was sent last. Returns none if there is no path,
@@ -69,19 +96,60 @@ impl Mailbox {
     }
 }
 
+impl PreparedPath<'_> {
+    /// Sends the path, and returns its number.
+    pub fn send(self) -> u32 {
+        let Self { mut planners, next, last, origin, path } = self;
+        let planners = &mut *planners;
+        let LastPath { number, begin, .. } = last;
+        (planners.sent, planners.path) = (next, last);
+        // The path is published before the set point, so that a servo that has the set point also has the path.
+        planners.paths.input_buffer_mut().fill(number, origin, begin, &path);
+        planners.paths.publish();
+        planners.set_points.write(next);
+        number
+    }
+}
+
 impl PlannersEnd {
     /// Like [`Mailbox::path_ahead`], after the set point that was sent last has been brought up to date.
     fn path_ahead(&mut self) -> Option<PathExtent> {
-        let path = self.sent.path?;
-        let report = self.reports.read();
-        let taken = report.set_point_number.wrapping_sub(self.path.set_point).cast_signed() >= 0;
+        self.extent_ahead(self.sent.path)
+    }
+
+    /// Returns the extent of the path that leads to a set point which has `path`. Returns none if there is no path, or
+    /// if it has ended.
+    fn extent_ahead(&mut self, path: Option<SentPath>) -> Option<PathExtent> {
+        let path = path?;
         // The set point moves until the path has ended.
-        if taken && report.set_point.motion.is_none() {
+        if self.is_path_taken() && self.reports.read().set_point.motion.is_none() {
             return None;
         }
         let PathExtent { lowest, highest, stiffest } = self.path.extent;
         // A stiffness that was sent later has ended the change of the stiffness along the path.
         Some(PathExtent { lowest, highest, stiffest: stiffest.filter(|_| path.stiffness) })
+    }
+
+    /// Returns whether the servo follows the path that was sent last, or has followed it.
+    fn is_path_taken(&mut self) -> bool {
+        self.reports.read().set_point_number.wrapping_sub(self.path.set_point).cast_signed() >= 0
+    }
+
+    /// Returns the stiffness with which a path begins that comes after `sent`, and the same stiffness again if the
+    /// servo must take it from the path. It need not if the stiffness in force is changing along an earlier path. A
+    /// stiffness that was sent just before the path never comes into force otherwise, because the servo takes only the
+    /// newest set point. The path would then begin with an older stiffness, for which the damping was not checked.
+    fn begin_of_stiffness(&mut self, sent: &SentSetPoint) -> (Matrix6<f64>, Option<Matrix6<f64>>) {
+        let changing = sent.path.is_some_and(|path| path.stiffness) && self.extent_ahead(sent.path).is_some();
+        // The set point that was sent has the stiffness of the end of the earlier path.
+        let begin = if !changing {
+            Some(sent.set_point.stiffness)
+        } else if self.is_path_taken() {
+            None
+        } else {
+            self.path.begin
+        };
+        (begin.unwrap_or_else(|| self.reports.read().set_point.stiffness), begin)
     }
 
     /// Returns the path that the finger follows after a change that replaces `replaced`, if the path may still change

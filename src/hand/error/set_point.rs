@@ -204,6 +204,11 @@ pub enum SetPointError {
 }
 
 impl SetPointError {
+    /// Returns whether a stiffness was refused because it is not that of a spring.
+    pub(crate) fn is_no_spring(&self) -> bool {
+        self.errno() == libc::EDOM
+    }
+
     /// Returns the errno that describes the error best.
     #[must_use]
     pub fn errno(&self) -> i32 {

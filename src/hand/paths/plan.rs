@@ -2,10 +2,10 @@
 
 use super::PathPose;
 use super::limits::Excess;
-use crate::control::motion::{PathTable, TimedStiffness};
-use crate::control::{Law, spatial};
+use crate::control::motion::{PathExtent, PathTable, TimedStiffness};
+use crate::control::{Law, SetPoint, spatial};
 use crate::finger::{MOST_PIECES, MOST_POSES, Reference};
-use crate::hand::admission::Admission;
+use crate::hand::admission::{Admission, DampingAdmission};
 use crate::hand::opening::admission;
 use crate::hand::{PathError, Pose, SetPointError};
 use crate::model::FingerNumber;
@@ -65,8 +65,28 @@ impl Plan {
         self.pieces.last().map_or_else(Vector3::zeros, |last| last.at(last.end()).place)
     }
 
+    /// Returns the change of a set point that leads along the path. The change refuses a damping that is too high or too
+    /// low for a Kx of the path, or clamps it.
+    pub(in crate::hand) fn change(
+        &self,
+        damping: DampingAdmission,
+    ) -> impl FnOnce(&mut SetPoint) -> Result<PathExtent, SetPointError> + use<> {
+        let (along, end, law) = (self.stiffest_and_last(), self.end(), self.law);
+        let (lowest, highest) = self.table().bounds();
+        move |set_point: &mut SetPoint| {
+            (set_point.joints, set_point.law) = (end, law);
+            let begin = set_point.stiffness;
+            for &stiffness in &along {
+                set_point.stiffen_tip(stiffness);
+                damping.admit(set_point)?;
+            }
+            let stiffest = along.first().map(|&first| damping.stiffest([first, begin])).transpose()?;
+            Ok(PathExtent { lowest, highest, stiffest })
+        }
+    }
+
     /// Returns the stiffest Kx of the path, and then the last one. There is none if the path does not change Kx.
-    pub fn stiffest(&self) -> Vec<Matrix6<f64>> {
+    fn stiffest_and_last(&self) -> Vec<Matrix6<f64>> {
         let largest = |one: &TimedStiffness| one.kx.symmetric_eigenvalues().max();
         let stiffest = self.stiffness.iter().max_by(|one, other| largest(one).total_cmp(&largest(other)));
         stiffest.into_iter().chain(self.stiffness.last()).map(|timed| spatial(&timed.kx)).collect()
