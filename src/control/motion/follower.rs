@@ -33,7 +33,7 @@ pub struct Follower {
 }
 
 impl Follower {
-    /// Constructs a follower at the beginning of a path. `initial` is the stiffness with which it begins.
+    /// Constructs a follower at the beginning of a path. `initial` is the stiffness with which the path begins.
     pub fn new(initial: Matrix6<f64>) -> Self {
         Self { piece: 0, stiffness: 0, initial }
     }
