@@ -25,7 +25,7 @@ const WAITING: usize = 256;
 /// Capacity of the queue of the other queries, which have some hundred bytes each.
 const OTHERS: usize = 16_384;
 
-/// Interval at which a thread checks whether the server ends.
+/// Interval at which a thread checks whether the server has ended.
 const INTERVAL: Duration = Duration::from_millis(50);
 
 /// A message that is to be sent.
@@ -110,28 +110,35 @@ impl Answers {
     }
 }
 
-/// Sends what is in the queue until the server ends.
+/// Sends what is in the queue until the Requests that were in progress at the end of the server have their Answers.
 pub fn send(shared: &Shared, session: &Session, queue: &Receiver<Outgoing>) {
-    while !shared.ending.load(Ordering::Acquire) {
-        // A failure to send needs no reaction: either the client has gone, or the server ends.
-        match queue.recv_timeout(INTERVAL) {
-            Ok(Outgoing::Reply(query, key, bytes, place)) => {
-                let _ = query.reply(key, bytes).wait();
-                // The place stays in use until the end of the query has been sent.
-                drop(query);
-                drop(place);
-            }
-            Ok(Outgoing::Refusal(client, bytes)) => {
-                let _ = session.put(shared.keys.refused(&client), bytes).wait();
-            }
-            Ok(Outgoing::Status(query, place)) => {
-                reply_status(shared, &query);
-                drop(query);
-                drop(place);
-            }
-            Ok(Outgoing::End(query)) => drop(query),
-            Err(_) => {}
+    while !shared.answered.load(Ordering::Acquire) {
+        if let Ok(outgoing) = queue.recv_timeout(INTERVAL) {
+            send_one(shared, session, outgoing);
         }
+    }
+    // These Answers are in the queue by now. A client that keeps sending queries does not hold up the end.
+    queue.try_iter().take(WAITING).for_each(|outgoing| send_one(shared, session, outgoing));
+}
+
+/// A failure to send needs no reaction: either the client has gone, or the server ends.
+fn send_one(shared: &Shared, session: &Session, outgoing: Outgoing) {
+    match outgoing {
+        Outgoing::Reply(query, key, bytes, place) => {
+            let _ = query.reply(key, bytes).wait();
+            // The place stays in use until the end of the query has been sent.
+            drop(query);
+            drop(place);
+        }
+        Outgoing::Refusal(client, bytes) => {
+            let _ = session.put(shared.keys.refused(&client), bytes).wait();
+        }
+        Outgoing::Status(query, place) => {
+            reply_status(shared, &query);
+            drop(query);
+            drop(place);
+        }
+        Outgoing::End(query) => drop(query),
     }
 }
 

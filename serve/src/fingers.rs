@@ -13,7 +13,7 @@ use sun2xp::control::events::Arrival;
 use sun2xp::finger::FingerReport;
 use sun2xp::groups::FingerCommand;
 use sun2xp::hand::SetPointError;
-use sun2xp::motion::{Pose, Validity};
+use sun2xp::motion::{PathError, PathPose, Pose, Validity};
 use sun2xp::{Hand, HandError, OutOfRange, Stage};
 use sun2xp_remote_protocol::{FINGERS, Part};
 
@@ -92,13 +92,14 @@ impl Fingers {
     }
 
     /// Applies the parts of a Target that are new, all of them or none, and renews the validity of everything else. If
-    /// a servo is so late that it has no room for another group, no part is applied yet. The parts stay new, and the
-    /// owner repeats them.
+    /// a servo is so late that it has no room for another group, or if a finger is caught during the call, no part is
+    /// applied yet. The parts stay new, and the owner repeats them.
+    ///
+    /// A finger that stops or is caught in the period after the call discards its part. The hand cannot know this
+    /// before.
     ///
     /// # Errors
-    /// Returns why a finger refuses its part. Then no part is applied, and the validity is not renewed. There is one
-    /// exception: if a finger stops or is caught during the call, only its path does not begin. The other parts are
-    /// applied, and the validity is renewed.
+    /// Returns why a finger refuses its part. Then no part is applied, and the validity is not renewed.
     pub fn apply(&mut self, parts: &[Part], silence: &Silence, now: u64) -> Result<(), HandError> {
         let valid = silence.of_commanded();
         let new = parts.iter().filter(|part| {
@@ -106,29 +107,22 @@ impl Fingers {
             self.goals[index].is_new(part)
         });
         let prepared = new.map(|part| self.prepare(part, valid, now)).collect::<Result<Vec<_>, _>>()?;
-        if !prepared.is_empty() {
-            let commands: Vec<FingerCommand> = prepared.iter().filter_map(|prepared| prepared.command).collect();
-            match self.hand.send_group(&commands) {
-                Err(HandError::SetPoint(SetPointError::GroupsWaiting(_))) => {
-                    self.keep_valid(silence);
-                    return Ok(());
-                }
-                sent => sent?,
+        let commands: Vec<FingerCommand> = prepared.iter().filter_map(|prepared| prepared.command).collect();
+        let with_path = prepared.iter().filter(|prepared| !prepared.path.is_empty());
+        let paths: Vec<(i32, &[PathPose])> =
+            with_path.map(|prepared| (prepared.finger as i32 + 1, &prepared.path[..])).collect();
+        match self.hand.send_group_with_paths(&commands, &paths) {
+            Err(HandError::SetPoint(SetPointError::GroupsWaiting(_)) | HandError::Path(PathError::Moved(_))) => {
+                self.keep_valid(silence);
+                return Ok(());
             }
+            sent => sent?,
         }
-        let mut sent = Ok(());
-        for Prepared { finger, mut goal, path, .. } in prepared {
-            // The path was checked already. It is refused only if the finger has stopped or was caught since.
-            if !path.is_empty()
-                && let Err(refusal) = self.hand.send_path(finger as i32 + 1, &path, None)
-            {
-                goal.destination = Destination::None;
-                sent = sent.and(Err(refusal));
-            }
+        for Prepared { finger, goal, .. } in prepared {
             self.goals[finger] = goal;
         }
         self.keep_valid(silence);
-        sent
+        Ok(())
     }
 
     /// Renews the validity of every finger. A finger that was caught follows again, from where it is.

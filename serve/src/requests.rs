@@ -1,25 +1,27 @@
 //! Requests of clients: acquire, release, recover, calibrate, identify and stop. A request that takes long runs in a
 //! thread of its own, because the threads of zenoh must not wait.
 
+mod recovering;
+
 use crate::access::permission;
 use crate::desk::{Desk, Stops, code_of};
 use crate::epoch::new_epoch;
 use crate::output::complain;
 use crate::settings::Permission;
 use crate::shared::Shared;
+use recovering::recover;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
-use sun2xp::hand::Recovering;
 use sun2xp::realtime::{Priority, now, spawn};
 use sun2xp::{Hand, HandError};
 use sun2xp_remote_protocol::{Action, Answer, ClientName, Code, DecodeError, Finger, Request};
 
-/// Interval at which recoveries are polled.
-const POLLED: Duration = Duration::from_millis(2);
-
 /// The text of an Answer to a client that does not own the hand.
 const NOT_OWNED: &str = "you do not own the hand, or the epoch of the request is old: acquire the hand first";
+
+/// The text of an Answer while the server ends.
+const ENDING: &str = "the server of the hand is shutting down, and its fingers go to their end states: start the \
+                      server again, and acquire the hand";
 
 /// Answers a Request. `reply` sends the Answer, at once or later. `client` is the client that the Zenoh key of the
 /// Request names.
@@ -67,6 +69,13 @@ fn carry_out(shared: &Arc<Shared>, request: &Request, client: ClientName, reply:
         (desk.admits(&client, request.epoch), desk.stops())
     };
     match request.action {
+        Action::Acquire | Action::Release | Action::Recover | Action::Calibrate | Action::Identify
+            if shared.ending.load(Ordering::Acquire) =>
+        {
+            let epoch = if request.action == Action::Acquire { 0 } else { request.epoch };
+            let answer = ended(&shared.desk.lock(), epoch);
+            return reply.send(&answer);
+        }
         Action::Acquire => return acquire(shared, &request, client, reply),
         Action::Stop => {
             let mut desk = shared.desk.lock();
@@ -101,8 +110,18 @@ fn carry_out(shared: &Arc<Shared>, request: &Request, client: ClientName, reply:
             (Action::Identify, Some(finger)) => calibrated(&shared.hand, finger, Hand::identify),
             (_, finger) => recover(shared, finger, &stops),
         };
-        result(&shared.desk.lock().answer(Code::Done, String::new(), request.epoch, now()), done)
+        let desk = shared.desk.lock();
+        match done {
+            // The end of the server is the cause of the error.
+            Err(_) if shared.ending.load(Ordering::Acquire) => ended(&desk, request.epoch),
+            done => result(&desk.answer(Code::Done, String::new(), request.epoch, now()), done),
+        }
     });
+}
+
+/// Returns the Answer while the server ends.
+fn ended(desk: &Desk, epoch: u64) -> Answer {
+    desk.answer(Code::Closed, ENDING.into(), epoch, now())
 }
 
 /// Makes the client the owner, and recovers the fingers if this is requested.
@@ -123,6 +142,12 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
         let mut desk = shared.desk.lock();
         let time = now();
         match recovered {
+            _ if shared.ending.load(Ordering::Acquire) => {
+                if desk.admits(&client, epoch) {
+                    desk.abandon(time);
+                }
+                ended(&desk, 0)
+            }
             Ok(()) if desk.begin(&client, epoch, time) => {
                 Answer { number, ..desk.answer(Code::Done, String::new(), epoch, time) }
             }
@@ -141,7 +166,7 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
     if !request.recover {
         return reply.send(&begin(shared, Ok(())));
     }
-    let started = run(shared, reply, move |shared| {
+    let started = run(shared, 0, reply, move |shared| {
         let recovered = recover(shared, None, &stops);
         begin(shared, recovered)
     });
@@ -182,14 +207,27 @@ fn long(shared: &Arc<Shared>, epoch: u64, reply: impl Reply, body: impl FnOnce(&
             reply.send(&answer);
         }
         false => {
-            run(shared, reply, body);
+            run(shared, epoch, reply, body);
         }
     }
 }
 
 /// Runs a request that takes long in a thread, and sends its Answer. The caller has set `busy`. Returns whether the
-/// thread has started.
-fn run(shared: &Arc<Shared>, reply: impl Reply, body: impl FnOnce(&Shared) -> Answer + Send + 'static) -> bool {
+/// thread has started. `epoch` is that of the Answer if the server ends.
+fn run(
+    shared: &Arc<Shared>,
+    epoch: u64,
+    reply: impl Reply,
+    body: impl FnOnce(&Shared) -> Answer + Send + 'static,
+) -> bool {
+    // The end of the server sets `ending` before it takes this lock, so it waits for every thread that starts here.
+    let mut threads = shared.requests.lock();
+    if shared.ending.load(Ordering::Acquire) {
+        shared.busy.store(false, Ordering::Release);
+        let answer = ended(&shared.desk.lock(), epoch);
+        reply.send(&answer);
+        return false;
+    }
     let of_thread = shared.clone();
     let started = spawn("sun2xp request", Priority::default(), move |_| {
         let answer = body(&of_thread);
@@ -199,7 +237,6 @@ fn run(shared: &Arc<Shared>, reply: impl Reply, body: impl FnOnce(&Shared) -> An
     });
     match started {
         Ok(thread) => {
-            let mut threads = shared.requests.lock();
             threads.retain(|thread| !thread.is_finished());
             threads.push(thread);
             true
@@ -215,40 +252,6 @@ fn run(shared: &Arc<Shared>, reply: impl Reply, body: impl FnOnce(&Shared) -> An
 fn in_progress(desk: &Desk, epoch: u64) -> Answer {
     let text = "the hand is being recovered or calibrated already: repeat the request when that has ended".into();
     desk.answer(Code::InProgress, text, epoch, now())
-}
-
-/// Recovers this finger, or every finger if `finger` is none. `stops` was read when the request was admitted. A finger
-/// that was stopped since stays stopped.
-fn recover(shared: &Shared, finger: Option<Finger>, stops: &Stops) -> Result<(), HandError> {
-    let recovered = recover_fingers(shared, finger, stops);
-    let stopped = shared.desk.lock().stop_again(stops);
-    recovered.and(stopped)
-}
-
-/// Recovers this finger, or every finger at the same time if `finger` is none. A recovery can take seconds.
-fn recover_fingers(shared: &Shared, finger: Option<Finger>, stops: &Stops) -> Result<(), HandError> {
-    let hand = &shared.hand;
-    let numbers: Vec<i32> = match finger {
-        Some(finger) => vec![number(finger)],
-        None => hand.fingers().members().map(|member| member.get()).collect(),
-    };
-    let begun = numbers.into_iter().map(|number| Recovering::begin(hand, number)).collect::<Result<Vec<_>, _>>()?;
-    // The recoveries would undo the stops that came before they began. Later stops end them.
-    shared.desk.lock().stop_again(stops)?;
-    let reconnected: Vec<_> = begun.iter().map(Recovering::reconnect).collect();
-    let recovered: Vec<_> = begun
-        .iter()
-        .zip(reconnected)
-        .map(|(recovering, reconnected)| {
-            reconnected?;
-            while !recovering.poll(hand)? {
-                std::thread::sleep(POLLED);
-            }
-            Ok(())
-        })
-        .collect();
-    // All recoveries have ended before the first error is returned.
-    recovered.into_iter().collect()
 }
 
 type Calibration = fn(&Hand, i32, fn(sun2xp::Progress)) -> Result<sun2xp::Findings, HandError>;

@@ -111,20 +111,22 @@ impl Server {
         status(&self.shared.hand, &self.shared.settings.limits, &self.shared.desk.lock(), now())
     }
 
-    /// Ends the ownership, brings every finger to its end state, and closes session and hand.
+    /// Ends the ownership, brings every finger to its end state, and closes session and hand. Requests are refused from
+    /// then on, except stop.
     pub fn end(self) {
         let Self { shared, session, threads } = self;
-        shared.desk.lock().abandon(now());
         shared.ending.store(true, Ordering::Release);
-        // A session that cannot be closed any more has ended already.
-        let _ = session.close().wait();
-        drop(session);
+        shared.desk.lock().abandon(now());
+        // Recoveries and calibrations in progress end too. Their clients get an Answer before the session is closed.
         shared.hand.end();
         requests::join(&shared);
+        shared.answered.store(true, Ordering::Release);
         for thread in threads {
             // A panic in such a thread has been reported already.
             let _ = thread.join();
         }
+        // A session that cannot be closed any more has ended already.
+        let _ = session.close().wait();
     }
 }
 

@@ -21,8 +21,10 @@ pub struct Shared {
     pub desk: Mutex<Desk>,
     /// Whether a request that takes long is in progress.
     pub busy: AtomicBool,
-    /// Whether the server ends.
+    /// Whether the server ends. From then on, Requests other than stop are refused.
     pub ending: AtomicBool,
+    /// Whether the Requests that were in progress when the server began to end have their Answers.
+    pub answered: AtomicBool,
     /// The threads of requests that take long.
     pub requests: Mutex<Vec<JoinHandle<()>>>,
 }
@@ -38,6 +40,7 @@ impl Shared {
             settings,
             busy: AtomicBool::new(false),
             ending: AtomicBool::new(false),
+            answered: AtomicBool::new(false),
             requests: Mutex::default(),
         }
     }

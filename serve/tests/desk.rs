@@ -24,6 +24,26 @@ fn a_path_of_a_stopped_finger_holds_back_the_whole_target() {
     assert_eq!(rig.desk.goals()[1].command, 0);
 }
 
+#[test]
+fn a_part_with_a_path_and_a_stiffness_is_applied_as_a_whole() {
+    let mut rig = Rig::new("catch_ms = 10000\nend_ms = 60000");
+    rig.acquire("alice");
+    let parts = [Part { stiffness: Some(STIFF), ..path(1, 1, 20.0, FAR) }, joints(2, 1, FAR)];
+    let before = rig.report(2).set_point_number;
+    assert_eq!(rig.send(&parts), None);
+    assert!(rig.desk.goals()[..2].iter().all(|goal| goal.command == 1));
+    rig.wait_until("path", &parts, |rig| rig.report(1).set_point.motion.is_some());
+    assert_eq!(rig.report(1).set_point.stiffness[(0, 0)], STIFF[0][0]);
+    rig.wait_until("set point", &parts, |rig| rig.report(2).set_point_number > before);
+    // The path of finger 2 is refused, so the Kx of finger 1 stays.
+    let soft = Part { stiffness: Some([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]), ..kept(1, 2) };
+    let refused = rig.send(&[soft, path(2, 2, 1.0, [9.0, 0.5, 0.9])]).expect("a refusal");
+    assert_eq!(refused.code, Code::Argument, "{refused:?}");
+    let cycles = rig.report(1).losses.cycles;
+    rig.wait_until("cycles", &parts, |rig| rig.report(1).losses.cycles > cycles + 20);
+    assert_eq!(rig.report(1).set_point.stiffness[(0, 0)], STIFF[0][0]);
+}
+
 /// The owner commands Kx only. A push moves the finger away from where it was caught.
 #[test]
 fn a_stiffness_that_comes_back_pulls_with_the_force_of_the_lead_only() {

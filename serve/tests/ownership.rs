@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::client::{part, request};
+use common::client::{finger, part, request};
 use common::{Rig, wait_for};
 use sun2xp::Stage;
 use sun2xp_remote_protocol::{Action, Answer, Code, HandName, Request, Target};
@@ -127,4 +127,18 @@ fn every_hand_is_found_by_its_status() {
     let key = reply.result().expect("a Status").key_expr().as_str().to_owned();
     assert_eq!(sun2xp_remote_protocol::hand_of_status(&key), "left".parse::<HandName>().ok());
     rig.server.end();
+}
+
+/// The owner falls silent during the calibration, so the times are long.
+#[test]
+fn a_client_whose_calibration_the_end_of_the_server_interrupts_gets_an_answer() {
+    let rig = Rig::new("catch_ms = 10000\nend_ms = 60000");
+    let mut alice = rig.connect("alice");
+    alice.acquire_with(request(Action::Acquire));
+    let calibrate = Request { finger: Some(finger(1)), epoch: alice.epoch, ..request(Action::Calibrate) };
+    let asking = std::thread::spawn(move || alice.request(calibrate));
+    wait_for("calibration", || (rig.hand().report(1).expect("a report").stage == Stage::Calibrating).then_some(()));
+    rig.server.end();
+    let answer = asking.join().expect("an answer");
+    assert_eq!(answer.code, Code::Closed, "{answer:?}");
 }

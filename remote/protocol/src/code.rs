@@ -22,7 +22,7 @@ pub enum Code {
     Argument = 6,
     /// The hand refused the request, because a finger has stopped.
     Stopped = 7,
-    /// The hand is closed, or the server ends.
+    /// The server ends, or cannot make an epoch.
     Closed = 8,
     /// A recovery or calibration is in progress already.
     InProgress = 9,

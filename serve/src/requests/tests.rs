@@ -1,9 +1,10 @@
+use super::recovering::POLLED;
 use super::*;
 use crate::server::prepare;
 use crate::settings::{Overrides, Settings};
 use std::path::Path;
 use std::sync::mpsc::{Sender, channel};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use sun2xp::{Configuration, RealTime, Stage};
 
 /// Longest time until an Answer. The machine of the tests may be busy.
@@ -77,4 +78,44 @@ fn a_stop_since_the_request_prevents_the_recovery() {
     let stops = shared.desk.lock().stops();
     recover(&shared, Finger::new(1), &stops).expect("recovered");
     assert_eq!(report().recoveries, 1);
+}
+
+#[test]
+fn a_server_that_ends_carries_out_stops_only() {
+    let shared = shared();
+    let epoch = ask(&shared, "alice", ACQUIRE).epoch;
+    shared.ending.store(true, Ordering::Release);
+    let one = Finger::new(1);
+    for (request, epoch) in [
+        (Request { take_over: true, ..ACQUIRE }, 0),
+        (Request { action: Action::Release, epoch, ..ACQUIRE }, epoch),
+        (Request { action: Action::Recover, epoch, ..ACQUIRE }, epoch),
+        (Request { action: Action::Identify, finger: one, epoch, ..ACQUIRE }, epoch),
+    ] {
+        let refused = ask(&shared, "alice", request);
+        assert_eq!((refused.code, refused.epoch), (Code::Closed, epoch), "{refused:?}");
+        assert!(refused.text.contains("shutting down"), "{refused:?}");
+    }
+    assert!(!shared.busy.load(Ordering::Acquire));
+    assert_eq!(ask(&shared, "bob", Request { action: Action::Stop, ..ACQUIRE }).code, Code::Done);
+}
+
+/// Without the code of the end, the client would be told to calibrate the finger again.
+#[test]
+fn a_calibration_that_the_end_of_the_server_interrupts_has_the_code_of_the_end() {
+    let shared = shared();
+    let epoch = ask(&shared, "alice", ACQUIRE).epoch;
+    let request = Request { action: Action::Calibrate, finger: Finger::new(1), epoch, ..ACQUIRE };
+    let of_client = shared.clone();
+    let calibrating = std::thread::spawn(move || ask(&of_client, "alice", request));
+    let begun = Instant::now();
+    while shared.hand.report(1).expect("finger 1").stage != Stage::Calibrating {
+        assert!(begun.elapsed() < PATIENCE, "no calibration in time");
+        std::thread::sleep(POLLED);
+    }
+    shared.ending.store(true, Ordering::Release);
+    shared.hand.end();
+    let answer = calibrating.join().expect("no panic");
+    assert_eq!((answer.code, answer.epoch), (Code::Closed, epoch), "{answer:?}");
+    join(&shared);
 }

@@ -32,7 +32,7 @@ pub enum RemoteErrorKind {
     NotOwner,
     /// The hand has refused an earlier set point, or a request.
     Refused,
-    /// The hand is closed, or the server ends.
+    /// The server ends.
     Closed,
     /// The server does not speak this version of the protocol.
     Protocol,

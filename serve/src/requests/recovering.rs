@@ -1,0 +1,46 @@
+//! The recovery of fingers on request.
+
+use crate::desk::Stops;
+use crate::shared::Shared;
+use std::thread::sleep;
+use std::time::Duration;
+use sun2xp::HandError;
+use sun2xp::hand::Recovering;
+use sun2xp_remote_protocol::Finger;
+
+/// Interval at which recoveries are polled.
+pub(super) const POLLED: Duration = Duration::from_millis(2);
+
+/// Recovers this finger, or every finger if `finger` is none. `stops` was read when the request was admitted. A finger
+/// that was stopped since stays stopped.
+pub(super) fn recover(shared: &Shared, finger: Option<Finger>, stops: &Stops) -> Result<(), HandError> {
+    let recovered = recover_fingers(shared, finger, stops);
+    let stopped = shared.desk.lock().stop_again(stops);
+    recovered.and(stopped)
+}
+
+/// Recovers this finger, or every finger at the same time if `finger` is none. A recovery can take seconds.
+fn recover_fingers(shared: &Shared, finger: Option<Finger>, stops: &Stops) -> Result<(), HandError> {
+    let hand = &shared.hand;
+    let numbers: Vec<i32> = match finger {
+        Some(finger) => vec![i32::from(finger.number())],
+        None => hand.fingers().members().map(|member| member.get()).collect(),
+    };
+    let begun = numbers.into_iter().map(|number| Recovering::begin(hand, number)).collect::<Result<Vec<_>, _>>()?;
+    // The recoveries would undo the stops that came before they began. Later stops end them.
+    shared.desk.lock().stop_again(stops)?;
+    let reconnected: Vec<_> = begun.iter().map(Recovering::reconnect).collect();
+    let recovered: Vec<_> = begun
+        .iter()
+        .zip(reconnected)
+        .map(|(recovering, reconnected)| {
+            reconnected?;
+            while !recovering.poll(hand)? {
+                sleep(POLLED);
+            }
+            Ok(())
+        })
+        .collect();
+    // All recoveries have ended before the first error is returned.
+    recovered.into_iter().collect()
+}
