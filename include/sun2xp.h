@@ -74,8 +74,9 @@
    call succeeds, and by sun2xp_next_event and sun2xp_wait_event only if they return 1.
 
    The first refusal of each kind in a process is also reported in a message, unless hand.print_refusals
-   is false for the hand of the call. The refusal of an opening, or of a handle that is null or foreign,
-   is reported in any case. Messages go to the callback of sun2xp_set_log, or to standard error.
+   is false for the hand of the call. The refusal of an opening, or of a handle that is null, foreign or
+   of a closed hand, is reported in any case. Messages go to the callback of sun2xp_set_log, or to
+   standard error.
 
 
    3. UNITS, FRAMES, ORDER

@@ -155,8 +155,9 @@ impl Place {
     }
 
     fn close(&self, in_callback: bool) {
-        self.handle.store(0, Ordering::Release);
+        let handle = Handle::from_value(self.handle.swap(0, Ordering::AcqRel));
         let opened = self.hand.write().take();
+        reporting::note_closed(handle);
         // Dropping the hand takes a long time. `hand` is already unlocked, so other calls are refused instead of
         // waiting.
         drop(opened);

@@ -15,9 +15,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Number of kinds of refusals for which memory is reserved.
 const KINDS: usize = 128;
 
-/// For each place of the table of hands: the value of the handle of the last hand there if its refusals are not
-/// printed, and otherwise 0.
+/// For each place of the table of hands: if the refusals of the last hand there are not printed, the value of its
+/// handle, or [`CLOSED`] after it was closed; otherwise 0.
 static SILENT: [AtomicUsize; PLACES] = [const { AtomicUsize::new(0) }; PLACES];
+
+/// A value that no handle has.
+const CLOSED: usize = 1;
 
 static PRINTED: Mutex<Vec<Kind>> = Mutex::new(Vec::new());
 
@@ -88,4 +91,13 @@ pub(super) fn set_printing(handle: Handle, on: bool) {
     }
     // The memory is reserved here, so that the first KINDS kinds of refusals allocate nothing.
     PRINTED.lock().reserve(KINDS);
+}
+
+/// Notes that a hand was closed. The refusals of calls with its handle are printed, like those of every handle of no
+/// open hand.
+pub(super) fn note_closed(handle: Handle) {
+    if let Some(silent) = handle.place().and_then(|place| SILENT.get(place)) {
+        // The exchange fails if the refusals of the hand were printed while it was open.
+        let _ = silent.compare_exchange(handle.value(), CLOSED, Ordering::Relaxed, Ordering::Relaxed);
+    }
 }

@@ -1,4 +1,4 @@
-/* hand.print_refusals belongs to one hand: neither another hand nor a refused opening changes it. C89. */
+/* hand.print_refusals belongs to one open hand: neither another hand nor a refused opening changes it. C89. */
 #include "Sun2Xp.h"
 #include "sun2xp.h"
 #include "check.h"
@@ -43,13 +43,14 @@ int main(void)
     CHECK(sun2xp_open_text(LOUD, &other) == 0);
     CHECK(sun2xp_send_joint_torque(silent, 1, large) < 0 && refusals == 2);
     CHECK(sun2xp_close(silent) == 0 && sun2xp_close(other) == 0);
-    CHECK(sun2xp_open_text(NoPort, &other) < 0 && refusals == 3);
-    CHECK(sun2xp_send_damping(loud, 1, 99) < 0 && refusals == 4);
-    CHECK(sun2xp_position(NULL, 1, position) < 0 && refusals == 5);
+    CHECK(sun2xp_position(silent, 1, NULL) < 0 && refusals == 3);
+    CHECK(sun2xp_open_text(NoPort, &other) < 0 && refusals == 4);
+    CHECK(sun2xp_send_damping(loud, 1, 99) < 0 && refusals == 5);
+    CHECK(sun2xp_position(NULL, 1, position) < 0 && refusals == 6);
     CHECK(sun2xp_close(loud) == 0);
     configure(SILENT);
-    CHECK(OpenHand() == 0 && SendKx(1, stiff) == -1 && CloseHand() == 0 && refusals == 5);
+    CHECK(OpenHand() == 0 && SendKx(1, stiff) == -1 && CloseHand() == 0 && refusals == 6);
     configure("[hand]\nrat = 1\n");
-    CHECK(OpenHand() == -1 && refusals == 6);
+    CHECK(OpenHand() == -1 && refusals == 7);
     return 0;
 }

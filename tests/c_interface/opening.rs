@@ -32,6 +32,13 @@ fn refusals_can_be_silent() {
 }
 
 #[test]
+fn a_closed_handle_of_a_silent_hand_is_reported() {
+    let bench = Bench::new();
+    fs::write(bench.path().join("named.toml"), "[hand]\nprint_refusals = false\n").expect("a configuration file");
+    bench.succeed(&[STRICT, &["-std=c89"]].concat(), &["silent_default.c"]);
+}
+
+#[test]
 fn out_of_range_set_points_are_clamped_without_a_message() {
     let (status, _, printed) = opened_with("[hand]\nout_of_range = \"clamp\"\n");
     assert_eq!(status, Some(0), "{printed}");

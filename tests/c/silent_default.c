@@ -1,0 +1,31 @@
+/* The configuration of the hand of OpenHand has hand.print_refusals = false. It is silent for the calls of 1990 after
+   CloseHand too, because they have only this hand. Its closed handle is not silent. C89. */
+#include "Sun2Xp.h"
+#include "sun2xp.h"
+#include "check.h"
+
+static int refusals;
+
+static void count(int severity, const char *text, void *user)
+{
+    (void)text;
+    (void)user;
+    if (severity == SUN2XP_LOG_REFUSAL)
+        refusals++;
+}
+
+int main(void)
+{
+    double far[3] = {9, 0.5, 0.9}, position[3];
+    float Pos[3];
+    sun2xp_hand *hand;
+
+    CHECK(sun2xp_set_log(count, NULL) == 0);
+    CHECK(OpenHand() == 0);
+    hand = sun2xp_default_hand();
+    CHECK(sun2xp_send_position(hand, 1, far) < 0 && refusals == 0);
+    CHECK(CloseHand() == 0);
+    CHECK(GetPos(1, Pos) < 0 && refusals == 0);
+    CHECK(sun2xp_position(hand, 1, position) < 0 && refusals == 1);
+    return 0;
+}
