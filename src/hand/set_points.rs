@@ -170,6 +170,16 @@ impl Hand {
         })
     }
 
+    /// Returns the set point that was sent last to finger 1, 2 or 3, or the one that it holds if none was sent since it
+    /// became a spring. A path counts with its end. A relative command must start from this set point. What was sent
+    /// during the last cycle has not taken effect yet, so the set point of [`Hand::report`] does not contain it.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger.
+    pub fn last_set_point(&self, finger: i32) -> Result<SetPoint, HandError> {
+        Ok(self.dispatcher.member(FingerNumber::try_from(finger)?)?.mailbox.sent())
+    }
+
     /// Calls `admit`, which checks the arguments and returns a change of the set point. Then sends the change. The
     /// limits cannot change between the check and the sending. The change may still return an error, for example if the
     /// new stiffness does not suit the damping that was sent before.

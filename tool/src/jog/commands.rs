@@ -3,9 +3,14 @@
 
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display, Formatter};
+use std::thread::sleep;
+use std::time::Duration;
 use sun2xp::groups::FingerCommand;
 use sun2xp::model::configuration::{Configuration, OutOfRange};
-use sun2xp::{Hand, HandError, Stage};
+use sun2xp::{Hand, HandError, Recovering, Stage};
+
+/// Interval at which a recovery is polled.
+const POLLED: Duration = Duration::from_millis(2);
 
 /// Largest change of a joint angle in one command to a real finger, rad: 3 degrees. A command for the tip may change a
 /// joint angle by three times as much.
@@ -65,11 +70,13 @@ pub enum Refused {
     BeyondLimits {
         finger: i32,
         joint: usize,
-        /// The desired angle in force, degrees.
+        /// The desired angle, degrees.
         angle: f64,
     },
     /// No finger runs, so none can be opened or closed.
     NoneRuns,
+    /// An emergency stop came before the recovery of the finger began.
+    Stopped { finger: i32 },
 }
 
 impl Display for Refused {
@@ -87,6 +94,9 @@ impl Display for Refused {
                  a real finger: stop the hand, move the finger into its limits by hand, and recover it"
             ),
             Self::NoneRuns => formatter.write_str("no finger runs: recover the fingers first"),
+            Self::Stopped { finger } => {
+                write!(formatter, "an emergency stop came before finger {finger} began to recover: recover it again")
+            }
         }
     }
 }
@@ -104,11 +114,17 @@ impl Command {
         matches!(self, Self::Push { force: [0.0, 0.0, 0.0], .. })
     }
 
-    /// Carries the command out, and returns what was done, in words.
+    /// Carries the command out, and returns what was done, in words. `stopped` returns whether an emergency stop has
+    /// come since the command was sent.
     ///
     /// # Errors
     /// Returns an error for each reason in [`Refused`].
-    pub fn execute(&self, hand: &Hand, configuration: &Configuration) -> Result<String, Refused> {
+    pub fn execute(
+        &self,
+        hand: &Hand,
+        configuration: &Configuration,
+        stopped: &dyn Fn() -> bool,
+    ) -> Result<String, Refused> {
         match *self {
             Self::Joints { finger, joints } => send_joints(hand, configuration, finger, joints),
             Self::MoveJoints { finger, by } => {
@@ -137,22 +153,34 @@ impl Command {
                 sun2xp::stop_all();
                 Ok("all fingers are stopped".into())
             }
-            Self::Recover { finger } => {
-                hand.recover(finger)?;
-                Ok(format!("finger {finger}: holds its pose"))
-            }
+            Self::Recover { finger } => recover(hand, finger, stopped),
         }
     }
 }
 
-/// Returns the desired joint angles in force, rad.
-pub fn desired_joints(hand: &Hand, finger: i32) -> Result<[f64; 3], HandError> {
-    Ok(hand.report(finger)?.set_point.joints.into())
+/// Recovers a finger, unless an emergency stop has come before.
+fn recover(hand: &Hand, finger: i32, stopped: &dyn Fn() -> bool) -> Result<String, Refused> {
+    let recovering = Recovering::begin(hand, finger)?;
+    // The recovery would undo a stop that came before it began. Later stops end it.
+    if stopped() {
+        return Err(Refused::Stopped { finger });
+    }
+    recovering.reconnect()?;
+    while !recovering.poll(hand)? {
+        sleep(POLLED);
+    }
+    Ok(format!("finger {finger}: holds its pose"))
 }
 
-/// Returns the Kx in force, N/cm: `[row][column]`.
+/// Returns the desired joint angles that were sent last, rad. Commands that have waited for a recovery follow each other
+/// within a cycle, so the angles in force would lack the steps before.
+pub fn desired_joints(hand: &Hand, finger: i32) -> Result<[f64; 3], HandError> {
+    Ok(hand.last_set_point(finger)?.joints.into())
+}
+
+/// Returns the Kx that was sent last, N/cm: `[row][column]`.
 pub fn desired_stiffness(hand: &Hand, finger: i32) -> Result<[[f64; 3]; 3], HandError> {
-    let stiffness = hand.report(finger)?.set_point.stiffness;
+    let stiffness = hand.last_set_point(finger)?.stiffness;
     Ok(std::array::from_fn(|row| std::array::from_fn(|column| stiffness[(row, column)])))
 }
 

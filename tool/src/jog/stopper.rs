@@ -34,18 +34,20 @@ impl Stopper {
     }
 
     /// Calls `execute` for a command that was sent after `stops` stops. Returns none if a later stop or the end has
-    /// dropped the command.
-    pub fn carry_out<T>(&self, command: &Command, stops: u64, execute: impl FnOnce() -> T) -> Option<T> {
+    /// dropped the command. `execute` gets a function that returns whether a later stop has come meanwhile. A recovery
+    /// must call it after its beginning, because it would undo a stop that comes between the check here and its
+    /// beginning.
+    pub fn carry_out<T>(
+        &self,
+        command: &Command,
+        stops: u64,
+        execute: impl FnOnce(&dyn Fn() -> bool) -> T,
+    ) -> Option<T> {
         let stopped = || self.stops() != stops && !command.ends_push();
         if self.ending.load(Ordering::SeqCst) || stopped() {
             return None;
         }
-        let result = execute();
-        // The stop may have come between the check and the command, and the command may have recovered a finger.
-        if stopped() {
-            sun2xp::stop_all();
-        }
-        Some(result)
+        Some(execute(&stopped))
     }
 }
 
@@ -56,7 +58,7 @@ mod tests {
     #[test]
     fn nothing_is_carried_out_after_the_end() {
         let stopper = Stopper::default();
-        let carry_out = |command, stops| stopper.carry_out(&command, stops, || 1);
+        let carry_out = |command, stops| stopper.carry_out(&command, stops, |_| 1);
         let end_of_push = Command::Push { finger: 1, force: [0.0; 3] };
         assert_eq!(carry_out(Command::Open, 0), Some(1));
         // The number of a command that was sent before another stop.
@@ -66,5 +68,17 @@ mod tests {
         stopper.end();
         assert_eq!(carry_out(Command::Open, 0), None);
         assert_eq!(carry_out(end_of_push, 0), None);
+    }
+
+    #[test]
+    fn a_command_learns_of_a_stop_that_comes_while_it_is_carried_out() {
+        let stopper = Stopper::default();
+        let seen = stopper.carry_out(&Command::Recover { finger: 1 }, 0, |stopped| {
+            let before = stopped();
+            // A real stop would stop the hands of the other tests.
+            stopper.stops.fetch_add(1, Ordering::SeqCst);
+            (before, stopped())
+        });
+        assert_eq!(seen, Some((false, true)));
     }
 }

@@ -44,8 +44,9 @@ impl Worker {
         let (stopped, left) = (stopper.clone(), waiting.clone());
         let thread = thread::Builder::new().name("commands".into()).spawn(move || {
             for (stops, command) in to_do {
-                let execute = || command.execute(&hand, &configuration).map_err(|refused| refused.to_string());
-                let result = stopped.carry_out(&command, stops, execute);
+                let result = stopped.carry_out(&command, stops, |stopped| {
+                    command.execute(&hand, &configuration, stopped).map_err(|refused| refused.to_string())
+                });
                 // The receiver is gone only when the program ends.
                 let _ = done.send(Outcome { command, result });
                 left.fetch_sub(1, Ordering::SeqCst);

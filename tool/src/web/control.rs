@@ -128,7 +128,7 @@ impl Executor {
         for Order { command, stops, answers } in orders {
             self.waiting.fetch_sub(1, Ordering::Relaxed);
             let dropped = || (false, "the command was dropped by the emergency stop: send it again".into());
-            let result = self.stopper.carry_out(&command, stops, || self.execute(&command));
+            let result = self.stopper.carry_out(&command, stops, |stopped| self.execute(&command, stopped));
             let (done, text) = result.unwrap_or_else(dropped);
             // The page may have left.
             if let Some(answers) = answers {
@@ -137,10 +137,11 @@ impl Executor {
         }
     }
 
-    /// Returns whether the hand has accepted the command, and what was done, or why not.
-    fn execute(&self, command: &Command) -> (bool, String) {
+    /// Returns whether the hand has accepted the command, and what was done, or why not. `stopped` is as in
+    /// [`Command::execute`].
+    fn execute(&self, command: &Command, stopped: &dyn Fn() -> bool) -> (bool, String) {
         let Some(hand) = self.hand.upgrade() else { return (false, "the hand is closed".into()) };
-        match command.execute(&hand, &self.configuration) {
+        match command.execute(&hand, &self.configuration, stopped) {
             Ok(text) => (true, text),
             Err(refused) => (false, refused.to_string()),
         }

@@ -4,8 +4,11 @@ use super::control::{Answer, Control};
 use super::hub::{Hub, Kind, Update};
 use crate::jog::commands::Command;
 use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, WebSocket, close_code};
+use futures_util::stream::{SplitSink, SplitStream};
+use futures_util::{SinkExt, StreamExt};
 use serde::Deserialize;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
@@ -41,16 +44,36 @@ struct Received {
     received: u64,
 }
 
-/// The session of a page. It ends when the page leaves, breaks a rule or takes no more messages.
+/// The session of a page. It ends when the page leaves, breaks a rule or takes no more messages. Its two directions do
+/// not wait for each other, so that a stop is carried out while a message cannot be written.
 pub struct Session {
-    socket: WebSocket,
-    hub: Arc<Hub>,
+    reader: Reader,
+    writer: Writer,
+}
+
+/// Numbers of batches.
+#[derive(Default)]
+struct Batches {
+    sent: AtomicU64,
+    received: AtomicU64,
+}
+
+/// What the page sends.
+struct Reader {
+    socket: SplitStream<WebSocket>,
     control: Option<Arc<Control>>,
-    answers: (UnboundedSender<Answer>, UnboundedReceiver<Answer>),
-    sent: u64,
-    received: u64,
+    answers: UnboundedSender<Answer>,
+    batches: Arc<Batches>,
     /// The fingers that this page pushes.
     pushed: Vec<i32>,
+}
+
+/// What the page gets.
+struct Writer {
+    socket: SplitSink<WebSocket, Message>,
+    hub: Arc<Hub>,
+    answers: UnboundedReceiver<Answer>,
+    batches: Arc<Batches>,
 }
 
 /// Why a session ends.
@@ -59,18 +82,84 @@ struct End;
 impl Session {
     /// Returns a session that may send commands if there is a `control`.
     pub fn new(socket: WebSocket, hub: Arc<Hub>, control: Option<Arc<Control>>) -> Self {
-        Self { socket, hub, control, answers: unbounded_channel(), sent: 0, received: 0, pushed: Vec::new() }
+        let (to_page, from_page) = socket.split();
+        let (sender, receiver) = unbounded_channel();
+        let batches = Arc::<Batches>::default();
+        let reader =
+            Reader { socket: from_page, control, answers: sender, batches: batches.clone(), pushed: Vec::new() };
+        Self { reader, writer: Writer { socket: to_page, hub, answers: receiver, batches } }
     }
 
     /// Serves the page until it leaves.
-    pub async fn run(mut self) {
-        // The page is gone in either case.
-        let _ = self.serve().await;
-        if let Some(control) = &self.control {
-            control.release(&self.pushed);
+    pub async fn run(self) {
+        let Self { mut reader, mut writer } = self;
+        let broken = tokio::select! {
+            broken = reader.serve() => broken,
+            // The page is gone.
+            _ = writer.serve() => None,
+        };
+        if let Some(control) = &reader.control {
+            control.release(&reader.pushed);
+        }
+        if let Some(reason) = broken {
+            let frame = CloseFrame { code: close_code::POLICY, reason: reason.into() };
+            // The session ends in either case.
+            let _ = writer.write(Message::Close(Some(frame))).await;
+        }
+    }
+}
+
+impl Batches {
+    /// Notes that the page has received a batch. The number of the batch also counts batches that this page did not
+    /// get. So it is not used, and the acknowledgements are counted.
+    fn acknowledge(&self) {
+        let received = self.received.load(Ordering::Relaxed) + 1;
+        self.received.store(received.min(self.sent.load(Ordering::Relaxed)), Ordering::Relaxed);
+    }
+
+    /// Counts a batch that is sent now. Returns false if the page must first acknowledge an earlier one.
+    fn send(&self) -> bool {
+        let sent = self.sent.load(Ordering::Relaxed);
+        let room = sent < self.received.load(Ordering::Relaxed) + AHEAD;
+        self.sent.store(sent + u64::from(room), Ordering::Relaxed);
+        room
+    }
+}
+
+impl Reader {
+    /// Takes what the page sends until the page leaves. Returns the rule that the page has broken, if it has broken
+    /// one.
+    async fn serve(&mut self) -> Option<&'static str> {
+        loop {
+            let text = match self.socket.next().await {
+                Some(Ok(Message::Text(text))) => text,
+                Some(Ok(Message::Ping(_) | Message::Pong(_))) => continue,
+                Some(Ok(Message::Binary(_))) => return Some("a binary message"),
+                Some(Ok(Message::Close(_)) | Err(_)) | None => return None,
+            };
+            match serde_json::from_str(&text) {
+                Ok(Request::Received(Received { received: 1.. })) => self.batches.acknowledge(),
+                Ok(Request::Received(_)) => return Some("an acknowledgement of no batch"),
+                Ok(Request::Command(command)) if self.control.is_some() => self.order(command),
+                Ok(Request::Command(_)) => return Some("a command, but sun2xp runs without --control"),
+                Err(_) => return Some("a message that is neither a command nor an acknowledgement"),
+            }
         }
     }
 
+    fn order(&mut self, command: Command) {
+        let Some(control) = &self.control else { return };
+        if let Command::Push { finger, .. } = command
+            && !self.pushed.contains(&finger)
+        {
+            self.pushed.push(finger);
+        }
+        control.order(command, self.answers.clone());
+    }
+}
+
+impl Writer {
+    /// Sends messages until the page takes no more.
     async fn serve(&mut self) -> Result<(), End> {
         let (known, mut updates) = self.hub.subscribe();
         self.send_all(known).await?;
@@ -88,55 +177,17 @@ impl Session {
                     }
                     Err(RecvError::Closed) => return Ok(()),
                 },
-                message = self.socket.recv() => match message {
-                    Some(Ok(message)) => self.take(message).await?,
-                    Some(Err(_)) | None => return Ok(()),
-                },
-                Some(answer) = self.answers.1.recv() => self.send(answer.json().into()).await?,
+                Some(answer) = self.answers.recv() => self.send(answer.json().into()).await?,
                 _ = ping.tick() => self.write(Message::Ping(Vec::new().into())).await?,
             }
         }
     }
 
     async fn pass_on(&mut self, update: Update) -> Result<(), End> {
-        if update.kind == Kind::Batch {
-            if self.sent >= self.received + AHEAD {
-                return Ok(());
-            }
-            self.sent += 1;
+        if update.kind == Kind::Batch && !self.batches.send() {
+            return Ok(());
         }
         self.send(update.text).await
-    }
-
-    async fn take(&mut self, message: Message) -> Result<(), End> {
-        let text = match message {
-            Message::Text(text) => text,
-            Message::Ping(_) | Message::Pong(_) => return Ok(()),
-            Message::Binary(_) => return self.close("a binary message").await,
-            Message::Close(_) => return Err(End),
-        };
-        match serde_json::from_str(&text) {
-            // The number of a batch also counts batches that this page did not get. So it is not used, and the
-            // acknowledgements are counted.
-            Ok(Request::Received(Received { received: 1.. })) => self.received = self.sent.min(self.received + 1),
-            Ok(Request::Received(_)) => return self.close("an acknowledgement of no batch").await,
-            Ok(Request::Command(command)) => return self.order(command).await,
-            Err(_) => return self.close("a message that is neither a command nor an acknowledgement").await,
-        }
-        Ok(())
-    }
-
-    async fn order(&mut self, command: Command) -> Result<(), End> {
-        let Some(control) = &self.control else {
-            return self.close("a command, but sun2xp runs without --control").await;
-        };
-        if let Command::Push { finger, .. } = command
-            && !self.pushed.contains(&finger)
-        {
-            self.pushed.push(finger);
-        }
-        control.order(command, self.answers.0.clone());
-        Ok(())
     }
 
     async fn send_all(&mut self, texts: Vec<Utf8Bytes>) -> Result<(), End> {
@@ -155,12 +206,5 @@ impl Session {
             Ok(Ok(())) => Ok(()),
             Ok(Err(_)) | Err(_) => Err(End),
         }
-    }
-
-    /// Ends the session of a page that breaks a rule.
-    async fn close(&mut self, reason: &'static str) -> Result<(), End> {
-        let frame = CloseFrame { code: close_code::POLICY, reason: reason.into() };
-        self.write(Message::Close(Some(frame))).await?;
-        Err(End)
     }
 }

@@ -26,7 +26,8 @@ pub fn jog(arguments: &[&str]) -> (Program, TempDir) {
     (Program::start(&[&["jog", "--web", "--config", file], arguments].concat()), folder)
 }
 
-fn open(program: &Program) -> Socket {
+/// Opens the page that may move the hand.
+pub fn open(program: &Program) -> Socket {
     let token = program.token().expect("the address has a token");
     Socket::open(program.address(), &format!("/stream?token={token}"), &[]).expect("a socket")
 }

@@ -1,9 +1,12 @@
 //! A page that does not keep up loses batches. Other pages get every batch.
 
+use super::control;
 use super::messages::{batch, message};
 use super::program::{Program, hand};
 use super::socket::Socket;
 use serde_json::Value;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 /// Number of batches that a page may have received without an acknowledgement.
 const AHEAD: usize = 20;
@@ -30,6 +33,37 @@ fn a_page_that_does_not_acknowledge_gets_a_second_and_then_waits() {
     assert!(skipped > 3000, "the page can count the cycles that it has not got: {skipped}");
     hand.close();
     while message(&mut quick)["type"] != "gone" {}
+}
+
+/// The page acknowledges batches and reads none, until the server cannot write any more. The server would disconnect it
+/// ten seconds later, with its stop unread.
+#[test]
+fn a_stop_is_carried_out_while_the_page_takes_no_message() {
+    let (program, _folder) = control::jog(&["--control"]);
+    let mut full = control::open(&program);
+    batch(&mut full, true);
+    full.narrow();
+    let (mut unread, mut since) = (0, Instant::now());
+    while since.elapsed() < Duration::from_secs(1) {
+        full.send(r#"{"received":1}"#);
+        sleep(Duration::from_millis(10));
+        let now = full.unread();
+        if now != unread {
+            (unread, since) = (now, Instant::now());
+        }
+    }
+    full.send(r#"{"command":"stop"}"#);
+    let mut page = control::open(&program);
+    let begun = Instant::now();
+    loop {
+        assert!(begun.elapsed() < Duration::from_secs(60), "no stop");
+        let message = message(&mut page);
+        match message["type"].as_str() {
+            Some("state") if message["finger"] == 1 && !message["fault"].is_null() => break,
+            Some("batch") => page.send(r#"{"received":1}"#),
+            _ => {}
+        }
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use super::http::{connect, response, write_request};
 use std::io::{BufReader, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream};
+use std::os::fd::AsRawFd;
 
 /// A connected WebSocket.
 pub struct Socket {
@@ -57,6 +58,26 @@ impl Socket {
         frame.extend([0; 4]);
         frame.extend(text.as_bytes());
         let _ = self.stream.get_mut().write_all(&frame);
+    }
+
+    /// Makes the system store less of what arrives.
+    pub fn narrow(&self) {
+        let (descriptor, size): (_, libc::c_int) = (self.stream.get_ref().as_raw_fd(), 4096);
+        let length = size_of_val(&size) as libc::socklen_t;
+        // SAFETY: the descriptor is open, and `size` exists during the call.
+        let set = unsafe {
+            libc::setsockopt(descriptor, libc::SOL_SOCKET, libc::SO_RCVBUF, (&raw const size).cast(), length)
+        };
+        assert_eq!(set, 0);
+    }
+
+    /// Returns the number of bytes that have arrived and were not read.
+    pub fn unread(&self) -> libc::c_int {
+        let mut count: libc::c_int = 0;
+        // SAFETY: the descriptor is open, and `count` exists during the call.
+        let read = unsafe { libc::ioctl(self.stream.get_ref().as_raw_fd(), libc::FIONREAD, &raw mut count) };
+        assert_eq!(read, 0);
+        count
     }
 
     /// Returns the next text, or how the connection ends. Pings are not answered.

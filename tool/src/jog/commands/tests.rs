@@ -37,7 +37,7 @@ fn refused(result: Result<String, Refused>) -> String {
 #[test]
 fn commands_move_joints_and_tips_and_change_the_stiffness() {
     let (hand, configuration) = simulated();
-    let execute = |command: Command| command.execute(&hand, &configuration);
+    let execute = |command: Command| command.execute(&hand, &configuration, &|| false);
     let joints = [0.1, 0.5, 0.9];
     assert_eq!(done(execute(Command::Joints { finger: 1, joints })), "finger 1: joints to 5.7, 28.6, 51.6 degrees");
     settle(&hand, 1);
@@ -70,10 +70,45 @@ fn commands_move_joints_and_tips_and_change_the_stiffness() {
     assert!(hand.fingertip(1).expect("runs").tip[1] > 0.5);
 }
 
+/// Commands that have waited for a recovery follow each other faster than the cycles of the servo.
+#[test]
+fn relative_commands_after_a_recovery_add_up() {
+    let (hand, configuration) = simulated();
+    let execute = |command: Command| command.execute(&hand, &configuration, &|| false);
+    done(execute(Command::Joints { finger: 1, joints: [0.1, 0.5, 0.9] }));
+    settle(&hand, 1);
+    hand.stop(1).expect("finger 1");
+    done(execute(Command::Recover { finger: 1 }));
+    let start = desired_joints(&hand, 1).expect("there");
+    let stiffness = desired_stiffness(&hand, 1).expect("there")[0][0];
+    for _ in 0..20 {
+        done(execute(Command::MoveJoints { finger: 1, by: [0.0, 0.005, 0.0] }));
+        done(execute(Command::ScaleStiffness { finger: 1, factor: 0.99 }));
+    }
+    let at_goal = |joints: [f64; 3]| largest_difference(joints, sum(start, [0.0, 0.1, 0.0])) < 1e-9;
+    assert!(at_goal(desired_joints(&hand, 1).expect("there")));
+    let softer = desired_stiffness(&hand, 1).expect("there")[0][0];
+    assert!((softer - stiffness * 0.99f64.powi(20)).abs() < 1e-9, "{stiffness} {softer}");
+    until("the servo takes the last step", || at_goal(hand.report(1).expect("there").set_point.joints.into()));
+}
+
+/// The recovery would undo the stop, and the finger would tighten its tendons after it.
+#[test]
+fn a_stop_before_a_recovery_begins_prevents_it() {
+    let (hand, configuration) = simulated();
+    hand.stop(1).expect("finger 1");
+    let recover = Command::Recover { finger: 1 };
+    let refusal = refused(recover.execute(&hand, &configuration, &|| true));
+    assert!(refusal.contains("emergency stop"), "{refusal}");
+    let report = hand.report(1).expect("finger 1");
+    assert!(matches!(report.stage, Stage::Faulted(_)) && report.recoveries == 0, "{report:?}");
+    done(recover.execute(&hand, &configuration, &|| false));
+}
+
 #[test]
 fn refusals_have_the_text_of_the_hand_and_change_nothing() {
     let (hand, configuration) = simulated();
-    let execute = |command: Command| command.execute(&hand, &configuration);
+    let execute = |command: Command| command.execute(&hand, &configuration, &|| false);
     let before = desired_joints(&hand, 1).expect("there");
     for (command, text) in [
         (Command::MoveJoints { finger: 1, by: [2.0, 0.0, 0.0] }, "Pos[0] = "),
@@ -92,7 +127,7 @@ fn refusals_have_the_text_of_the_hand_and_change_nothing() {
 #[test]
 fn a_push_deflects_the_tip_by_force_over_stiffness() {
     let (hand, configuration) = simulated();
-    let execute = |command: Command| command.execute(&hand, &configuration);
+    let execute = |command: Command| command.execute(&hand, &configuration, &|| false);
     let (force, stiffness) = (0.6, 3.0);
     let kx = std::array::from_fn(|row| std::array::from_fn(|column| if row == column { stiffness } else { 0.0 }));
     done(execute(Command::Stiffness { finger: 3, kx }));
@@ -126,7 +161,7 @@ fn a_push_deflects_the_tip_by_force_over_stiffness() {
 #[test]
 fn a_stopped_finger_recovers() {
     let (hand, configuration) = simulated();
-    let execute = |command: Command| command.execute(&hand, &configuration);
+    let execute = |command: Command| command.execute(&hand, &configuration, &|| false);
     // Not Command::Stop, which stops the hands of the other tests in this process too.
     hand.stop(2).expect("there");
     until("finger 2 stops", || hand.fault(2).expect("there").stopped.is_some());
@@ -141,7 +176,7 @@ fn a_real_finger_moves_in_small_steps() {
     // The hand is simulated, but the commands take finger 1 for a real one.
     let (hand, mut configuration) = simulated();
     configuration.fingers[0].port = "/dev/ttyUSB0".into();
-    let execute = |command: Command| command.execute(&hand, &configuration);
+    let execute = |command: Command| command.execute(&hand, &configuration, &|| false);
     let refusal = refused(execute(Command::MoveJoints { finger: 1, by: [0.1, 0.0, 0.0] }));
     assert!(refusal.contains("at most 3.00 degrees, but 5.73 degrees"), "{refusal}");
     let refusal = refused(execute(Command::MoveTip { finger: 1, by: [0.0, 0.4, 0.0] }));
@@ -172,9 +207,9 @@ fn a_real_finger_beyond_its_limits_does_not_jump_to_them() {
         let before = desired_joints(&hand, 1).expect("there");
         assert!(before[1] < 33.0f64.to_radians(), "{before:?}");
         for command in [Command::Open, Command::Close, Command::MoveJoints { finger: 1, by: [0.0, 0.02, 0.0] }] {
-            refused(command.execute(&hand, &configuration));
+            refused(command.execute(&hand, &configuration, &|| false));
         }
-        let text = refused(Command::Close.execute(&hand, &configuration));
+        let text = refused(Command::Close.execute(&hand, &configuration, &|| false));
         assert!(text.starts_with("joint 1 of finger 1 is at ") && text.contains("move the finger into"), "{text}");
         assert_eq!(desired_joints(&hand, 1).expect("there"), before);
     }
