@@ -105,6 +105,7 @@ mod finger {
     mod path_buffer {
         use crate::control::motion::PathTable;
         use crate::realtime::LockedMemory;
+        use nalgebra::Matrix6;
 
         pub struct PathBuffer {
             pub number: u32,
@@ -116,7 +117,7 @@ mod finger {
                 Self { number: 0, origin: 0 }
             }
 
-            pub fn fill(&mut self, number: u32, origin: u64, _: Option<impl Sized>, _: &PathTable) {
+            pub fn fill(&mut self, number: u32, origin: u64, _: Option<Matrix6<f64>>, _: &PathTable) {
                 (self.number, self.origin) = (number, origin);
             }
         }
