@@ -172,8 +172,8 @@ fn recover(hand: &Hand, finger: i32, stopped: &dyn Fn() -> bool) -> Result<Strin
     Ok(format!("finger {finger}: holds its pose"))
 }
 
-/// Returns the desired joint angles that were sent last, rad. Commands that have waited for a recovery follow each other
-/// within a cycle, so the angles in force would lack the steps before.
+/// Returns the desired joint angles that were sent last, rad. Commands that have waited for a recovery follow each
+/// other within a cycle, so the angles in force would lack the steps before.
 pub fn desired_joints(hand: &Hand, finger: i32) -> Result<[f64; 3], HandError> {
     Ok(hand.last_set_point(finger)?.joints.into())
 }
