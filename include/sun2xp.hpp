@@ -263,9 +263,9 @@ public:
         return position;
     }
 
-    /// Waits until the condition holds. Returns false if it does not hold within the time, and for a hand on another
-    /// machine also if no reports arrive from it. A time that is not above 0 is no wait, and an infinite time is no
-    /// limit. Accepts all_fingers.
+    /// Waits until the condition holds. Returns false if it does not hold within the time. If the hand is on another
+    /// machine, also returns false if no reports arrive from it. With a time of 0 or less, returns at once. An infinite
+    /// time is no limit. Accepts all_fingers.
     bool wait(until condition, seconds longest)
     {
         const int result = sun2xp_wait(hand_, number_, static_cast<int>(condition), detail::limit(longest));

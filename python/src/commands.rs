@@ -113,9 +113,9 @@ impl Hand {
         self.quick(py, |hand| hand.send_group(&commands))
     }
 
-    /// Sends a path: poses and their times, s, from the beginning of the path: shape (n,). The poses are joint angles,
-    /// rad, or positions of the tip, cm: shape (n, 3). `stiffness` has Kx of each pose, N/cm: shape (n, 3, 3). `valid`
-    /// is the time for which the path stays valid after its end, s, as in `send_position`.
+    /// Sends a path. `times` are the times of the poses since the beginning of the path, s: shape (n,). The poses are
+    /// `joints`, rad, or `tips` in the finger's frame, cm: shape (n, 3). `stiffness` is Kx at each pose, N/cm: shape
+    /// (n, 3, 3). `valid` is how long the path stays valid after its end, s, as in `send_position`.
     #[pyo3(signature = (finger, times, *, joints=None, tips=None, stiffness=None, valid=None))]
     #[expect(clippy::too_many_arguments, reason = "the keywords of a Python call")]
     fn send_path(

@@ -46,6 +46,30 @@ fn a_path_begins_with_the_stiffness_that_was_sent_in_the_same_period() {
     }
 }
 
+/// The servo does not take the set point with the Kx, because that of the path follows in the same period.
+#[test]
+fn a_path_after_a_joint_stiffness_begins_with_the_kx_that_was_sent_just_before() {
+    let mut bench = Bench::new();
+    let springs = |set_point: &mut SetPoint| {
+        set_point.stiffen_joints(Matrix3::identity() * 20.0);
+        Ok::<(), ()>(())
+    };
+    bench
+        .mailbox
+        .try_send((Replaced::Stiffness, Validity::default()), springs)
+        .expect("not faulted")
+        .expect("admitted");
+    bench.cycles(100);
+    assert_eq!(in_force(&bench), 0.0);
+    stiffen(&bench, 5.0);
+    send_path(&bench, 5.0);
+    for cycle in 0..1100 {
+        bench.cycles(1);
+        let joint_spring = bench.report().set_point.joint_spring;
+        assert!((in_force(&bench) - 5.0).abs() < 1e-9 && joint_spring.is_none(), "{cycle}: {}", in_force(&bench));
+    }
+}
+
 #[test]
 fn a_path_that_replaces_another_one_begins_with_the_stiffness_in_force() {
     let mut bench = Bench::new();

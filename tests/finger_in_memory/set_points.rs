@@ -8,7 +8,6 @@ use sun2xp::calibration::{Calibration, Task, Verdict};
 use sun2xp::control::events::Arrival;
 use sun2xp::control::{SetPoint, spatial};
 use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Recording, Replaced, Stage, Validity};
-use sun2xp::hand::PathPose;
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, ZeroingMethod};
 use sun2xp::simulated::{Defect, LineFault};
@@ -33,32 +32,6 @@ fn holds(bench: &mut Bench, joints: Vector3<f64>) {
     bench.cycles(500);
     let moved = (bench.report().cycle.joints - joints).amax();
     assert!(moved < 0.03, "moved by {moved} rad");
-}
-
-/// The servo does not take the set point with the Kx, because that of the path follows in the same period.
-#[test]
-fn a_path_begins_with_a_stiffness_that_was_sent_just_before() {
-    let kx = |stiffness: f64| Matrix3::identity() * stiffness;
-    let what = (Replaced::Stiffness, Validity::default());
-    let mut bench = Bench::new();
-    let springs = |set_point: &mut SetPoint| {
-        set_point.stiffen_joints(kx(20.0));
-        Ok::<(), ()>(())
-    };
-    bench.mailbox.try_send(what, springs).expect("not faulted").expect("admitted");
-    bench.cycles(100);
-    assert_eq!(bench.report().set_point.stiffness[(0, 0)], 0.0);
-    let tip = |set_point: &mut SetPoint| {
-        set_point.stiffen_tip(spatial(&kx(5.0)));
-        Ok::<(), ()>(())
-    };
-    bench.mailbox.try_send(what, tip).expect("not faulted").expect("admitted");
-    send(&bench, &[PathPose { stiffness: Some(kx(5.0).into()), ..joints(1.0, [0.3, 0.7, 1.2]) }]);
-    for cycle in 0..1100 {
-        bench.cycles(1);
-        let SetPoint { stiffness, joint_spring, .. } = bench.report().set_point;
-        assert!((stiffness[(0, 0)] - 5.0).abs() < 1e-9 && joint_spring.is_none(), "{cycle}: {stiffness}");
-    }
 }
 
 #[test]

@@ -85,8 +85,8 @@ class Hand(_sun2xp.Hand):
         Raises:
             ConfigurationError: the zeros could not be stored. They are in force until the hand is closed. Or the finger
                 cannot be zeroed with its configuration, or cannot use it with the zeros. Then nothing has changed.
-            Error: the calibration failed, and the previous one is in force. If the finger faulted when the zeros had
-                been found already, the zeros are in force.
+            Error: the calibration failed, and the previous one is in force. If the finger faulted after its zeros had
+                been found, the new zeros are in force.
         """
         return self._calibrated(finger, "zero", progress, store)
 

@@ -66,8 +66,8 @@ def open(
         stale: largest age of the state that `position`, `tip` and `state` return, s.
 
     Raises:
-        ConfigurationError: a name that no hand or client can have, or a file of TLS that cannot be read.
-        NoAnswer: no connection, no such hand, or this client may not use it.
+        ConfigurationError: no hand or client can have this name, or a certificate cannot be read.
+        NoAnswer: there is no connection or no such hand, or this client may not use the hand.
         NotOwner: another client commands the hand.
         Fault: a finger has a fault whose cause is still there.
     """

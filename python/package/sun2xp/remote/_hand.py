@@ -183,7 +183,7 @@ class RemoteHand(Reading):
             timeout: time limit, s.
 
         Raises:
-            TimedOut: the time limit is over.
+            TimedOut: the time limit has expired.
             Stale, which is also a TimedOut: no State has arrived for a second, or for `stale` if that is longer.
             NotOwner: this client does not command the hand, or has lost it.
             Refused: the server has refused the set point.
@@ -211,8 +211,8 @@ class RemoteHand(Reading):
             if holds:
                 return
             if left <= 0:
-                remedy = "check what keeps them from moving, or wait longer"
-                text = f"fingers {wanted} are not {condition} after {timeout} s: {remedy}"
+                remedy = "check what keeps the fingers from moving, and the line to the server, or wait longer"
+                text = f'the condition "{condition}" did not hold for fingers {wanted} within {timeout} s: {remedy}'
                 raise TimedOut(text, number=ErrorNumber.TIMED_OUT)
 
     def recover(self, finger: int = 0) -> None:

@@ -124,7 +124,7 @@ class Network:
         tls: the files of mutual TLS. A server that listens on more than loopback needs them.
 
     Raises:
-        ConfigurationError: a name that no client can have, or a file of TLS that cannot be read.
+        ConfigurationError: no client can have this name, or a certificate cannot be read.
         NoAnswer: nobody listens at the endpoint, or the certificates do not fit.
     """
 
@@ -142,7 +142,7 @@ class Network:
         except self._zenoh.ZError as error:
             # The text ends with a place in the source of Zenoh.
             reason = str(error).split(" at /")[0].rstrip("!. ")
-            remedy = "check the endpoint, the certificates, and sun2xp serve"
+            remedy = "check the endpoint and the certificates, and whether sun2xp serve runs"
             raise NoAnswer(f"no connection to {endpoint} ({reason}): {remedy}", number=ErrorNumber.TIMED_OUT) from error
         self.sender = Sender()
         self._hands: List[Any] = []

@@ -29,7 +29,7 @@ def group(set_points: Sequence[SetPoint], fingers: Dict[int, FingerStatus]) -> L
     """
     numbers = [set_point.finger for set_point in set_points]
     if not numbers or len(set(numbers)) < len(numbers):
-        raise _refused(f"the group has set points of the fingers {numbers}: pass one for each finger that shall change")
+        raise _refused(f"the set points are for the fingers {numbers}: send one set point for each finger of a group")
     return [_part(set_point, fingers[set_point.finger]) for set_point in set_points]
 
 
@@ -46,7 +46,7 @@ def _part(set_point: SetPoint, status: FingerStatus) -> Part:
     if set_point.damping is not None:
         part.damping = float(_array("damping", set_point.damping, ()))
     if part.place == NO_PLACE and part.stiffness is None and part.damping is None:
-        raise _refused(f"the set point of finger {set_point.finger} changes nothing: set one of its other fields")
+        raise _refused(f"the set point of finger {set_point.finger} is empty: set position, tip, stiffness or damping")
     return part
 
 
@@ -62,9 +62,9 @@ def path(
     instants = _array("times", times, (None,))
     count = len(instants)
     if not 1 <= count <= MOST_POSES:
-        raise _refused(f"the path has {count} poses: send 1 to {MOST_POSES}, and further ones as another path")
+        raise _refused(f"the path has {count} poses: send 1 to {MOST_POSES} poses, and further ones as another path")
     if instants[0] <= 0 or (numpy.diff(instants) <= 0).any():
-        raise _refused(f"the times of the path are {instants.tolist()}: send times above 0 that rise")
+        raise _refused(f"the times of the path are {instants.tolist()} s: send times above 0, each later than the last")
     poses = _joints(finger, joints, (count, 3), status)
     return Part(finger, 0, PATH, poses=[(instant, *pose) for instant, pose in zip(instants, poses)])
 
@@ -83,11 +83,11 @@ def _joints(finger: int, angles: Any, shape: tuple, status: FingerStatus) -> Arr
 def _symmetric(finger: int, kx: Any, status: FingerStatus) -> List[float]:
     array = _array("Kx", kx, (3, 3))
     if not numpy.allclose(array, array.T, rtol=0, atol=_ASYMMETRY * abs(array).max()):
-        raise _refused(f"Kx of finger {finger}, {array.tolist()}, is not symmetric: send a symmetric Kx")
+        raise _refused(f"Kx of finger {finger} is {array.tolist()}, not symmetric: send a symmetric Kx")
     largest = numpy.linalg.eigvalsh((array + array.T) / 2)[-1]
     if largest > status.stiffness * (1 + 8 * _ROUNDING):
-        bound = f"the bound of {status.stiffness:.3g} N/cm"
-        text = f"the largest eigenvalue of Kx of finger {finger}, {largest:.3g} N/cm, exceeds {bound}"
+        bound = f"the bound is {status.stiffness:.3g} N/cm"
+        text = f"the largest eigenvalue of Kx of finger {finger} is {largest:.3g} N/cm, but {bound}"
         raise _refused(f"{text}: send a softer Kx", ErrorNumber.LIMIT)
     return array.ravel().tolist()
 
