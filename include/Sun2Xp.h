@@ -72,8 +72,8 @@
    output is written only if the call returns 0.
 
    Planners of 1990 ignore return values. For them the first refusal of each kind in a process also
-    prints one line on standard error, unless hand.print_refusals is false for the hand that OpenHand
-    opened last. A refusal of OpenHand prints this line in any case.
+   prints one line on standard error, unless hand.print_refusals is false for the hand that OpenHand
+   opened last. A refusal of OpenHand prints this line in any case.
 
 
    3. UNITS, FRAMES, ORDER

@@ -93,7 +93,7 @@ impl FingerCommand {
 
     /// Checks the command. Returns a function that changes the set point. That function returns an error if it refuses
     /// the resulting damping. `present` is the pose of the finger, rad. A Kx that is no spring is refused before a
-    /// value that is out of range, as the manual of sun2xp_send_group lists the reasons.
+    /// value that is out of range, as the manual of the C call lists the reasons.
     pub(super) fn admit(
         &self,
         admission: &Admission,

@@ -187,8 +187,8 @@ impl Hand {
     }
 }
 
-/// Returns the error that the manual of sun2xp_send_group lists first: a Kx that is no spring comes before values that
-/// are out of range. Of two errors of one kind, that of the finger with the lower number is returned.
+/// Returns the error that the manual of the C call lists first: a Kx that is no spring comes before values that are out
+/// of range. Of two errors of one kind, that of the finger with the lower number is returned.
 fn listed_first(earlier: Option<SetPointError>, error: SetPointError) -> SetPointError {
     match earlier {
         Some(earlier) if earlier.is_no_spring() || !error.is_no_spring() => earlier,

@@ -96,8 +96,8 @@ impl Hand {
 
     /// Waits until the condition holds for every one of these fingers at the same time, for the set points that were
     /// sent last. Returns at once if it holds already. If a reflex has replaced the set point of a finger, or if the
-    /// finger did not follow it because of an inhibition, the condition must hold for the set point of the reflex. If it
-    /// has expired, the condition must hold for the pose that the finger holds since then.
+    /// finger did not follow it because of an inhibition, the condition must hold for the set point of the reflex. If
+    /// the set point has expired, the condition must hold for the pose that the finger holds since then.
     ///
     /// # Errors
     /// Returns the errors of [`Waiting::begin`] and [`Waiting::poll`].

@@ -211,7 +211,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
             link: 1.634,
             look_back: 0.12,
             lag: 0.015,
-            common_gain: 0.043,
+            common_gain: 0.065,
             common_damping: 0.266,
             damped_inertia: 10.2,
             reference_time: 0.008,

@@ -163,7 +163,7 @@ fn values_with_which_no_controller_can_be_constructed_are_refused_with_the_key_t
         assert_eq!(found, Some(line), "{text:?}: {reason}");
         assert!(reason.starts_with(beginning) && reason.contains(words), "{text:?}: {reason}");
     }
-    // OpenHand constructs no controller for a finger that the hand does not have.
+    // No controller is constructed for a finger that the hand does not have.
     assert!(parse("[hand]\nfingers = [1]\n[finger.2.tendon]\nmaximum = 10\n").is_ok());
 }
 
