@@ -212,7 +212,7 @@ pub fn warnings() -> Vec<Case> {
 /// Motors that a push heats up quickly but that can still hold the finger.
 fn with_small_motors(configuration: &mut Configuration) {
     let motor = &mut configuration.fingers[0].motor;
-    (motor.continuous_torque, motor.thermal_time) = ([0.8; 4], 0.3);
+    (motor.continuous_torque, motor.thermal_time) = ([0.85; 4], 0.3);
 }
 
 /// Interference that hits the line and the counters together, so the servo cannot see the counters jump.
