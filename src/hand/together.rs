@@ -62,9 +62,6 @@ impl Hand {
         commands: &[FingerCommand],
         paths: &[(i32, &[PathPose])],
     ) -> Result<(), HandError> {
-        if paths.is_empty() {
-            return self.send_group(commands);
-        }
         let paths: Vec<PathOfFinger<'_>> = paths.iter().map(|&(finger, poses)| (finger, poses, None)).collect();
         self.send_together(commands, &paths)
     }

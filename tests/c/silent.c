@@ -2,21 +2,12 @@
 #include "Sun2Xp.h"
 #include "sun2xp.h"
 #include "check.h"
+#include "refusals.h"
 
 /* The scheduling of the machine does not matter here. */
 #define PLAIN "real_time = \"ignore\"\n[finger]\nport = \"simulated\"\n"
 #define LOUD "[hand]\n" PLAIN
 #define SILENT "[hand]\nprint_refusals = false\n" PLAIN
-
-static int refusals;
-
-static void count(int severity, const char *text, void *user)
-{
-    (void)text;
-    (void)user;
-    if (severity == SUN2XP_LOG_REFUSAL)
-        refusals++;
-}
 
 /* Writes the configuration file that OpenHand finds. */
 static void configure(const char *text)
@@ -35,7 +26,7 @@ int main(void)
     double far[3] = {9, 0.5, 0.9}, large[3] = {1e9, 0, 0}, stiff[9] = {99, 0, 0, 0, 1, 0, 0, 0, 1}, position[3];
     sun2xp_hand *loud, *silent, *other;
 
-    CHECK(sun2xp_set_log(count, NULL) == 0);
+    CHECK(sun2xp_set_log(count_refusal, NULL) == 0);
     CHECK(sun2xp_open_text(LOUD, &loud) == 0 && sun2xp_open_text(SILENT, &silent) == 0);
     CHECK(sun2xp_position(loud, 9, position) < 0 && refusals == 1);
     CHECK(sun2xp_send_position(silent, 1, far) < 0 && refusals == 1);

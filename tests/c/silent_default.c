@@ -3,16 +3,7 @@
 #include "Sun2Xp.h"
 #include "sun2xp.h"
 #include "check.h"
-
-static int refusals;
-
-static void count(int severity, const char *text, void *user)
-{
-    (void)text;
-    (void)user;
-    if (severity == SUN2XP_LOG_REFUSAL)
-        refusals++;
-}
+#include "refusals.h"
 
 int main(void)
 {
@@ -20,7 +11,7 @@ int main(void)
     float Pos[3];
     sun2xp_hand *hand;
 
-    CHECK(sun2xp_set_log(count, NULL) == 0);
+    CHECK(sun2xp_set_log(count_refusal, NULL) == 0);
     CHECK(OpenHand() == 0);
     hand = sun2xp_default_hand();
     CHECK(sun2xp_send_position(hand, 1, far) < 0 && refusals == 0);

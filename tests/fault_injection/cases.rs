@@ -147,7 +147,7 @@ fn of_the_motors() -> Vec<Case> {
         })
         .from(12.0, stands),
         case("hot motor, reported by its driver", DriverFault, |bench| inject(bench, Defect::HotMotor(1))),
-        case("hot motor, by I^2 t", OverheatedMotor, |bench| push(bench, [0.0, 0.0, -1.5]))
+        case("hot motor, by I^2 t", OverheatedMotor, |bench| push(bench, [0.0, 0.0, -1.6]))
             .with(with_small_motors)
             .from(0.0, |truth, _, finger| truth.hot_for.max() > finger.motor.thermal_time),
         case("impact (40 N)", OverTension, |bench| push(bench, [0.0, 40.0, 0.0]))
@@ -190,7 +190,7 @@ pub fn of_the_line() -> Vec<Case> {
 pub fn warnings() -> Vec<Case> {
     use FaultKind::*;
     vec![
-        case("warm motor, by I^2 t", WarmMotor, |bench| push(bench, [0.0, 0.0, -1.5]))
+        case("warm motor, by I^2 t", WarmMotor, |bench| push(bench, [0.0, 0.0, -1.6]))
             .with(with_small_motors)
             .from(0.0, |truth, _, _| truth.heat.max() > 0.8),
         case("joint at its stop", JointAtStop, |bench| push(bench, [-6.0, 0.0, 0.0])).from(0.0, |truth, _, finger| {
