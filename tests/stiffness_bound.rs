@@ -140,7 +140,7 @@ fn other_fingers(scheme: Scheme) -> Vec<(&'static str, ConfiguredFinger)> {
 }
 
 /// Each finger is limited by its tendons, not by the loop, because the gains of state feedback follow from the
-/// configuration. The gains of the figures do not, and leave most of these fingers unstable.
+/// configuration. The gains of Figure 10 do not: with them, at least half of these fingers are unstable in some pose.
 #[test]
 fn state_feedback_is_made_for_the_finger_that_is_configured() {
     for (name, finger) in other_fingers(Scheme::StateFeedback) {
@@ -158,7 +158,8 @@ fn state_feedback_carries_its_stiffness_against_walls() {
     assert!(found.stiffness >= 6.0 && found.uncovered.is_empty(), "{found:?}");
 }
 
-/// Figure 10 is stable on the plant of its model. With another cycle of delay it is unstable with every spring.
+/// Figure 10 is stable on the plant of its model. With one more cycle of delay, some samples are unstable even with the
+/// softest spring of the search.
 #[test]
 fn a_plant_of_the_set_is_unstable_although_the_nominal_plant_is_stable() {
     let few = Search { samples: 16, ..SEARCH };

@@ -156,8 +156,8 @@ fn a_pose_that_carries_less_shows_its_scale_and_no_error() {
     assert!(found.scale < 0.97 && found.error < 0.01, "{} of {}", found.error, found.scale);
 }
 
-/// A motor constant that is wrong by 20 % is harmless between tension and torque. It is harmful in (RM)^-T, where M is
-/// geometry: the joints, and with them the tip, are measured wrong by as much.
+/// A motor constant that is wrong by 20 % is harmless in the conversion of a tension to a torque. It is harmful in
+/// (RM)^-T, where M is geometry: the measured joint angles are then wrong by 20 %, and the tip is displaced.
 #[test]
 fn a_motor_model_in_the_kinematics_is_detected() {
     let case = case(Scheme::Figure11);

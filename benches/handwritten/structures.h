@@ -1,4 +1,4 @@
-/* The structures of a servo step. by_hand.rs repeats them. */
+/* The structures of a servo step. parameters.rs and by_hand.rs repeat them in Rust. */
 #ifndef STRUCTURES_H
 #define STRUCTURES_H
 

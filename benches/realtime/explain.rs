@@ -8,7 +8,8 @@ use std::thread::JoinHandle;
 use sun2xp::finger::REPLY_WINDOW;
 use sun2xp::realtime::{Clock, MonotonicClock, Priority, Schedule, now, spawn};
 
-/// Number of late cycles and of pauses per core that are stored: enough for half an hour on a busy machine.
+/// Largest number of late cycles, and of pauses of each core, that is stored. It suffices for half an hour on a busy
+/// machine.
 const KEPT: usize = 4_000_000;
 
 /// A cycle that was not complete when the next one was due. All times are in ns.
@@ -121,7 +122,7 @@ pub struct Watchers {
 }
 
 /// Interval between two wake-ups of a watch thread, ns. Every pause longer than this interval plus [`PAUSE`] is
-/// detected. At 1000 Hz, this sum is the run time available to a cycle.
+/// detected. At 1000 Hz, this sum is the part of a period that is left after [`REPLY_WINDOW`].
 const CHECK_INTERVAL: u64 = 100_000;
 
 /// A wake-up that is later than this counts as a pause, ns.

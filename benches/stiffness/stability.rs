@@ -30,7 +30,7 @@ pub struct Stability {
     pub largest: f64,
 }
 
-/// Number of samples of a row of this file, divided by the number of poses of any other row of the table.
+/// A row of this file has this many samples for each pose of the other rows of the table.
 const DENSITY: usize = 20;
 
 /// Returns poses within `limits`, with springs up to the bound and small loads. Without a load, tendons 1 and 4 would

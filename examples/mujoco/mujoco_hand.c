@@ -24,7 +24,7 @@
 #define CONFIGURATION \
     "[hand]\nreal_time = \"ignore\"\nend_state = \"release\"\n[finger]\nport = \"simulated\"\nthread = 1\n"
 
-/* Longest wait for the simulation in one exchange, s. The library repeats the exchange. */
+/* Longest wait for the simulation in one exchange, s. Then the exchange fails, and the library repeats it. */
 #define PATIENCE 0.08
 
 /* The layout of simulation.py: numbers of 8 bytes. */
@@ -104,9 +104,9 @@ static int advance(struct step *step, struct memory *memory)
     return 0;
 }
 
-/* The first exchange of a cycle advances the simulation, with the torques of the last cycle. It is the one with a new
-   deadline, and not always that of finger 1, because a faulted finger gets no exchange. All fingers are sampled at the
-   end of that period. The torques of this cycle act in the next period. */
+/* The first exchange of a cycle advances the simulation by one period, with the torques of the previous cycle. The new
+   deadline shows that it is the first. It need not be that of finger 1, because a faulted finger gets no exchange. All
+   fingers are sampled at the end of this period. The torques of the present cycle act in the next period. */
 static int exchange(void *user, const struct sun2xp_io_command *command, struct sun2xp_io_sample *sample)
 {
     struct finger *finger = user;

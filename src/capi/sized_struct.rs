@@ -1,8 +1,8 @@
 //! Structs of the caller that begin with their size, so that later versions of the library can add members at the end.
-//! There is one rule: `size` is the size that the caller's compiler knows. It must not be smaller than the struct of
-//! this library, which is the first version of the struct until a member is added. If it is larger, the program was
-//! compiled with a newer header: the members that this library does not know are set to zero in a result, and ignored
-//! in an argument.
+//! `size` is the size of the struct in the header with which the caller was compiled. A size below that of this
+//! library's struct is refused. No older program has such a size, because no struct has gained a member yet. If the
+//! size is larger, the program was compiled with a newer header: the members that this library does not know are set to
+//! zero in a result, and ignored in an argument.
 
 use crate::capi::hand_table;
 use crate::capi::handle::Handle;
@@ -26,8 +26,8 @@ impl<T: Copy> SizedStruct<T> {
     /// Reads the size. It is checked later, because a call reports other reasons first.
     ///
     /// # Safety
-    /// `T` is `repr(C)` and begins with a size of type `usize`. `place` is null, or points to a struct with at least a
-    /// size, and with as many bytes as this size gives. The struct stays there while the result exists.
+    /// `T` is `repr(C)` and begins with a size of type `usize`. `place` is null, or points to memory that begins with
+    /// such a size and has at least as many bytes as it says. This memory stays valid while the result exists.
     pub unsafe fn new(place: *const T, name: &'static str) -> Result<Self, Refusal> {
         // The type name contains the path of its module.
         let of_type = type_name::<T>().rsplit("::").next().unwrap_or_default();
@@ -44,7 +44,7 @@ impl<T: Copy> SizedStruct<T> {
         if (least..=LARGEST).contains(&size) { Ok(()) } else { Err(Refusal::WrongSize { name, size, least }) }
     }
 
-    /// Copies a struct of an array. `self` is the first struct of the array, and `index` selects the copied one.
+    /// Copies one struct of an array. `self` is the first struct of the array, and `index` selects the copied one.
     ///
     /// # Safety
     /// [`Self::check`] has succeeded, and the array has this index.
@@ -88,7 +88,7 @@ pub(super) unsafe fn fill<T: Copy>(
     Ok(())
 }
 
-/// Fills a struct of the caller with values of a hand, of this machine or of another.
+/// Fills a struct of the caller with values of a hand, which is on this machine or on another one.
 ///
 /// # Safety
 /// As for [`fill`].
@@ -108,7 +108,7 @@ pub(super) unsafe fn fill_from_either<T: Copy>(
     Ok(())
 }
 
-/// Fills a struct of the caller with values of a hand of this machine.
+/// Fills a struct of the caller with values of a hand on this machine.
 ///
 /// # Safety
 /// As for [`fill`].

@@ -19,8 +19,8 @@ pub(super) struct PathBuffer {
     /// The period of the servo in which the path begins, as in [`Reference::period`](crate::finger::Reference::period).
     pub origin: u64,
     /// The stiffness with which the path begins, as in [`SetPoint::stiffness`](crate::control::SetPoint::stiffness);
-    /// none if it is the stiffness in force. A planner may have sent it so shortly before the path that the servo gets
-    /// only the path.
+    /// none if the path begins with the stiffness in force. The path carries the stiffness, because the servo may never
+    /// get the set point of a stiffness that was sent shortly before the path.
     pub begin: Option<Matrix6<f64>>,
     pieces: Pages<[Piece]>,
     piece_count: usize,

@@ -12,14 +12,14 @@ use editing::{child, same, set, written};
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, Value};
 
-/// Compares the results with the configuration file at `path`, and writes those that differ into it. Everything else
-/// in the file is kept, including changes that others have made since it was read. Several processes may store at the
-/// same time: each waits for the others, for at most 30 seconds.
+/// Stores those results that differ from the values in the configuration file at `path`. Everything else in the file is
+/// kept, including changes that others have made since it was read. Several processes may store at the same time: each
+/// waits for the others, for at most 30 seconds.
 ///
 /// # Errors
 /// Returns an error if the file cannot be read, used or written. Returns [`ConfigurationError::Mismatch`] if the file
-/// has changed so that the results do not apply to it. After an error the file is unchanged. Exception: if only the
-/// flush of its folder fails, the new file is in place.
+/// has changed so that the results do not apply to it. After an error the file is unchanged, with one exception: if
+/// only the flush of its folder fails, the new file is in place.
 pub fn store_findings(path: &Path, found: &[Found]) -> Result<(), ConfigurationError> {
     update_file(path, LARGEST, |text| change(path, text, found)).map_err(|error| match error {
         UpdateError::File(source) => ConfigurationError::Unwritable { path: path.to_path_buf(), source },

@@ -23,9 +23,9 @@ pub struct FingerTip {
     pub tensions: [f64; 4],
     /// Stiffness of the tip in the present pose, in the finger's frame, N/cm. It is the part of the sent stiffness of
     /// tip and joints that is in force. Three other springs add to it: a rotational stiffness of the contact, the soft
-    /// joint limits, and the spring of joint 0 near its axis. A force that displaces the tip also turns it, because the
-    /// joints turn. The stiffness is zero in a direction that the joints do not feel, and while the finger is not in
-    /// the stage `Running`.
+    /// joint limits, and the spring of joint 0 while the tip is near the axis of this joint. (The rotational stiffness
+    /// adds, because a force that displaces the tip also turns it.) The stiffness is zero in a direction that the
+    /// joints do not feel, and while the finger is not in the stage `Running`.
     pub stiffness: [[f64; 3]; 3],
     /// Force on the touched object in the finger's frame, N, without the friction, weight and acceleration of the
     /// finger, and without constant errors of the gauges: from the momentum observer of docs/contact.md. It is zero
@@ -55,7 +55,7 @@ impl Hand {
 impl FingerTip {
     fn new(admission: &Admission, report: &FingerReport) -> Self {
         let running = report.stage == Stage::Running;
-        // A calibration that begins at rest leaves the finger a spring at first, so there is an estimate of a contact.
+        // At the beginning of a calibration the finger can still be a spring, with an estimate of a contact.
         let contact = if running { report.cycle.contact } else { ContactEstimate::default() };
         let springs = admission.springs.as_ref().filter(|_| running);
         let spring = springs.map(|springs| (springs, &report.set_point));

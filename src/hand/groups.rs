@@ -17,7 +17,7 @@ pub enum Pose {
     Tip([f64; 3]),
 }
 
-/// The command for one finger in a group, which is a set of commands that take effect in one cycle. A quantity that is
+/// The command for one finger in a group. All commands of a group take effect in the same period. A quantity that is
 /// `None` keeps its value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
@@ -92,8 +92,8 @@ impl FingerCommand {
     }
 
     /// Checks the command. Returns a function that changes the set point. That function returns an error if it refuses
-    /// the resulting damping. `present` is the pose of the finger, rad. A Kx that is no spring is refused before a
-    /// value that is out of range, as the manual of the C call lists the reasons.
+    /// the resulting damping. `present` is the pose of the finger, rad. A Kx that is no spring is reported before a
+    /// value that is out of range, because the manual of the C call lists the reasons in this order.
     pub(super) fn admit(
         &self,
         admission: &Admission,
@@ -126,7 +126,7 @@ impl FingerCommand {
 impl Hand {
     /// Sends commands to several fingers. All of them take effect in the same period of the hand, even if different
     /// threads serve the fingers. The period begins at most two periods after the call. Either every command is sent,
-    /// or none is. The command of a single finger takes effect in its next cycle.
+    /// or none is. A single command takes effect in the next cycle of its finger.
     ///
     /// If a servo is so late that it skips this period, its fingers follow in their next cycle. With
     /// `hand.clock = "board"` the periods of the threads follow different clocks. A finger may then follow one period

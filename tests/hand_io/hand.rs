@@ -46,7 +46,8 @@ fn fault(hand: &Hand, finger: i32) -> FaultKind {
     }
 }
 
-/// Moves every finger to the target and pushes finger 1. Returns where the fingers rest, and then finger 1.
+/// Moves every finger to the target, and then pushes finger 1. Returns where the fingers rest before the push, and
+/// where finger 1 rests during it.
 fn moves(hand: &Hand, push: impl FnOnce()) -> (Vec<[f64; 3]>, [f64; 3]) {
     let settling = Settling { tolerance: 0.01, rest: Duration::from_millis(300), patience: PATIENCE };
     (1..=3).for_each(|finger| hand.send_position(finger, TARGET).expect("sent"));
@@ -93,8 +94,8 @@ fn lost_exchanges_fault_the_finger_and_it_recovers() {
     let switches = &switches[0];
     switches.lock().exchange_fails = Some(libc::EIO);
     let (fault, losses) = (fault(&hand, 2), hand.losses(2).expect("losses"));
-    // A servo that skips periods faults after the watchdog has tripped. Even so, lost replies are the cause, unless the
-    // servo has skipped half of the 200 periods.
+    // If the servo skips periods, the watchdog may trip before the finger faults. The fault is still that of lost
+    // replies, unless the servo has skipped half of the 200 periods of the watchdog time.
     if losses.skipped_periods < 100 {
         assert_eq!(fault, FaultKind::LostReplies);
     } else {

@@ -88,7 +88,7 @@ impl Dice {
 }
 
 impl Case {
-    /// The case with this number of a run.
+    /// The case with this number in the run with this seed.
     pub fn random(seed: u64, number: u64) -> Self {
         let mut dice = Dice(Pcg64::seed_from_u64(seed.wrapping_mul(1000).wrapping_add(number)));
         let number = number as usize % COMBINATIONS;

@@ -103,7 +103,7 @@ impl Planner for InC {
             Action::CloseInCallback => {
                 // SAFETY: the callback is a function that accepts every argument.
                 unsafe { sun2xp_on_event(sun2xp_default_hand(), close_in_callback, null_mut()) };
-                // The faults are events.
+                // The stop faults the fingers, and each fault is an event for the callback.
                 sun2xp_stop_all()
             }
             Action::Exit => exit(EXITED),
@@ -124,12 +124,12 @@ impl Planner for InC {
 pub struct InRust(RwLock<Option<Hand>>);
 
 impl InRust {
-    /// Calls a function with the hand. Returns none if there is no hand, or if it refuses.
+    /// Calls a function with the hand. Returns none if there is no hand, or if the hand refuses the call.
     fn with<T>(&self, call: impl FnOnce(&Hand) -> Result<T, HandError>) -> Option<T> {
         call(self.0.read().expect("not poisoned").as_ref()?).ok()
     }
 
-    /// Calls a function with the hand until it returns true or refuses, or no hand is open.
+    /// Calls a function with the hand until the function returns true or an error, or no hand is open.
     fn poll(&self, mut done: impl FnMut(&Hand) -> Result<bool, HandError>) {
         while self.with(&mut done) == Some(false) {
             sleep(POLL_INTERVAL);

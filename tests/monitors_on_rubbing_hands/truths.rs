@@ -5,7 +5,8 @@ use sun2xp::model::configuration::{ConfiguredFinger, ConfiguredSimulation, Named
 /// A hand without a fault.
 pub struct Truth {
     pub what: &'static str,
-    /// Makes the simulated finger such a hand. The controller's configuration stays unchanged.
+    /// Changes what is true of the simulated finger, and not what its controller assumes. Only the hand "motor friction
+    /// believed to be zero" does the opposite.
     pub make: fn(&mut ConfiguredFinger),
 }
 

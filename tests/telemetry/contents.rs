@@ -32,7 +32,7 @@ fn the_description_names_hand_process_and_configuration() {
 fn samples_have_the_values_that_planners_get() {
     let name = name("samples");
     let mut configured = configuration(&name);
-    // Fingers that are turned in the palm reveal a confusion of frames.
+    // On a finger that is turned in the palm, a value in the wrong frame differs.
     configured.fingers[1].turn_degrees = Some(40.0);
     let hand = Hand::open(configured.clone()).expect("open");
     let mut reader = reader(&name);

@@ -153,7 +153,7 @@ fn one_that_loses_the_hand() {
     assert_eq!(said, "stop 0\nrecovered 1, stopped 1 1\nrecovered 1, stopped 0 0\n");
 }
 
-/// The hand is released also if a thread of the planner still waits for an event.
+/// The hand is released even if a thread of the planner still waits for an event.
 #[test]
 fn one_that_closes_while_it_waits_for_events() {
     let rig = Rig::start();

@@ -10,7 +10,7 @@ impl FaultText {
     /// The largest length, bytes.
     pub const LONGEST: usize = 71;
 
-    /// Returns the beginning of this text, which ends with a whole character.
+    /// Returns the beginning of this text, cut between two characters.
     #[must_use]
     pub fn beginning_of(text: &str) -> Self {
         let end = (0..=Self::LONGEST.min(text.len())).rev().find(|&end| text.is_char_boundary(end));

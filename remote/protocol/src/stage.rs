@@ -17,7 +17,7 @@ pub enum Stage {
     Closing,
     /// The finger is in its end state.
     Closed,
-    /// The finger has stopped, because of the fault with this number of docs/faults.md, which is not 0.
+    /// The finger has stopped because of a fault. The number is that of docs/faults.md, and is not 0.
     Faulted(u16),
 }
 

@@ -15,9 +15,9 @@ use nalgebra::{Vector3, Vector4};
 
 /// Amplitude of the motion to either side, rad, of a joint that moves at full speed.
 pub(super) const SWING: f64 = 0.3;
-/// Speed of the motions, rad/s.
+/// Speed of all motions except the first, rad/s, of a joint that moves at full speed.
 const FAST: f64 = 0.4;
-/// Speed of the motion that shows the viscous friction of the joints, rad/s.
+/// Speed of the first motion, rad/s. The difference between the two speeds shows the viscous friction of the joints.
 const SLOW: f64 = 0.15;
 /// The oblique directions, as parts of the full speed of each joint.
 const DIRECTIONS: [[f64; 3]; 2] = [[1.0, 0.5, 1.0], [1.0, -0.5, -1.0]];
@@ -25,7 +25,7 @@ const DIRECTIONS: [[f64; 3]; 2] = [[1.0, 0.5, 1.0], [1.0, -0.5, -1.0]];
 const MOTIONS: [(usize, bool, f64); STROKES] =
     [(0, false, SLOW), (0, false, FAST), (0, true, FAST), (1, true, FAST), (1, false, FAST)];
 
-/// The tension of the higher level in the tendon with the largest pretension, as a fraction of t_max.
+/// Tension of the tendon with the largest pretension at the higher level, as a fraction of t_max.
 const HIGH: f64 = 0.4;
 /// Rate at which the common tension changes, N/s.
 const RISING: f64 = 10.0;

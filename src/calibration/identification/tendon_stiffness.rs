@@ -1,12 +1,12 @@
 //! Determines the stiffness of every tendon from motor travel against tension.
 //!
-//! The motor travel of every tendon is x_i = R_i^T theta + c_i t_i + d_i t_i^2 + h_i s_i t_i + const. R_i has the
-//! moment arms of tendon i, theta the joint angles, and t_i is the tension. c_i is the compliance, d_i its change with
-//! the tension, and h_i the additional stretch on the motor's side of the conduit, whose friction makes the tension
-//! there larger or smaller than at the gauge. s_i is the direction in which the tendon slid, -1 to 1. Multiplication by
-//! the null vector n of R eliminates any motion of the joints. This is one equation per sample. The coefficients can be
-//! separated if the four tensions vary independently. The tensions vary independently only with joint torques, so
-//! something must hold the finger. A term in proportion to the time absorbs creep.
+//! The motor travel of every tendon is x_i = R_i^T theta + c_i t_i + d_i t_i^2 + h_i s_i t_i + const. R_i are the
+//! moment arms of tendon i, theta the joint angles, and t_i is the tension at the gauge. c_i is the compliance, and d_i
+//! its change with the tension. h_i is an additional compliance: on the motor's side of the conduit, friction makes the
+//! tension larger or smaller than at the gauge. s_i is the direction in which the tendon last slid, -1 to 1. The
+//! product of the four equations with the null vector n of R contains no motion of the joints, and gives one equation
+//! for each sample. Its coefficients can be separated if the four tensions vary independently. They do so only while
+//! joint torques act, so something must hold the finger. A term in proportion to the time absorbs creep.
 
 use super::least_squares::LeastSquares;
 use super::winding::Winding;

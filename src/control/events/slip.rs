@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_force_beyond_the_cone_around_the_first_rest_is_a_slip() {
+    fn a_force_outside_the_cone_around_the_first_force_at_rest_is_a_slip() {
         let mut state = SlipState::default();
         // First the finger approaches. Then it rests, and presses along y.
         assert_eq!(slips(&mut state, [1.0, 1.0, 0.0], false, 500), 0);

@@ -27,7 +27,7 @@ impl Bulletin {
         memory.add_shared(&self.0);
     }
 
-    /// Counts events of a finger. `kinds` has a bit for the number of each kind.
+    /// Counts events of a finger, at most one of each kind. Bit n of `kinds` stands for the kind with the number n.
     pub(super) fn count(&self, finger: FingerNumber, mut kinds: u32) {
         while kinds != 0 {
             let number = kinds.trailing_zeros();

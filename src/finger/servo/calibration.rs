@@ -17,7 +17,7 @@ pub(super) struct Before {
 }
 
 impl Calibrating {
-    /// Returns the data that this cycle is computed with.
+    /// Returns the data with which this cycle is computed.
     pub fn computes_with(&self) -> &Adjustable {
         self.before.as_ref().map_or(&self.run.adjustable, |before| &before.adjustable)
     }

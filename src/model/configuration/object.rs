@@ -35,7 +35,7 @@ pub struct ConfiguredObject {
     /// Position of the centre at the start, in the palm's frame, cm.
     pub position: [f64; 3],
     /// Distance of a table from the palm's origin, cm, measured along gravity, or along the palm's z axis if the hand
-    /// has no gravity. Without it there is no table.
+    /// has no gravity. Without this key there is no table.
     pub table: Option<f64>,
 }
 

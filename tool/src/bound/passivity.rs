@@ -22,7 +22,7 @@ const STEPS: i32 = 26;
 /// Difference between anchor and joint angles, rad. It is not 0, because eq. 20 of the report has a kink at zero load.
 const DEFLECTION: f64 = 0.01;
 
-/// Distance of the tip from the axis of joint 0 in every pose, cm. Nearer poses are nearly singular.
+/// Smallest distance of the tip from the axis of joint 0 in a pose, cm. Nearer poses are nearly singular.
 const CLEAR_OF_AXIS: f64 = 3.0;
 
 /// The passivity of the tip in several poses.
@@ -40,7 +40,7 @@ struct Pose {
     passivity: Option<Vec<f64>>,
 }
 
-/// Computes the passivity of the tip, and returns the stiffness at which it was computed, N/cm.
+/// Computes the passivity of the tip. Returns the stiffness at which it was computed, N/cm, and the passivity.
 pub fn compute(arguments: &Arguments, searched: &Searched, progress: &Progress) -> Result<(f64, Passivity), Failure> {
     let Searched { number, finger, rate } = *searched;
     let map = OneCycleMap::new(finger, rate)

@@ -114,7 +114,7 @@ impl Recording {
         self.complete
     }
 
-    /// Returns which part of the file has been read, 0 to 1.
+    /// Returns the fraction of the file that has been read, 0 to 1.
     pub fn progress(&self) -> f64 {
         match &self.source {
             Source::Mcap(mcap) => mcap.bytes.1 as f64 / mcap.bytes.0.max(1) as f64,
