@@ -65,6 +65,39 @@ impl JointGuide {
         let slip = sample.report.joint_rates - self.moved / instruments.period;
         let torques = instruments.hold.torques(&(self.anchor - self.joints), &slip, self.limit);
         let common = instruments.pretension * (self.common / instruments.minimum);
-        Activity::Tense(instruments.for_controller(instruments.distribution.distribute(&torques).tensions + common))
+        let tensions = instruments.distribution.distribute(&torques).tensions + common;
+        // Only if something blocks the finger can a sum exceed t_max.
+        let tensions = tensions.map(|tension| tension.min(instruments.maximum));
+        Activity::Tense(instruments.for_controller(tensions))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::signals::{Feedback, Report};
+    use crate::model::configuration::ConfiguredFinger;
+    use std::f64::consts::PI;
+
+    /// Every joint of the default finger is blocked and pushed with 12 N cm, while the pretension is raised to 0.4
+    /// t_max. Without a limit, the largest tension would be 62.7 N.
+    #[test]
+    fn no_commanded_tension_of_a_blocked_finger_exceeds_t_max() {
+        let instruments = Instruments::new(&ConfiguredFinger::default(), 1000.0).expect("usable");
+        let (feedback, report) = (Feedback::default(), Report::default());
+        let sample = Sample { feedback: &feedback, report: &report, zero_valid: true };
+        let mut largest = 0.0f64;
+        for ways in 0..8 {
+            let mut guide = JointGuide::new(&instruments, &sample, 12.0);
+            guide.common = (0.4 * instruments.maximum / instruments.pretension.max() - 1.0) * instruments.minimum;
+            for joint in 0..3 {
+                let beyond = guide.joints[joint] + if ways >> joint & 1 == 0 { PI } else { -PI };
+                guide.advance(joint, beyond, PI);
+            }
+            guide.measure(&instruments, &sample);
+            let Activity::Tense(tensions) = guide.activity(&instruments, &sample) else { panic!("no tensions") };
+            largest = largest.max(tensions.max());
+        }
+        assert_eq!(largest, instruments.maximum);
     }
 }

@@ -151,3 +151,22 @@ impl Calibration {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With state feedback, only calibrations use these two gains, so a reader must not take the values for Figure 10
+    /// as the values in force.
+    #[test]
+    fn the_reference_gives_the_gains_of_a_calibration() {
+        let controller = Calibration::controlled(&ConfiguredFinger::default(), GENTLE_RATE).controller;
+        let gains = [("tension_gain", controller.tension_gain), ("tension_integral", controller.tension_integral)];
+        for (key, gain) in gains {
+            let (before, _) = include_str!("../../docs/sun2xp.toml").split_once(&format!("\n#{key} = ")).expect(key);
+            let comment = before.rsplit("\n\n").next().unwrap_or_default().replace("\n# ", " ");
+            let told = format!("{} in a calibration from {GENTLE_RATE} Hz up", gain.expect("a gain"));
+            assert!(comment.contains(&told), "{told:?} is not in: {comment}");
+        }
+    }
+}

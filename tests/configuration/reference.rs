@@ -160,3 +160,44 @@ fn numbers_with_which_a_finger_fails_are_refused() {
         assert!(reason.contains(range), "{reason}");
     }
 }
+
+#[test]
+fn a_gain_that_a_controller_does_not_have_is_refused_and_its_comment_says_so() {
+    let mut refused = 0;
+    for key in keys(&with_optional_keys()) {
+        if key.table != "finger.controller" || key.name == "scheme" {
+            continue;
+        }
+        let refuses = |figure: &&str| {
+            let text = format!("[finger.controller]\nscheme = \"figure {figure}\"\n{} = {}\n", key.name, key.value);
+            read(&text).is_err()
+        };
+        let figures: Vec<&str> = ["9", "10", "11"].into_iter().filter(refuses).collect();
+        let told = match figures[..] {
+            [] => continue,
+            [figure] => format!("Refused with figure {figure}"),
+            _ => format!("Refused with figures {}", figures.join(" and ")),
+        };
+        assert!(key.comment.contains(&told), "{}: {told:?} is not in {:?}", key.name, key.comment);
+        refused += 1;
+    }
+    assert_eq!(refused, 2);
+}
+
+#[test]
+fn an_initial_stiffness_above_the_bound_is_clamped_like_a_command_and_its_comment_says_so() {
+    let stiff = "[finger.stiffness]\ninitial = [[9, 0, 0], [0, 9, 0], [0, 0, 9]]\n";
+    let (line, reason) = read(stiff).expect_err("above the bound");
+    assert!(line == Some(2) && reason.contains("stiffness.initial"), "{reason}");
+    usable(&format!("[hand]\nout_of_range = \"clamp\"\n{stiff}"));
+    let all = keys(REFERENCE);
+    let key = all.iter().find(|key| key.table == "finger.stiffness" && key.name == "initial").expect("the key");
+    assert!(key.comment.contains("hand.out_of_range is \"clamp\""), "{}", key.comment);
+}
+
+/// docs/building-a-hand.md, step 8 of the order of bring-up.
+#[test]
+fn an_eighth_of_the_torque_limit_suffices_for_the_signs() {
+    let limit = Configuration::default().fingers[0].motor.torque_limit.map(|limit| limit / 8.0);
+    usable(&format!("[finger.motor]\ntorque_limit = {limit:?}\n"));
+}

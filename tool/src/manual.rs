@@ -150,4 +150,19 @@ mod tests {
         }
         assert!(page.contains("[finger.tendon]"), "{page}");
     }
+
+    #[test]
+    fn the_page_of_the_configuration_has_every_comment_and_optional_table() {
+        let page = configuration::page(CONFIGURATION).text.render().replace("\\-", "-").replace("\\*(Aq", "'");
+        for comment in CONFIGURATION.lines().filter_map(|line| line.strip_prefix("# ")) {
+            assert!(page.contains(comment.trim()), "{comment}");
+        }
+        for table in ["[hand.simulated_object]", "[telemetry]", "[finger.1]", "[finger.2]", "[finger.3]"] {
+            assert!(page.contains(&format!("\n.SH {table}\n")), "{table}");
+        }
+        // The keys of an optional table are below its title, and its comment is between the title and the first key.
+        let (_, object) = page.split_once(".SH [hand.simulated_object]\n").expect("the table");
+        let (comment, _) = object.split_once("shape").expect("its first key");
+        assert!(comment.contains("An object in the simulated hand"), "{comment}");
+    }
 }

@@ -175,3 +175,15 @@ impl Identification {
         Phase::Seek { guide, joint, search: StopSearch::new(joint, -(range + BEYOND)) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pages_give_the_torque_of_the_motion_back_and_forth() {
+        for page in [include_str!("../../../docs/sun2xp.toml"), include_str!("../../../docs/calibration.md")] {
+            assert!(page.contains(&format!("up to {SHAKING} N cm")));
+        }
+    }
+}

@@ -27,7 +27,8 @@ pub struct ConfiguredZeroing {
     pub lower_stop_degrees: Option<[f64; 3]>,
     /// Angles of the upper stops, degrees. Without them the stops are 3 degrees beyond the soft limits.
     pub upper_stop_degrees: Option<[f64; 3]>,
-    /// Largest torque that moves a joint to its stop, N cm. It must be several times the friction of the joint.
+    /// Largest torque with which zeroing moves a joint to its stop, N cm. It must be several times the friction of the
+    /// joint.
     pub torque: f64,
     /// Speed at which a joint is moved, rad/s.
     pub speed: f64,

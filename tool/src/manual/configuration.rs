@@ -16,19 +16,19 @@ pub fn page(file: &str) -> Page {
         if let Some((key, value)) = key(line) {
             text.control("TP", []);
             text.text([bold(key), roman(" = "), roman(value)]);
-            body_of_key(&mut text, &comment);
-        } else if trimmed.starts_with('[') {
+            body_of_key(&mut text, &std::mem::take(&mut comment));
+        } else if let Some(table) = table(trimmed) {
             if !tables {
                 section(&mut text, "DESCRIPTION", &std::mem::take(&mut comment));
                 tables = true;
             }
-            text.control("SH", [trimmed]);
+            text.control("SH", [table]);
             body(&mut text, &std::mem::take(&mut comment));
         } else if let Some(line) = trimmed.strip_prefix('#') {
             comment.push(line.strip_prefix(' ').unwrap_or(line));
         } else if tables {
-            // This line is empty, or it continues a value. In both cases the comment before it is no longer needed.
-            comment.clear();
+            // The comment before an empty line belongs to no key. It is about the keys that follow.
+            body(&mut text, &std::mem::take(&mut comment));
         }
     }
     text.control("SH", ["SEE ALSO"]);
@@ -43,6 +43,12 @@ fn body_of_key(text: &mut Roff, comment: &[&str]) {
         }
         text.text([roman(paragraph.join("\n"))]);
     }
+}
+
+/// Returns the table of a line such as `[hand]`. A line with an optional table begins with # and has no space after it.
+fn table(line: &str) -> Option<&str> {
+    let table = line.strip_prefix('#').unwrap_or(line);
+    (table.starts_with('[') && table.ends_with(']')).then_some(table)
 }
 
 /// Returns the key and the value of a line such as `rate = 1000.0`. A line with an optional key begins with # and has
