@@ -12,7 +12,7 @@ pub enum MissingPermission {
     Scheduling(io::Error),
     /// The permission to lock memory.
     #[error(
-        "the servo's memory cannot be locked ({0}): grant CAP_IPC_LOCK or raise the memlock limit to 8 MiB (ulimit -l)"
+        "the servo's memory cannot be locked ({0}): grant CAP_IPC_LOCK or raise the memlock limit to 16 MiB (ulimit -l)"
     )]
     Memory(io::Error),
     /// The permission to run on the configured core.

@@ -30,7 +30,8 @@ pub struct Arguments {
     /// The hand, if several are open.
     #[arg(long, value_name = "NAME")]
     hand: Option<String>,
-    /// The file. Further files get numbers. Without this option the name consists of the hand's name, date and time.
+    /// The file. Further files get numbers. Without this option the name consists of the hand's name, date and time, or
+    /// is that of the black box with the ending .mcap.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Record for this time, s.

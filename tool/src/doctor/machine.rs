@@ -5,8 +5,11 @@ use std::fs::read_to_string;
 use std::path::Path;
 use sun2xp::model::configuration::Configuration;
 
-/// Memory that three servo threads lock for stacks, rings and mailboxes, with a reserve, bytes.
-const LOCKED: u64 = 6 << 20;
+/// Memory that three servo threads lock for stacks, mailboxes and reserves, bytes.
+const LOCKED: u64 = 4 << 20;
+
+/// Memory that they also lock for each Hz of the rate, because their rings have room for a time, bytes.
+const LOCKED_PER_HZ: f64 = 2048.0;
 
 const CAP_IPC_LOCK: u32 = 14;
 const CAP_SYS_NICE: u32 = 23;
@@ -113,8 +116,9 @@ fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) 
 
 fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> Finding {
     let subject = "locked memory";
+    let needed = LOCKED + (LOCKED_PER_HZ * configuration.hand.rate).ceil() as u64;
     // No limit means unlimited.
-    if capable || limit.is_none_or(|limit| limit >= LOCKED) {
+    if capable || limit.is_none_or(|limit| limit >= needed) {
         let by = if capable { "CAP_IPC_LOCK" } else { "the memlock limit" };
         return Finding::good(subject, format!("permitted by {by}"));
     }
@@ -123,7 +127,7 @@ fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> F
         "When memory is short, a servo may have to wait for its own pages. Write `@realtime - memlock unlimited` into \
          {LIMITS}, join the group (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
     );
-    let found = format!("the memlock limit is {kilobytes} kB, but the servos need {} kB", LOCKED / 1024);
+    let found = format!("the memlock limit is {kilobytes} kB, but the servos need {} kB", needed / 1024);
     lacking(configuration, subject, found, advice)
 }
 

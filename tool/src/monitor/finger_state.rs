@@ -51,7 +51,7 @@ pub struct FingerState {
     pub contact_force_in_palm: [f64; 3],
     /// Measured rate of the last second, Hz.
     pub rate: f64,
-    /// Wake-up times since the hand was opened, us.
+    /// Wake-up times since the hand was opened or the planner restarted the statistics (sun2xp_reset_timing), us.
     pub wake_up: Distribution,
     /// Wake-up times of the last ten seconds.
     pub wake_up_histogram: Histogram,

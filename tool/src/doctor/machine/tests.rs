@@ -88,6 +88,28 @@ fn capabilities_replace_limits_and_enforcing_makes_failures() {
     assert!(has(status, CAP_IPC_LOCK) && has(status, CAP_SYS_NICE) && !has(status, 0) && !has("", CAP_SYS_NICE));
 }
 
+/// The rings of the servos are locked, and grow with the rate: 12 MiB in all at 5000 Hz.
+#[test]
+fn the_locked_memory_that_is_needed_depends_on_the_rate() {
+    let limits = |mebibytes: u64| {
+        let bytes = mebibytes << 20;
+        format!("Max locked memory  {bytes}  {bytes} bytes\nMax realtime priority  90  90\n")
+    };
+    let verdict = |mebibytes, rate| {
+        let findings = found("proc/self/limits", &limits(mebibytes), |configuration| configuration.hand.rate = rate);
+        findings.iter().find(|finding| finding.subject == "locked memory").expect("it is checked").verdict
+    };
+    for (mebibytes, rate, expected) in [
+        (5, 1000.0, Rating::Warning),
+        (8, 1000.0, Rating::Good),
+        (8, 5000.0, Rating::Warning),
+        (12, 5000.0, Rating::Warning),
+        (16, 5000.0, Rating::Good),
+    ] {
+        assert_eq!(verdict(mebibytes, rate), expected, "{mebibytes} MiB at {rate} Hz");
+    }
+}
+
 #[test]
 fn an_unlimited_priority_is_good_and_a_missing_line_is_not() {
     let limits = "Max locked memory  unlimited  unlimited bytes\nMax realtime priority  unlimited  unlimited\n";
