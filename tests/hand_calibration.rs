@@ -66,6 +66,11 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
         matches!(&refused, HandError::NotStored { finger: FingerNumber::THREE, .. }) && refused.errno() == libc::ENOENT,
         "{refused}"
     );
+    // What could not be stored is stored as soon as the file can be written.
+    fs::write(&path, "[hand]\nrate = 500\n[finger.3.motor]\nsign = [-1, 1, 1, 1]\n").expect("written");
+    assert!(hand.store_calibration(3).expect("stored"));
+    assert_eq!(read_configuration(&path).expect("usable").fingers[2].motor.sign, [1; 4]);
+    assert!(!hand.store_calibration(3).expect("nothing is left to store"));
 }
 
 /// The finger takes up slack with its new zeros when it is stopped.

@@ -1,4 +1,4 @@
-//! Conversion of results to the classes of sun2xp/_types.py.
+//! Conversion of results to the classes of sun2xp._types.
 
 use crate::errors;
 use numpy::{PyArray1, PyArray2};
@@ -7,7 +7,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 use sun2xp::{Distribution, Fault, FingerFault, FingerStatus, FingerTip, Losses};
 
-/// Returns an object of a class of sun2xp/_types.py with these fields.
+/// Returns an object of a class of sun2xp._types with these fields.
 pub fn record<'py>(py: Python<'py>, class: &str, fields: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
     static TYPES: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
     let types = TYPES.get_or_try_init(py, || py.import("sun2xp._types").map(Bound::unbind))?;

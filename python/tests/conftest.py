@@ -3,6 +3,7 @@
 import signal
 
 import pytest
+from remote_scripted import Scripted
 
 import sun2xp
 
@@ -35,3 +36,15 @@ def shared():
     """A simulated hand for tests that only read, or that leave the fingers as they find them."""
     with sun2xp.simulated() as opened:
         yield opened
+
+
+@pytest.fixture
+def server():
+    """A server of a remote hand that does what the test says, without a network."""
+    return Scripted()
+
+
+@pytest.fixture
+def remote(server):
+    """The remote hand of this server."""
+    return server.hand

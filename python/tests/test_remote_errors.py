@@ -5,23 +5,13 @@ import struct
 
 import pytest
 from remote_double import Double
-from remote_scripted import HOME, MS, Scripted
+from remote_scripted import HOME, MS
 from test_remote import free_endpoint
 
 import sun2xp
 import sun2xp.remote
 from sun2xp import ErrorNumber, EventKind
 from sun2xp.remote import _messages, _receiver
-
-
-@pytest.fixture
-def server():
-    return Scripted()
-
-
-@pytest.fixture
-def hand(server):
-    return server.hand
 
 
 @pytest.mark.parametrize(
@@ -40,53 +30,53 @@ def hand(server):
         (lambda hand: hand.identify(0), ErrorNumber.ARGUMENT, errno.EINVAL),
     ],
 )
-def test_an_error_has_number_errno_and_remedy(hand, call, number, system):
-    hand.send_position(1, HOME)
+def test_an_error_has_number_errno_and_remedy(remote, call, number, system):
+    remote.send_position(1, HOME)
     with pytest.raises(sun2xp.Error) as refused:
-        call(hand)
+        call(remote)
     error = refused.value
     assert (error.number, error.errno) == (number, system)
     assert error.remedy and error.text.endswith(error.remedy)
 
 
-def test_a_hand_that_is_closed_or_lost_is_named_with_its_remedy(server, hand):
+def test_a_hand_that_is_closed_or_lost_is_named_with_its_remedy(server, remote):
     server.state(owner=server.number + 1)
     with pytest.raises(sun2xp.remote.NotOwner) as lost:
-        hand.send_position(1, HOME)
+        remote.send_position(1, HOME)
     assert (lost.value.errno, "hand.acquire()" in lost.value.remedy) == (errno.EBUSY, True)
-    hand.close()
+    remote.close()
     with pytest.raises(sun2xp.Closed) as closed:
-        hand.send_position(1, HOME)
+        remote.send_position(1, HOME)
     assert (closed.value.errno, closed.value.remedy) == (errno.ENODEV, "open it again")
 
 
-def test_a_hand_of_which_nothing_is_heard_any_more_is_lost(server, hand):
+def test_a_hand_of_which_nothing_is_heard_any_more_is_lost(server, remote):
     """The server has ended the epoch after 10 s, because the Targets repeat an old time."""
     server.silence = 9.0
-    hand.send_position(1, HOME)
-    assert hand.owned
+    remote.send_position(1, HOME)
+    assert remote.owned
     server.silence = 11.0
     targets = len(server.targets)
     server.hand.owner.publish(0)
-    assert len(server.targets) == targets and not hand.owned
-    for call in (lambda: hand.send_position(1, HOME), lambda: hand.wait(1, "applied", timeout=0)):
+    assert len(server.targets) == targets and not remote.owned
+    for call in (lambda: remote.send_position(1, HOME), lambda: remote.wait(1, "applied", timeout=0)):
         with pytest.raises(sun2xp.remote.NotOwner):
             call()
     server.silence = 0.0
-    assert not hand.owned
-    hand.acquire()
-    hand.send_position(1, HOME)
+    assert not remote.owned
+    remote.acquire()
+    remote.send_position(1, HOME)
 
 
 @pytest.mark.parametrize(
     ("code", "number"), [(6, ErrorNumber.LIMIT), (7, ErrorNumber.FAULTED), (9, ErrorNumber.BUSY)]
 )
-def test_the_number_of_a_refusal_is_its_reason(server, hand, code, number):
-    hand.send_position(1, HOME)
+def test_the_number_of_a_refusal_is_its_reason(server, remote, code, number):
+    remote.send_position(1, HOME)
     sequence = server.targets[-1][0]
     server._subscribers["refused"](server.answer(code, sequence, "finger 1 is faulted: recover it"))
     with pytest.raises(sun2xp.Refused) as refused:
-        hand.send_position(1, HOME)
+        remote.send_position(1, HOME)
     assert (refused.value.number, refused.value.remedy) == (number, "recover it")
 
 
@@ -99,25 +89,25 @@ def test_the_number_of_a_refusal_is_its_reason(server, hand, code, number):
         (lambda hand: hand.acquire(recover=True), ErrorNumber.PORT),
     ],
 )
-def test_a_request_that_fails_refuses_no_argument(server, hand, call, number):
+def test_a_request_that_fails_refuses_no_argument(server, remote, call, number):
     server.code = 6
     with pytest.raises(sun2xp.Error) as failed:
-        call(hand)
+        call(remote)
     assert not isinstance(failed.value, sun2xp.Refused) and failed.value.number == number
 
 
-def test_a_fault_is_raised_although_the_server_does_not_tell_its_text(server, hand, monkeypatch):
-    hand.send_position(1, HOME)
+def test_a_fault_is_raised_although_the_server_does_not_tell_its_text(server, remote, monkeypatch):
+    remote.send_position(1, HOME)
     server.records["stage"][0], server.records["fault"][0] = _messages.STAGES.index("faulted"), 10
     server.apply()
     monkeypatch.setattr(server, "get", lambda *_: [])
     with pytest.raises(sun2xp.Fault) as fault:
-        hand.wait(1, timeout=0)
+        remote.wait(1, timeout=0)
     assert (fault.value.finger, fault.value.fault) == (1, 10) and "hand.recover(1)" in fault.value.remedy
 
 
-def test_an_event_has_the_values_of_its_kind(server, hand):
-    events = hand.events()
+def test_an_event_has_the_values_of_its_kind(server, remote):
+    events = remote.events()
     for kind in EventKind:
         message = struct.pack("<BBBBHxxQQQ4d", 3, 1, 2, 0, kind, int(kind), 7, 8 * MS, 1.0, 2.0, 3.0, 4.0)
         server._subscribers["events"](message)
@@ -135,17 +125,17 @@ def test_the_types_of_events_have_as_many_values_as_in_the_library():
     assert [(int(kind), count) for kind, count in _receiver.VALUES.items()] == _sun2xp.event_values()
 
 
-def test_a_close_that_is_interrupted_closes_the_hand(server, hand, monkeypatch):
+def test_a_close_that_is_interrupted_closes_the_hand(server, remote, monkeypatch):
     undeclared = []
-    hand._declared = [type("Declared", (), {"undeclare": lambda self: undeclared.append(self)})()]
+    remote._declared = [type("Declared", (), {"undeclare": lambda self: undeclared.append(self)})()]
 
     def interrupted(*_):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(server, "get", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        hand.close()
-    assert hand.closed and hand._receiver.closed and undeclared and not server.sender._owners
+        remote.close()
+    assert remote.closed and remote._receiver.closed and undeclared and not server.sender._owners
 
 
 def test_files_of_tls_that_cannot_be_read_are_named(tmp_path):

@@ -4,7 +4,6 @@ import threading
 
 import numpy
 import pytest
-from remote_scripted import Scripted
 
 import sun2xp
 import sun2xp.remote
@@ -32,10 +31,9 @@ def clock(monkeypatch):
 
 
 @pytest.fixture
-def server(clock):
-    one = Scripted()
-    one.gets.clear()
-    return one
+def server(clock, server):
+    server.gets.clear()
+    return server
 
 
 def test_a_get_that_reaches_nobody_is_repeated_twice(server):

@@ -5,6 +5,8 @@ use super::joint_guide::JointGuide;
 use super::obstacle::Obstacle;
 use std::f64::consts::PI;
 
+/// A joint in search of a stop moves at most this far beyond its range, rad.
+pub(super) const BEYOND: f64 = 0.17;
 /// A joint at full torque counts as still while it stays within this angle of one position, rad.
 const STILL: f64 = 0.004;
 /// A joint is at its stop when it has been still for this time, s.

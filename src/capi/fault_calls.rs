@@ -8,9 +8,10 @@ use crate::capi::fault_struct::sun2xp_fault;
 use crate::capi::fault_texts::TEXTS;
 use crate::capi::handle::{Handle, sun2xp_hand};
 use crate::capi::sized_struct::fill_from_either;
+use crate::capi::status_calls::count;
 use crate::finger;
 use crate::hand::{FingerFault, Hand};
-use std::ffi::{c_char, c_int, c_ulong};
+use std::ffi::{c_char, c_int};
 
 /// sun2xp_fault - fault and warning of a finger
 ///
@@ -70,14 +71,5 @@ fn to_c(found: &FingerFault) -> sun2xp_fault {
     };
     let (number, part, value) = parts(found.stopped);
     let (warning, warning_part, warning_value) = parts(found.warning);
-    sun2xp_fault {
-        size: 0,
-        number,
-        part,
-        warning,
-        warning_part,
-        value,
-        warning_value,
-        warnings: c_ulong::try_from(found.warnings).unwrap_or(c_ulong::MAX),
-    }
+    sun2xp_fault { size: 0, number, part, warning, warning_part, value, warning_value, warnings: count(found.warnings) }
 }

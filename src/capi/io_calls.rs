@@ -6,12 +6,9 @@ use crate::capi::io_structs::sun2xp_io;
 use crate::capi::io_table;
 use crate::capi::memory::non_null;
 use crate::capi::opened_hand::Source;
-use crate::capi::opening_calls::{not_utf_8, open};
+use crate::capi::opening_calls::open;
 use crate::capi::refusal::Wanted;
-use crate::hand::HandError;
-use std::ffi::{CStr, OsStr, c_char, c_int};
-use std::os::unix::ffi::OsStrExt;
-use std::path::PathBuf;
+use std::ffi::{c_char, c_int};
 
 /// sun2xp_open_io - open a hand with hardware that the program provides
 ///
@@ -76,10 +73,7 @@ pub unsafe extern "C" fn sun2xp_open_io(
     unsafe {
         open("sun2xp_open_io", hand, || {
             let io = io_table::load(count, io)?;
-            Ok(match path.is_null() {
-                true => Source::Found.with_io(io),
-                false => Source::File(PathBuf::from(OsStr::from_bytes(CStr::from_ptr(path).to_bytes()))).with_io(io),
-            })
+            Ok(Source::at(path).with_io(io))
         })
     }
 }
@@ -108,8 +102,7 @@ pub unsafe extern "C" fn sun2xp_open_io_text(
         open("sun2xp_open_io_text", hand, || {
             non_null(configuration, "configuration", Wanted::Text)?;
             let io = io_table::load(count, io)?;
-            let text = CStr::from_ptr(configuration).to_str().map_err(|_| HandError::from(not_utf_8()))?;
-            Ok(Source::Text(text.to_owned()).with_io(io))
+            Ok(Source::in_memory(configuration)?.with_io(io))
         })
     }
 }

@@ -138,8 +138,7 @@ fn from_table(table: &sun2xp_io) -> Result<IoTable, Refusal> {
     let sun2xp_io { holds, in_step, shortest_watchdog, tension_unit, user, start, exchange, stop, .. } = *table;
     let properties = IoProperties {
         tension_unit: if tension_unit == 0.0 { DEFAULT_TENSION_UNIT } else { tension_unit },
-        // The conversion saturates, and a time that is too long is refused when the terms are agreed.
-        shortest_watchdog_ms: (shortest_watchdog * 1e3).ceil() as u16,
+        shortest_watchdog_ms: whole_milliseconds(shortest_watchdog),
         holds: holds != 0,
         in_step: in_step != 0,
     };
@@ -150,4 +149,28 @@ fn from_table(table: &sun2xp_io) -> Result<IoTable, Refusal> {
         exchange: exchange.ok_or(missing("io->exchange"))?,
         stop: stop.ok_or(missing("io->stop"))?,
     })
+}
+
+/// Rounds a time up to milliseconds. A binary number can exceed the milliseconds that its program means: 9 * 1e-3 is
+/// more than 9 ms. The conversion saturates, and a time that is too long is refused when the terms are agreed.
+fn whole_milliseconds(seconds: f64) -> u16 {
+    const INEXACT_MS: f64 = 1e-4;
+    (seconds * 1e3 - INEXACT_MS).ceil() as u16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_of_milliseconds_stays_this_number() {
+        for milliseconds in 0..=1000_u16 {
+            let exact = f64::from(milliseconds);
+            for seconds in [exact * 1e-3, exact / 1e3, f64::from((exact / 1e3) as f32)] {
+                assert_eq!(whole_milliseconds(seconds), milliseconds, "{seconds:?} s");
+            }
+        }
+        assert_eq!(whole_milliseconds(0.0091), 10);
+        assert_eq!((whole_milliseconds(1e-300), whole_milliseconds(1e9)), (0, u16::MAX));
+    }
 }

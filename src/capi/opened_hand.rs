@@ -3,7 +3,9 @@
 use crate::board::HandIo;
 use crate::capi::refusal::Refusal;
 use crate::capi::remote_hand::{RemoteHand, RemoteOpener, RemoteSource, over_the_network};
-use crate::hand::{Configured, FingersWithIo, Hand, HandError};
+use crate::hand::{ConfigurationError, Configured, FingersWithIo, Hand, HandError};
+use std::ffi::{CStr, OsStr, c_char};
+use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -35,6 +37,32 @@ impl From<Source> for SourceWithIo {
 }
 
 impl Source {
+    /// The file at a path of the program, or the file that OpenHand finds if `path` is null.
+    ///
+    /// # Safety
+    /// `path` is null, or points to a text that ends with 0.
+    pub unsafe fn at(path: *const c_char) -> Self {
+        if path.is_null() {
+            return Self::Found;
+        }
+        // SAFETY: by the contract of this function.
+        let path = unsafe { CStr::from_ptr(path) };
+        Self::File(PathBuf::from(OsStr::from_bytes(path.to_bytes())))
+    }
+
+    /// A configuration in the memory of the program.
+    ///
+    /// # Safety
+    /// `configuration` points to a text that ends with 0.
+    pub unsafe fn in_memory(configuration: *const c_char) -> Result<Self, Refusal> {
+        // SAFETY: by the contract of this function.
+        let text = unsafe { CStr::from_ptr(configuration) }.to_str().map_err(|_| {
+            let (file, reason) = ("configuration text".into(), "is not UTF-8".into());
+            HandError::from(ConfigurationError::Invalid { file, line: None, reason })
+        })?;
+        Ok(Self::Text(text.to_owned()))
+    }
+
     pub fn with_io(self, io: HandIo) -> SourceWithIo {
         SourceWithIo { source: self, io: Some(io) }
     }

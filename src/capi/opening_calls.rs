@@ -8,11 +8,8 @@ use crate::capi::loaded_hand;
 use crate::capi::memory::non_null;
 use crate::capi::opened_hand::{Source, SourceWithIo};
 use crate::capi::refusal::{Refusal, Wanted};
-use crate::hand::{ConfigurationError, HandError};
 use crate::model::configuration::NamedHand;
-use std::ffi::{CStr, OsStr, c_char, c_int};
-use std::os::unix::ffi::OsStrExt;
-use std::path::PathBuf;
+use std::ffi::{CStr, c_char, c_int};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -51,14 +48,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub unsafe extern "C" fn sun2xp_open(path: *const c_char, hand: *mut *mut sun2xp_hand) -> c_int {
     // SAFETY: here and below, by the contract in the manual, each pointer is null or points to the data of its
     // description.
-    unsafe {
-        open("sun2xp_open", hand, || {
-            if path.is_null() {
-                return Ok(Source::Found);
-            }
-            Ok(Source::File(PathBuf::from(OsStr::from_bytes(CStr::from_ptr(path).to_bytes()))))
-        })
-    }
+    unsafe { open("sun2xp_open", hand, || Ok(Source::at(path))) }
 }
 
 /// sun2xp_open_text - open the hand of a configuration in memory
@@ -88,8 +78,7 @@ pub unsafe extern "C" fn sun2xp_open_text(configuration: *const c_char, hand: *m
     unsafe {
         open("sun2xp_open_text", hand, || {
             non_null(configuration, "configuration", Wanted::Text)?;
-            let text = CStr::from_ptr(configuration).to_str().map_err(|_| HandError::from(not_utf_8()))?;
-            Ok(Source::Text(text.to_owned()))
+            Source::in_memory(configuration)
         })
     }
 }
@@ -153,10 +142,6 @@ pub extern "C" fn sun2xp_close(hand: *mut sun2xp_hand) -> c_int {
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_default_hand() -> *mut sun2xp_hand {
     uncancelled(|| default_handle().to_c())
-}
-
-pub(super) fn not_utf_8() -> ConfigurationError {
-    ConfigurationError::Invalid { file: "configuration text".into(), line: None, reason: "is not UTF-8".into() }
 }
 
 /// Opens a hand and writes its handle.

@@ -114,8 +114,45 @@ impl Supervision {
         self.watch = Watch::default();
     }
 
+    /// Forgets the line and the overruns from before a recovery.
+    pub fn recover(&mut self) {
+        for quality in [&mut self.noise, &mut self.damage, &mut self.overruns] {
+            quality.forget();
+        }
+        self.damaged = 0.0;
+    }
+
     /// The warning of this period.
     pub fn warning(&self) -> Option<Fault> {
         self.warning
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Notes periods with a damaged reply until the finger faults. Returns the fault and the number of periods.
+    fn damaged_until_the_fault(supervision: &mut Supervision) -> (Fault, u64) {
+        (1..1000)
+            .find_map(|period| {
+                let frames = supervision.damaged_frames + 1;
+                supervision.note_period(false, 0, frames).map(|fault| (fault, period))
+            })
+            .expect("the finger faults")
+    }
+
+    #[test]
+    fn a_recovered_finger_bears_as_many_damaged_replies_as_a_new_one() {
+        let mut supervision = Supervision::new(200.0, 18, 12);
+        let (fault, periods) = damaged_until_the_fault(&mut supervision);
+        assert!(fault.kind == FaultKind::DamagedReplies && periods > 10, "{fault} after {periods}");
+        supervision.recover();
+        assert_eq!(supervision.silence(18.0).kind, FaultKind::LostReplies);
+        assert_eq!(damaged_until_the_fault(&mut supervision), (fault, periods));
+        supervision.recover();
+        let frames = supervision.damaged_frames;
+        assert_eq!(supervision.note_period(true, 0, frames), None);
+        assert_eq!(supervision.warning(), None, "the line was noisy only before the recovery");
     }
 }

@@ -3,13 +3,11 @@
 
 use crate::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
 use crate::finger::{Adjustable, CalibrationRun, Fault, Order, Stage};
-use crate::hand::calibration_file::store_findings;
 use crate::hand::opening::admission;
 use crate::hand::{Found, Hand, HandError};
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredFinger};
 use crate::model::{Section, UnusableConfiguration};
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
@@ -182,7 +180,7 @@ impl Calibrating {
         *configuration = changed;
         drop(configuration);
         // The results are in force even if the finger faults before it has restarted.
-        hand.note(to_store);
+        hand.unstored.add(to_store);
         Ok(CalibrationState::InProgress(Progress { step: Step::TakingUpSlack, part: 1.0 }))
     }
 }
@@ -244,54 +242,6 @@ impl Hand {
     /// The configuration of the hand, with all results of calibrations since open.
     pub fn configuration(&self) -> Configuration {
         self.configuration.read().clone()
-    }
-
-    /// Uses `store_findings` to write calibration results of finger 1, 2 or 3 into the configuration file with which
-    /// the hand was opened. It writes the results that no earlier call has written. Returns false if there is no such
-    /// file, or nothing to write.
-    ///
-    /// # Errors
-    /// Returns an error if there is no such finger. Returns [`HandError::NotStored`] with the reason if the file cannot
-    /// be written. Then the results stay in force until the hand is closed, and a later call does not store them.
-    pub fn store_calibration(&self, finger: i32) -> Result<bool, HandError> {
-        let finger = FingerNumber::try_from(finger)?;
-        self.dispatcher.member(finger)?;
-        self.to_store(finger).map_or(Ok(false), |calibration| calibration.store().map(|()| true))
-    }
-
-    /// Takes the results that [`Hand::store_calibration`] would write, and returns them with the file. The caller
-    /// writes them. It need not keep the hand locked for this.
-    pub(crate) fn to_store(&self, finger: FingerNumber) -> Option<ToStore> {
-        let mut all = self.found.lock();
-        let place = all.iter().position(|found| found.finger() == finger)?;
-        let found = all.swap_remove(place);
-        Some(ToStore { file: self.file.clone()?, found })
-    }
-
-    /// Keeps results for [`Hand::store_calibration`], if there are any.
-    fn note(&self, found: Found) {
-        if found.values().is_empty() {
-            return;
-        }
-        let mut all = self.found.lock();
-        match all.iter_mut().find(|before| before.finger() == found.finger()) {
-            Some(before) => before.add(found),
-            None => all.push(found),
-        }
-    }
-}
-
-/// Results, and the file to store them in.
-pub(crate) struct ToStore {
-    file: PathBuf,
-    found: Found,
-}
-
-impl ToStore {
-    pub(crate) fn store(&self) -> Result<(), HandError> {
-        let finger = self.found.finger();
-        let not_stored = |source| HandError::NotStored { finger, source };
-        store_findings(&self.file, std::slice::from_ref(&self.found)).map_err(not_stored)
     }
 }
 

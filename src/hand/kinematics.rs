@@ -111,7 +111,7 @@ fn finite(admission: &Admission, joints: [f64; 3]) -> Result<Vector3<f64>, HandE
 }
 
 /// Returns `rows[row][column]`.
-fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
+pub(super) fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
     matrix.transpose().into()
 }
 

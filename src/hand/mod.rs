@@ -42,6 +42,7 @@ mod simulated_hand;
 mod status;
 mod together;
 mod touch;
+mod unstored;
 mod waiting;
 
 pub use crate::finger::stop_all;

@@ -2,9 +2,9 @@
 
 use crate::finger::{Condition, Reaction, Reflex};
 use crate::hand::admission::Admission;
+use crate::hand::kinematics::rows;
 use crate::hand::{Hand, HandError, ReflexError, SetPointError};
 use crate::model::FingerNumber;
-use nalgebra::Matrix3;
 
 /// Largest time of a rule, s.
 const LONGEST: f64 = 3600.0;
@@ -124,10 +124,6 @@ fn reaction(admission: &Admission, reaction: Reaction) -> Result<Reaction, HandE
             reaction
         }
     })
-}
-
-fn rows(kx: &Matrix3<f64>) -> [[f64; 3]; 3] {
-    std::array::from_fn(|row| std::array::from_fn(|column| kx[(row, column)]))
 }
 
 fn within(

@@ -9,10 +9,11 @@ use crate::hand::opening::{Connected, black_box_folder, check, check_goes_on, fr
 use crate::hand::reconnection::Recovery;
 use crate::hand::servo_threads::{PortServo, RealtimeState, start};
 use crate::hand::simulated_hand::SimulatedHand;
-use crate::hand::{Configured, Found, HandError, find_configuration};
+use crate::hand::unstored::Unstored;
+use crate::hand::{Configured, HandError, find_configuration};
 use crate::model::configuration::Configuration;
 use crate::model::{FingerNumber, Fingers};
-use crate::realtime::{self, Distribution, MonotonicClock, Mutex, RwLock, now};
+use crate::realtime::{self, Distribution, MonotonicClock, RwLock, now};
 use crate::simulated::SimulatedFinger;
 use nalgebra::Vector3;
 use std::path::PathBuf;
@@ -50,7 +51,7 @@ pub struct Hand {
     /// The configuration file, in which calibration results are stored.
     pub(super) file: Option<PathBuf>,
     /// Calibration results that are not stored yet.
-    pub(super) found: Mutex<Vec<Found>>,
+    pub(super) unstored: Unstored,
     pub(super) real_time: RealtimeState,
     /// Time in which every finger reaches its end state, ns.
     ending: u64,
@@ -124,7 +125,7 @@ impl Hand {
         let configuration = RwLock::new(configuration);
         let servos = Vec::new();
         let real_time = RealtimeState::default();
-        let (events, found, process) = (Arc::new(events), Mutex::default(), id());
+        let (events, unstored, process) = (Arc::new(events), Unstored::default(), id());
         let mut hand = Self {
             dispatcher,
             events,
@@ -134,7 +135,7 @@ impl Hand {
             opened,
             configuration,
             file,
-            found,
+            unstored,
             real_time,
             ending,
             process,

@@ -10,6 +10,10 @@ use crate::realtime::CycleStage;
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, Vector3};
 use std::collections::BTreeMap;
 
+/// Largest number of controllers whose mechanics are kept for a finger. A servo names a controller soon after it is
+/// announced, or never.
+const MOST_ADJUSTED: usize = 4096;
+
 /// Converts the cycles of a hand's fingers to samples.
 pub struct View {
     rate: f64,
@@ -62,7 +66,11 @@ impl View {
     /// which it was made.
     pub fn note_controller(&mut self, finger: FingerNumber, source: &ControllerSource) {
         let mechanics = Mechanics::new(&source.finger, self.rate);
-        self.fingers[finger.index()].adjusted.insert(source.number, mechanics);
+        let adjusted = &mut self.fingers[finger.index()].adjusted;
+        adjusted.insert(source.number, mechanics);
+        while adjusted.len() > MOST_ADJUSTED {
+            adjusted.pop_first();
+        }
     }
 
     /// Takes note of a controller, or converts a cycle to its sample. Returns None for every message except a cycle.
@@ -142,6 +150,23 @@ mod tests {
     use crate::control::{MotorCommand, SetPoint};
     use crate::finger::ControlInput;
     use crate::realtime::CycleTiming;
+
+    #[test]
+    fn a_hand_that_is_adjusted_all_the_time_does_not_fill_the_memory() {
+        let configuration = Configuration::default();
+        let (mut view, mut finger) = (View::new(&configuration), configuration.fingers[0].clone());
+        // Without moment arms there are no springs, which would take most of the time of this test.
+        finger.geometry.r = [[0.0; 4]; 3];
+        let gravity = configuration.gravity(FingerNumber::ONE);
+        let mut source = ControllerSource { number: 0, gravity, finger };
+        for number in 0..=MOST_ADJUSTED as u32 + 10 {
+            source.number = number;
+            view.note_controller(FingerNumber::ONE, &source);
+        }
+        let adjusted = &view.fingers[0].adjusted;
+        let (oldest, newest) = (adjusted.keys().next().copied(), adjusted.keys().next_back().copied());
+        assert_eq!((oldest, newest, adjusted.len()), (Some(11), Some(source.number), MOST_ADJUSTED));
+    }
 
     #[test]
     fn only_a_running_finger_has_a_contact() {

@@ -83,8 +83,9 @@ class Hand(_sun2xp.Hand):
             store: whether to store the zeros in the configuration file with which the hand was opened.
 
         Raises:
-            ConfigurationError: the zeros could not be stored. They are in force until the hand is closed. Or the finger
-                cannot be zeroed with its configuration, or cannot use it with the zeros. Then nothing has changed.
+            ConfigurationError: the zeros could not be stored. They are in force until the hand is closed, and
+                `store_calibration` can store them later. Or the finger cannot be zeroed with its configuration, or
+                cannot use it with the zeros. Then nothing has changed.
             Error: the calibration failed, and the previous one is in force. If the finger faulted after its zeros had
                 been found, the new zeros are in force.
         """

@@ -10,14 +10,12 @@ use crate::calibration::instruments::Instruments;
 use crate::calibration::joint_guide::JointGuide;
 use crate::calibration::obstacle::Obstacle;
 use crate::calibration::step::{Progress, Sample, Step, Stepped};
-use crate::calibration::stop_search::StopSearch;
+use crate::calibration::stop_search::{BEYOND, StopSearch};
 use crate::calibration::take_up::TakeUp;
 use crate::control::signals::Activity;
 use crate::control::spring::joint_hold::HOLDING_STIFFNESS;
 use std::ops::ControlFlow::{Break, Continue};
 
-/// A joint in search of its lower stop moves at most this far beyond its range, rad.
-const BEYOND: f64 = 0.17;
 /// A joint has returned when it is this close to its start, rad.
 const NEAR: f64 = 0.05;
 /// Torque limit of every joint that moves back and forth, N cm. The guide must hold the joints against the torques that

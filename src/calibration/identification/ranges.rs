@@ -8,14 +8,12 @@ use crate::calibration::instruments::Instruments;
 use crate::calibration::joint_guide::JointGuide;
 use crate::calibration::obstacle::Obstacle;
 use crate::calibration::step::Sample;
-use crate::calibration::stop_search::StopSearch;
+use crate::calibration::stop_search::{BEYOND, StopSearch};
 use nalgebra::{Vector3, Vector4};
 use std::f64::consts::PI;
 
 /// Duration of a reading, s.
 const READING: f64 = 0.2;
-/// A joint in search of a stop moves at most this far beyond its range, rad.
-const BEYOND: f64 = 0.17;
 /// Distance from the expected stop at which a joint slows down, rad. Farther away it moves faster by the factor
 /// [`HASTE`].
 const SLOW: f64 = 0.3;

@@ -7,7 +7,7 @@ use crate::calibration::instruments::Instruments;
 use crate::calibration::joint_guide::JointGuide;
 use crate::calibration::obstacle::Obstacle;
 use crate::calibration::step::{Sample, Step};
-use crate::calibration::stop_search::StopSearch;
+use crate::calibration::stop_search::{BEYOND, StopSearch};
 use nalgebra::Vector4;
 use std::f64::consts::PI;
 use std::ops::ControlFlow::Break;
@@ -15,8 +15,6 @@ use std::ops::ControlFlow::Break;
 /// Largest permitted difference between the measured and the configured range of a joint, rad. A larger one means an
 /// obstacle or a missing stop.
 const TOLERANCE: f64 = 0.035;
-/// A joint in search of a stop moves at most this far beyond its range, rad.
-const BEYOND: f64 = 0.17;
 /// A joint has returned when it is this close to the middle of its range, rad.
 const NEAR: f64 = 0.05;
 /// Time for the finger to come to rest before its counts are read, s.

@@ -18,6 +18,11 @@ impl LineQuality {
         self.share += (wrong - self.share) * self.gain;
         self.share
     }
+
+    /// Forgets all periods.
+    pub fn forget(&mut self) {
+        self.share = 0.0;
+    }
 }
 
 #[cfg(test)]

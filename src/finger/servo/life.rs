@@ -126,6 +126,7 @@ impl FingerServo {
         let off_ms = self.report.last.saturating_sub(self.faulted_at) as f64 * 1e-6 - self.limits.hold_ms;
         self.adjustable.controller.cool(&mut self.state, off_ms.max(0.0) * 1e-3);
         self.link.answered();
+        self.supervision.recover();
         self.calibration = None;
         // An order that was given before the fault and was not taken is discarded. New data is kept. The controller
         // starts with this data, and does not continue from the state of the previous controller.

@@ -3,8 +3,8 @@
 use super::Admission;
 use crate::control::TensionDistribution;
 use crate::hand::SetPointError;
+use crate::model::ContactError;
 use crate::model::configuration::OutOfRange;
-use crate::model::{ContactError, spring};
 use nalgebra::{Matrix3, Vector3};
 
 /// Torque that no tendon of any finger can make, N cm. The part of it that the tension bounds permit is the largest
@@ -19,25 +19,13 @@ impl Admission {
     /// the reason.
     pub fn k_theta(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
         let finger = self.finger;
-        let asked = Matrix3::from_fn(|row, column| rows[row][column]);
-        let (symmetric, (smallest, largest)) = spring(&asked).map_err(|error| match error {
+        let bound = self.stiffness_bound * self.links.0[2].powi(2);
+        let no_spring = |error: ContactError| match error {
             ContactError::NotFinite(value) => SetPointError::NotFinite { what: "K", finger, value },
             source => SetPointError::JointStiffness { finger, source },
-        })?;
-        let bound = self.stiffness_bound * self.links.0[2].powi(2);
-        // A stiffness at the bound that is sent as `float` may be rounded beyond the bound. It must be accepted.
-        let too_stiff = largest > bound * (1.0 + 8.0 * f64::from(f32::EPSILON));
-        if too_stiff && self.out_of_range == OutOfRange::Refuse {
-            return Err(SetPointError::TooStiffJoints { finger, largest, bound });
-        }
-        if !too_stiff && smallest >= 0.0 {
-            return Ok(symmetric);
-        }
-        // The nearest admissible spring has the same principal directions.
-        let mut eigen = symmetric.symmetric_eigen();
-        eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
-        let recomposed = eigen.recompose();
-        Ok((recomposed + recomposed.transpose()) * 0.5)
+        };
+        let too_stiff = |largest| SetPointError::TooStiffJoints { finger, largest, bound };
+        self.ranges().spring(rows, bound, no_spring, too_stiff)
     }
 
     /// Checks that the tendons can make a joint torque, N cm, within the bounds of their tensions, and returns it. The

@@ -6,6 +6,7 @@ use crate::hand::ConfigurationError;
 use crate::model::FingerNumber;
 use crate::model::configuration::{ConfiguredFinger, FINGERS};
 use std::path::Path;
+use toml_edit::Value;
 
 impl Configured {
     /// Reads and checks the configuration of a simulated hand with this name and this rate, Hz. `text` has further keys
@@ -15,7 +16,8 @@ impl Configured {
     /// Returns [`ConfigurationError::Invalid`] if there is no such name or rate, or if the text is wrong.
     pub fn simulated(name: &str, rate: f64, text: &str) -> Result<Self, ConfigurationError> {
         // Name and rate are checked as a text of their own, so that an error names their key.
-        parse_configuration(&format!("hand.rate = {rate:?}\n[finger.simulation]\nhand = {name:?}\n"))?;
+        let (named, at_rate) = (Value::from(name), Value::from(rate));
+        parse_configuration(&format!("hand.rate = {at_rate}\n[finger.simulation]\nhand = {named}\n"))?;
         let simulate = |_: FingerNumber, finger: &mut ConfiguredFinger| {
             finger.simulate();
             true
@@ -88,6 +90,18 @@ mod tests {
         for rate in ["7", "\"fast\""] {
             let hand = Configured::simulated("nominal", 500.0, &format!("[hand]\nrate = {rate}\n"));
             assert_eq!(hand.map(|hand| hand.configuration.hand.rate).ok(), Some(500.0), "{rate}");
+        }
+    }
+
+    #[test]
+    fn a_rate_or_a_name_that_no_hand_has_is_refused_with_its_key() {
+        for rate in [0.0, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let refused = Configured::simulated("nominal", rate, "").expect_err("no hand has this rate");
+            assert!(refused.to_string().contains("hand.rate: "), "{rate}: {refused}");
+        }
+        for name in ["broken", "a\"b'c", "a\nb", "\u{7f}", "\u{0}"] {
+            let refused = Configured::simulated(name, 1000.0, "").expect_err("no hand has this name");
+            assert!(refused.to_string().contains("simulation.hand: must be one of"), "{name:?}: {refused}");
         }
     }
 }

@@ -1,0 +1,63 @@
+"""What a calibration has found."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Optional, Tuple
+
+from ._state import Array
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Signs:
+    """The directions in which motors, encoders and gauges 1 to 4 count: 1 or -1."""
+
+    #: `motor.sign`.
+    motor: Tuple[int, int, int, int]
+    #: `encoder.sign`.
+    encoder: Tuple[int, int, int, int]
+    #: 1 if the gauge's count rises with the tension.
+    gauge: Tuple[int, int, int, int]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Zeros:
+    """The zeros of the sensors."""
+
+    #: `encoder.zero`, counts.
+    encoder: Tuple[int, int, int, int]
+    #: `gauge.zero`, counts: shape (4,).
+    gauge: Array
+    #: Error of the joint angles before zeroing, rad: shape (3,).
+    joint_error: Array
+    #: Measured minus configured angle between the two stops of each joint, rad: shape (3,). None if the routine did not
+    #: move to the stops.
+    range_error: Optional[Array]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Identified:
+    """Friction and elasticity of a finger."""
+
+    #: `tendon.stiffness`, N/cm: shape (4,).
+    tendon_stiffness: Array
+    #: `tendon.stiffness_tolerance`, a fraction.
+    stiffness_tolerance: float
+    #: Part of the motors' travel that the identified elasticity does not explain: rms residual, cm.
+    travel_residual: float
+    #: `friction.motor_coulomb`, N cm of commanded torque: shape (4,).
+    motor_coulomb: Array
+    #: `friction.conduit`: shape (4,).
+    conduit: Array
+    #: `friction.pulley`: shape (4,).
+    pulley: Array
+    #: Factors for `gauge.newton_per_count`: shape (4,).
+    gauge_gain: Array
+    #: Ratio of each motor's true torque to its commanded torque: shape (4,).
+    motor_ratio: Array
+    #: `friction.joint_coulomb`, N cm: shape (3,).
+    joint_coulomb: Array
+    #: Viscous friction of the joints, N cm s/rad: shape (3,).
+    joint_viscous: Array
+    #: Measured moment arms `geometry.r`, cm: shape (3, 4). None if they agree with the configured ones.
+    moment_arms: Optional[Array]
