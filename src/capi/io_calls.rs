@@ -6,9 +6,8 @@ use crate::capi::io_structs::sun2xp_io;
 use crate::capi::io_table;
 use crate::capi::memory::non_null;
 use crate::capi::opened_hand::Source;
-use crate::capi::opening_calls::{not_utf_8, open};
+use crate::capi::opening_calls::open;
 use crate::capi::refusal::Wanted;
-use crate::hand::HandError;
 use std::ffi::{CStr, OsStr, c_char, c_int};
 use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
@@ -108,8 +107,7 @@ pub unsafe extern "C" fn sun2xp_open_io_text(
         open("sun2xp_open_io_text", hand, || {
             non_null(configuration, "configuration", Wanted::Text)?;
             let io = io_table::load(count, io)?;
-            let text = CStr::from_ptr(configuration).to_str().map_err(|_| HandError::from(not_utf_8()))?;
-            Ok(Source::Text(text.to_owned()).with_io(io))
+            Ok(Source::Text(CStr::from_ptr(configuration).to_bytes().to_vec()).with_io(io))
         })
     }
 }

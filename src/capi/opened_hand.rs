@@ -3,7 +3,7 @@
 use crate::board::HandIo;
 use crate::capi::refusal::Refusal;
 use crate::capi::remote_hand::{RemoteHand, RemoteOpener, RemoteSource, over_the_network};
-use crate::hand::{Configured, FingersWithIo, Hand, HandError};
+use crate::hand::{ConfigurationError, Configured, FingersWithIo, Hand, HandError};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -18,7 +18,8 @@ pub(super) enum Source {
     /// The file that OpenHand finds, or none.
     Found,
     File(PathBuf),
-    Text(String),
+    /// A text that may not be UTF-8. It is checked when it is read, because the calls promise to check it after EMFILE.
+    Text(Vec<u8>),
 }
 
 /// A configuration, and the hardware that the program provides.
@@ -43,7 +44,7 @@ impl Source {
         let configured = match self {
             Self::Found => Configured::find_with_io(with_io),
             Self::File(path) => Configured::read_with_io(path, with_io),
-            Self::Text(text) => Configured::from_text_with_io(text, with_io),
+            Self::Text(text) => Configured::from_text_with_io(utf_8(text)?, with_io),
         };
         configured.map_err(HandError::from)
     }
@@ -52,10 +53,15 @@ impl Source {
     /// came neither from a text nor from a file.
     fn into_remote(self, found: &Configured) -> Option<RemoteSource> {
         match self {
-            Self::Text(text) => Some(RemoteSource::Text(text)),
+            Self::Text(text) => String::from_utf8(text).ok().map(RemoteSource::Text),
             Self::Found | Self::File(_) => found.file.clone().map(RemoteSource::File),
         }
     }
+}
+
+fn utf_8(text: &[u8]) -> Result<&str, ConfigurationError> {
+    let file = "configuration text".into();
+    str::from_utf8(text).map_err(|_| ConfigurationError::Invalid { file, line: None, reason: "is not UTF-8".into() })
 }
 
 /// Opens the hand that a configuration describes. With a table `[remote]` it is a hand on another machine, and

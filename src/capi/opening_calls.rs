@@ -8,7 +8,6 @@ use crate::capi::loaded_hand;
 use crate::capi::memory::non_null;
 use crate::capi::opened_hand::{Source, SourceWithIo};
 use crate::capi::refusal::{Refusal, Wanted};
-use crate::hand::{ConfigurationError, HandError};
 use crate::model::configuration::NamedHand;
 use std::ffi::{CStr, OsStr, c_char, c_int};
 use std::os::unix::ffi::OsStrExt;
@@ -88,8 +87,7 @@ pub unsafe extern "C" fn sun2xp_open_text(configuration: *const c_char, hand: *m
     unsafe {
         open("sun2xp_open_text", hand, || {
             non_null(configuration, "configuration", Wanted::Text)?;
-            let text = CStr::from_ptr(configuration).to_str().map_err(|_| HandError::from(not_utf_8()))?;
-            Ok(Source::Text(text.to_owned()))
+            Ok(Source::Text(CStr::from_ptr(configuration).to_bytes().to_vec()))
         })
     }
 }
@@ -122,7 +120,8 @@ pub unsafe extern "C" fn sun2xp_open_named(name: *const c_char, hand: *mut *mut 
             let name = CStr::from_ptr(name).to_bytes();
             let named = NamedHand::ALL.into_iter().find(|hand| hand.name().as_bytes() == name);
             let name = named.ok_or(Refusal::NoSuchName)?.name();
-            Ok(Source::Text(format!("[finger]\nport = \"simulated\"\nsimulation.hand = \"{name}\"\n")))
+            let text = format!("[finger]\nport = \"simulated\"\nsimulation.hand = \"{name}\"\n");
+            Ok(Source::Text(text.into_bytes()))
         })
     }
 }
@@ -155,10 +154,6 @@ pub extern "C" fn sun2xp_default_hand() -> *mut sun2xp_hand {
     uncancelled(|| default_handle().to_c())
 }
 
-pub(super) fn not_utf_8() -> ConfigurationError {
-    ConfigurationError::Invalid { file: "configuration text".into(), line: None, reason: "is not UTF-8".into() }
-}
-
 /// Opens a hand and writes its handle.
 ///
 /// # Safety
@@ -185,4 +180,32 @@ pub(super) unsafe fn open<S: Into<SourceWithIo>>(
         unsafe { out.write_unaligned(Handle::from_value(opened.load(Ordering::Relaxed)).to_c()) };
     }
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capi::error_numbers::{SUN2XP_ERROR_CONFIGURATION, SUN2XP_ERROR_TOO_MANY};
+    use crate::capi::io_calls::sun2xp_open_io_text;
+    use crate::capi::process::errno;
+    use std::ptr::{null, null_mut};
+
+    /// The results of the calls that open the hand of a text, and their errnos.
+    fn opened(text: &CStr) -> [(c_int, c_int); 2] {
+        let mut hand = null_mut();
+        // SAFETY: the text is a C string, there is no hardware, and there is room for the handle.
+        let plain = unsafe { (sun2xp_open_text(text.as_ptr(), &raw mut hand), errno()) };
+        // SAFETY: as above.
+        let with_io = unsafe { (sun2xp_open_io_text(text.as_ptr(), 0, null(), &raw mut hand), errno()) };
+        assert!(hand.is_null());
+        [plain, with_io]
+    }
+
+    #[test]
+    fn a_text_that_is_not_utf_8_is_refused_after_too_many_hands() {
+        let places = hand_table::occupy();
+        assert_eq!(opened(c"# \xff\n"), [(-SUN2XP_ERROR_TOO_MANY, libc::EMFILE); 2]);
+        drop(places);
+        assert_eq!(opened(c"# \xff\n"), [(-SUN2XP_ERROR_CONFIGURATION, libc::EINVAL); 2]);
+    }
 }
