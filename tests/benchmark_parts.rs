@@ -1,8 +1,12 @@
-//! Tests how `cargo bench --bench realtime` counts measurements that other work on the machine disturbs.
+//! Tests parts of the benchmarks: how `realtime` counts measurements that other work on the machine disturbs, and how
+//! `handwritten` compares torques.
 
+#[path = "../benches/handwritten/agreement.rs"]
+mod agreement;
 #[path = "../benches/realtime/attempts.rs"]
 mod attempts;
 
+use agreement::{apart, larger};
 use attempts::{Attempts, MOST_DISTURBED};
 
 /// Makes measurements that always fail.
@@ -29,4 +33,20 @@ fn measurements_that_are_skipped_are_counted_and_a_missing_result_is_an_error() 
     assert_eq!((attempts.disturbed, attempts.skipped), (MOST_DISTURBED, 2));
     let error = attempts.check([("some", 1), ("failing", 0), ("others", 0)]).expect_err("nothing was measured");
     assert!(error.contains("failing, others: 10 measurements were disturbed, and 2 were skipped"), "{error}");
+}
+
+#[test]
+fn a_torque_that_is_nan_does_not_agree() {
+    let theirs = [1.0, -2.0, 0.5, 0.0];
+    assert_eq!(apart(&theirs, &theirs), 0.0);
+    assert_eq!(apart(&[1.0, -2.0, 0.5, 0.5], &theirs), 0.25);
+    assert_eq!(apart(&[0.0; 4], &[0.0; 4]), 0.0);
+    for motor in 0..4 {
+        let mut wrong = theirs;
+        wrong[motor] = f64::NAN;
+        assert!(apart(&wrong, &theirs).is_nan() && apart(&theirs, &wrong).is_nan(), "motor {motor}");
+    }
+    // One cycle of the run suffices, whatever follows.
+    assert!(larger(larger(0.0, f64::NAN), 1e-12).is_nan() && larger(1e-12, f64::NAN).is_nan());
+    assert_eq!((larger(1.0, 2.0), larger(2.0, 1.0)), (2.0, 2.0));
 }
