@@ -117,6 +117,14 @@ fn an_adjustment_takes_effect_completely_or_not_at_all() {
     ];
     let errnos = refused.map(|result| result.expect_err("refused").errno());
     assert_eq!(errnos, [libc::EINVAL, libc::EINVAL, libc::EBUSY, libc::EINVAL, libc::ERANGE]);
+    // An unusable value is refused with its line, or with its key alone if it is not one of the keys to adjust.
+    for (keys, place) in [
+        ("tendon.minimum = 4\ntendon.maximum = 0.01", "finger 1, line 2 of the keys to adjust: tendon.maximum: "),
+        ("tendon.minimum = 900", "finger.1.tendon.maximum: "),
+    ] {
+        let refused = hand.adjust(1, keys).expect_err("refused").to_string();
+        assert!(refused.starts_with(place), "{refused}");
+    }
     taken_in(&hand, 1);
     assert_eq!(hand.report(1).expect("report").set_point, before.set_point);
     assert!(hand.report(1).expect("report").cycle.desired_tensions.min() > 9.0 - 1e-9);
