@@ -1,10 +1,12 @@
-//! Tests parts of the benchmarks: how `realtime` counts measurements that other work on the machine disturbs, and how
-//! `handwritten` compares torques.
+//! Tests parts of the benchmarks: how `realtime` counts measurements that other work on the machine disturbs, which
+//! cores it watches, and how `handwritten` compares torques.
 
 #[path = "../benches/handwritten/agreement.rs"]
 mod agreement;
 #[path = "../benches/realtime/attempts.rs"]
 mod attempts;
+#[path = "../benches/realtime/cores.rs"]
+mod cores;
 
 use agreement::{apart, larger};
 use attempts::{Attempts, MOST_DISTURBED};
@@ -49,4 +51,21 @@ fn a_torque_that_is_nan_does_not_agree() {
     // One cycle of the run suffices, whatever follows.
     assert!(larger(larger(0.0, f64::NAN), 1e-12).is_nan() && larger(1e-12, f64::NAN).is_nan());
     assert_eq!((larger(1.0, 2.0), larger(2.0, 1.0)), (2.0, 2.0));
+}
+
+#[test]
+fn only_the_permitted_cores_are_watched() {
+    let last = *cores::permitted().expect("known").last().expect("this thread runs on a core");
+    // The thread ends with this test, so no other test gets its affinity.
+    let narrowed = std::thread::spawn(move || {
+        // SAFETY: a cpu_set_t is plain bits, and all zeros is the empty set. `last` is within it.
+        let refused = unsafe {
+            let mut only: libc::cpu_set_t = std::mem::zeroed();
+            libc::CPU_SET(last, &mut only);
+            libc::sched_setaffinity(0, size_of::<libc::cpu_set_t>(), &only)
+        };
+        assert_eq!(refused, 0);
+        cores::permitted().expect("known")
+    });
+    assert_eq!(narrowed.join().expect("no panic"), [last]);
 }
