@@ -1,6 +1,7 @@
 //! The checks of joint stiffnesses and joint torques.
 
 use super::Admission;
+use super::ranges::within_bound;
 use crate::control::TensionDistribution;
 use crate::hand::SetPointError;
 use crate::model::configuration::OutOfRange;
@@ -25,19 +26,8 @@ impl Admission {
             source => SetPointError::JointStiffness { finger, source },
         })?;
         let bound = self.stiffness_bound * self.links.0[2].powi(2);
-        // A stiffness at the bound that is sent as `float` may be rounded beyond the bound. It must be accepted.
-        let too_stiff = largest > bound * (1.0 + 8.0 * f64::from(f32::EPSILON));
-        if too_stiff && self.out_of_range == OutOfRange::Refuse {
-            return Err(SetPointError::TooStiffJoints { finger, largest, bound });
-        }
-        if !too_stiff && smallest >= 0.0 {
-            return Ok(symmetric);
-        }
-        // The nearest admissible spring has the same principal directions.
-        let mut eigen = symmetric.symmetric_eigen();
-        eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
-        let recomposed = eigen.recompose();
-        Ok((recomposed + recomposed.transpose()) * 0.5)
+        let admitted = within_bound(symmetric, (smallest, largest), bound, self.out_of_range);
+        admitted.ok_or(SetPointError::TooStiffJoints { finger, largest, bound })
     }
 
     /// Checks that the tendons can make a joint torque, N cm, within the bounds of their tensions, and returns it. The
