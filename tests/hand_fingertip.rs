@@ -163,7 +163,11 @@ fn is_refused_damping(result: &Result<(), HandError>) -> bool {
 fn damping_is_checked_against_the_stiffest_kx_of_a_path() {
     let hand = open(Configuration::default());
     // A path over 40 s must begin at rest. The reference comes to rest after the finger has become a spring.
-    until("the reference rests", || hand.report(1).expect("report").losses.cycles > 1500);
+    taken_in(&hand, 1);
+    until("the reference rests", || {
+        let motion = hand.report(1).expect("report").reference.motion;
+        [motion.rates, motion.accelerations, motion.jerk].iter().all(|derivative| derivative.amax() < 1e-7)
+    });
     // A ratio of 1.5 is admitted with 1 N/cm, but not with 5 N/cm.
     send_softening_path(&hand, (5.0, 1.0), 40.0);
     let refused = hand.send_damping(1, 1.5);
