@@ -115,7 +115,8 @@ fn thread_time() -> u64 {
 /// ns.
 pub type Pause = (u64, u64);
 
-/// One thread for each core on which this process may run. Like the threads of cyclictest, it only wakes up, and records when it was late.
+/// One thread for each core on which this process may run. Like the threads of cyclictest, it only wakes up, and
+/// records when it was late.
 pub struct Watchers {
     ended: Arc<AtomicBool>,
     threads: Vec<JoinHandle<Vec<Pause>>>,

@@ -6,8 +6,8 @@ use crate::calibration::obstacle::Obstacle;
 use crate::model::LinkDynamics;
 use nalgebra::{Vector3, Vector4};
 
-/// A gauge is dead if it rises by less than this part of the usual rise. If the usual rise is less than this part of the
-/// expected one, most gauges are dead, and nothing is usual.
+/// A gauge is dead if it rises by less than this part of the usual rise. If the usual rise is less than this part of
+/// the expected one, most gauges are dead, and nothing is usual.
 const DEAD: f64 = 0.12;
 /// For each of two motors, take the response of the other motor's gauge minus the response of its own gauge, both
 /// divided by the largest response to this motor. The two gauges count as swapped if the sum of both differences

@@ -83,8 +83,8 @@ impl Ranges {
     }
 }
 
-/// Returns a symmetric stiffness with these eigenvalues, or the nearest one between zero and `bound`. Returns none if it
-/// is stiffer than `bound` and must be refused.
+/// Returns a symmetric stiffness with these eigenvalues, or the nearest one between zero and `bound`. Returns none if
+/// it is stiffer than `bound` and must be refused.
 pub(super) fn within_bound(
     symmetric: Matrix3<f64>,
     (smallest, largest): (f64, f64),
