@@ -3,8 +3,8 @@
 //! The torques are compared, and not the force at the tip. Near a singular pose, the estimate of the force along the
 //! finger goes to zero, whatever the motion was.
 
+use crate::cases::Case;
 use crate::finger::{Finger, RATE};
-use crate::hands::Hand;
 use crate::motion::Motion;
 use crate::parallel::{each, worst};
 use nalgebra::Vector3;
@@ -46,9 +46,9 @@ pub struct After {
 }
 
 /// Moves a finger at up to `speed`, rad/s, and pushes it shortly before or after the end of each motion.
-pub fn measure(hand: &Hand, contact: &ConfiguredContact, seeds: u64, speed: f64) -> Result<Vec<After>, Box<dyn Error>> {
+pub fn measure(case: &Case, contact: &ConfiguredContact, seeds: u64, speed: f64) -> Result<Vec<After>, Box<dyn Error>> {
     let seeds: Vec<u64> = (0..seeds).collect();
-    let runs = each(&seeds, |_, &seed| pushes(hand, contact, seed, speed).map_err(|error| error.to_string()));
+    let runs = each(&seeds, |_, &seed| pushes(case, contact, seed, speed).map_err(|error| error.to_string()));
     let mut all: Vec<After> = DELAYS.iter().map(|_| After::default()).collect();
     for run in runs {
         for (place, noticed, error) in run? {
@@ -63,10 +63,10 @@ pub fn measure(hand: &Hand, contact: &ConfiguredContact, seeds: u64, speed: f64)
 }
 
 /// Returns the pushes of a finger.
-fn pushes(hand: &Hand, contact: &ConfiguredContact, seed: u64, speed: f64) -> Result<Vec<Push>, Box<dyn Error>> {
-    let (finger, own) = hand.finger(contact, seed);
+fn pushes(case: &Case, contact: &ConfiguredContact, seed: u64, speed: f64) -> Result<Vec<Push>, Box<dyn Error>> {
+    let (finger, belief) = case.finger(contact, seed);
     let start = Vector3::from(finger.simulation.start_degrees.map(f64::to_radians));
-    let mut run = Finger::new(&finger, &own, hand.gravity)?;
+    let mut run = Finger::new(&finger, &belief, case.gravity)?;
     let mut motion = Motion::new(seed, finger.joint_limits(), start).without_rests();
     let mut random = Motion::new(seed + 1000, finger.joint_limits(), start);
     rest(&mut run, &motion, REST);

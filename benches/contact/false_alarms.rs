@@ -1,7 +1,7 @@
 //! False alarms in motion through the whole range of the joints.
 
+use crate::cases::Case;
 use crate::finger::{Finger, RATE};
-use crate::hands::Hand;
 use crate::motion::Motion;
 use nalgebra::Vector3;
 use std::error::Error;
@@ -21,10 +21,10 @@ pub struct Alarms {
 }
 
 /// Moves a finger for `seconds`. The finger touches nothing but its mechanical stops.
-pub fn count(hand: &Hand, contact: &ConfiguredContact, seconds: f64, seed: u64) -> Result<Alarms, Box<dyn Error>> {
-    let (finger, own) = hand.finger(contact, seed);
+pub fn count(case: &Case, contact: &ConfiguredContact, seconds: f64, seed: u64) -> Result<Alarms, Box<dyn Error>> {
+    let (finger, belief) = case.finger(contact, seed);
     let start = Vector3::from(finger.simulation.start_degrees.map(f64::to_radians));
-    let mut run = Finger::new(&finger, &own, hand.gravity)?;
+    let mut run = Finger::new(&finger, &belief, case.gravity)?;
     let mut motion = Motion::new(seed, finger.joint_limits(), start);
     let (mut count, mut touched, mut touching, mut first) = (0, 0, false, None);
     // A joint counts as stopped when it is at most half a degree before its mechanical stop.

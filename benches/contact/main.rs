@@ -9,9 +9,9 @@
 //!     cargo bench --bench contact -- --keys 'force = 0.2'   other values of [finger.contact]
 
 mod after_motion;
+mod cases;
 mod false_alarms;
 mod finger;
-mod hands;
 mod motion;
 mod noticed;
 #[allow(dead_code, reason = "the stiffness benchmark uses the other functions")]
@@ -19,8 +19,8 @@ mod noticed;
 mod parallel;
 
 use after_motion::{After, DELAYS, FORCE};
+use cases::{CASES, Case};
 use clap::Parser;
-use hands::{HANDS, Hand};
 use noticed::{FORCES, Pushes};
 use std::error::Error;
 use sun2xp::model::configuration::ConfiguredContact;
@@ -53,20 +53,20 @@ struct Arguments {
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::parse();
     let contact: ConfiguredContact = toml_edit::de::from_str(&arguments.keys)?;
-    let hands: Vec<&Hand> = HANDS.iter().filter(|hand| hand.name.contains(&arguments.hand)).collect();
+    let cases: Vec<&Case> = CASES.iter().filter(|case| case.name.contains(&arguments.hand)).collect();
     if arguments.after {
-        return after(&hands, &contact, arguments.seeds);
+        return after(&cases, &contact, arguments.seeds);
     }
     println!("| hand | simulated time, min | false alarms | first, s | part of the time |\n|---|---|---|---|---|");
-    let alarms = parallel::each(&hands, |_, hand| {
-        let seconds = hand.seconds.min(arguments.minutes * 60.0);
-        false_alarms::count(hand, &contact, seconds, 1).map_err(|error| error.to_string())
+    let alarms = parallel::each(&cases, |_, case| {
+        let seconds = case.seconds.min(arguments.minutes * 60.0);
+        false_alarms::count(case, &contact, seconds, 1).map_err(|error| error.to_string())
     });
-    for (hand, alarms) in hands.iter().zip(alarms) {
+    for (case, alarms) in cases.iter().zip(alarms) {
         let alarms = alarms?;
-        let minutes = hand.seconds.min(arguments.minutes * 60.0) / 60.0;
+        let minutes = case.seconds.min(arguments.minutes * 60.0) / 60.0;
         let first = alarms.first.map_or("-".into(), |first| format!("{first:.1}"));
-        println!("| {} | {minutes:.0} | {} | {first} | {:.4} |", hand.name, alarms.count, alarms.share);
+        println!("| {} | {minutes:.0} | {} | {first} | {:.4} |", case.name, alarms.count, alarms.share);
     }
     if arguments.alarms {
         return Ok(());
@@ -75,27 +75,27 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("\n{title}:\n");
         println!("| hand | force, N | detected | time, ms: median, worst | lost after, ms: median, worst | error, N |");
         println!("|---|---|---|---|---|---|");
-        for hand in &hands {
-            for (force, pushes) in FORCES.into_iter().zip(measure(hand, &contact, arguments.seeds)?) {
-                row(hand.name, force, &pushes);
+        for case in &cases {
+            for (force, pushes) in FORCES.into_iter().zip(measure(case, &contact, arguments.seeds)?) {
+                row(case.name, force, &pushes);
             }
         }
     }
-    after(&hands, &contact, arguments.seeds)
+    after(&cases, &contact, arguments.seeds)
 }
 
 /// Prints the table of contacts that follow a motion.
-fn after(hands: &[&Hand], contact: &ConfiguredContact, seeds: u64) -> Result<(), Box<dyn Error>> {
+fn after(cases: &[&Case], contact: &ConfiguredContact, seeds: u64) -> Result<(), Box<dyn Error>> {
     println!("\nA force of {FORCE} N after a motion at up to 1 or 3 rad/s, or after a jump of the set point:\n");
     println!(
         "| hand | fastest joint rate, rad/s | force begins after the motion, s | detected | error, N cm: mean, worst |"
     );
     println!("|---|---|---|---|---|");
-    for hand in hands {
+    for case in cases {
         for speed in false_alarms::SPEEDS {
-            for (delay, after) in DELAYS.into_iter().zip(after_motion::measure(hand, contact, seeds, speed)?) {
+            for (delay, after) in DELAYS.into_iter().zip(after_motion::measure(case, contact, seeds, speed)?) {
                 let After { pushes, noticed, sum, worst } = after;
-                let (name, mean) = (hand.name, sum / pushes as f64);
+                let (name, mean) = (case.name, sum / pushes as f64);
                 println!("| {name} | {speed} | {delay} | {noticed} of {pushes} | {mean:.2}, {worst:.2} |");
             }
         }
@@ -103,7 +103,7 @@ fn after(hands: &[&Hand], contact: &ConfiguredContact, seeds: u64) -> Result<(),
     Ok(())
 }
 
-type Measure = fn(&Hand, &ConfiguredContact, u64) -> Result<Vec<Pushes>, Box<dyn Error>>;
+type Measure = fn(&Case, &ConfiguredContact, u64) -> Result<Vec<Pushes>, Box<dyn Error>>;
 
 fn row(hand: &str, force: f64, pushes: &Pushes) {
     let times = |sorted: &[f64]| match sorted {

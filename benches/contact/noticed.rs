@@ -1,7 +1,7 @@
 //! Measures which forces are detected, at rest and in motion, and the time until they are detected.
 
+use crate::cases::Case;
 use crate::finger::{Finger, RATE};
-use crate::hands::Hand;
 use crate::motion::Motion;
 use crate::parallel::{each, worst};
 use nalgebra::Vector3;
@@ -61,13 +61,13 @@ struct Push {
 
 /// Pushes a resting finger with every force, in every pose, from six directions, once for each of `seeds` seeds of the
 /// simulation.
-pub fn at_rest(hand: &Hand, contact: &ConfiguredContact, seeds: u64) -> Result<Vec<Pushes>, Box<dyn Error>> {
+pub fn at_rest(case: &Case, contact: &ConfiguredContact, seeds: u64) -> Result<Vec<Pushes>, Box<dyn Error>> {
     let cases: Vec<_> = (0..seeds).flat_map(|seed| POSES.map(|pose| (seed, pose))).collect();
     let runs = each(&cases, |_, &(seed, pose)| {
-        let (mut finger, own) = hand.finger(contact, seed);
+        let (mut finger, belief) = case.finger(contact, seed);
         finger.simulation.start_degrees = pose;
         let pose = Vector3::from(pose.map(f64::to_radians));
-        let mut run = Finger::new(&finger, &own, hand.gravity).map_err(|error| error.to_string())?;
+        let mut run = Finger::new(&finger, &belief, case.gravity).map_err(|error| error.to_string())?;
         wait(&mut run, SETTLING, || pose);
         let mut pushes = Vec::new();
         for (level, force) in FORCES.into_iter().enumerate() {
@@ -83,12 +83,12 @@ pub fn at_rest(hand: &Hand, contact: &ConfiguredContact, seeds: u64) -> Result<V
 }
 
 /// Pushes a moving finger with every force in random directions, six times for each of `seeds` seeds.
-pub fn in_motion(hand: &Hand, contact: &ConfiguredContact, seeds: u64) -> Result<Vec<Pushes>, Box<dyn Error>> {
+pub fn in_motion(case: &Case, contact: &ConfiguredContact, seeds: u64) -> Result<Vec<Pushes>, Box<dyn Error>> {
     let seeds: Vec<u64> = (0..seeds).collect();
     let runs = each(&seeds, |_, &seed| {
-        let (finger, own) = hand.finger(contact, seed);
+        let (finger, belief) = case.finger(contact, seed);
         let start = Vector3::from(finger.simulation.start_degrees.map(f64::to_radians));
-        let mut run = Finger::new(&finger, &own, hand.gravity).map_err(|error| error.to_string())?;
+        let mut run = Finger::new(&finger, &belief, case.gravity).map_err(|error| error.to_string())?;
         let mut motion = Motion::new(seed, finger.joint_limits(), start).without_rests();
         let mut directions = Motion::new(seed + 1000, finger.joint_limits(), start);
         wait(&mut run, SETTLING, || motion.set_point(SPEED, 1.0 / RATE));

@@ -7,11 +7,13 @@
 //! the counts and ends with the motor torques and the report. Neither step computes statistics. The library's step also
 //! estimates the contact force, and the handwritten step does not.
 
+mod agreement;
 mod by_hand;
 mod parameters;
 #[path = "../recorded_run/mod.rs"]
 mod recorded_run;
 
+use agreement::{apart, larger};
 use by_hand::{ByHand, PlainFeedback, PlainReport, PlainSetPoint, PlainState, Step};
 use parameters::{Gains, Parameters};
 use recorded_run::{CYCLES, CYCLES_A_SET_POINT, RATE, Recording, lost};
@@ -88,10 +90,7 @@ impl<'a> Plain<'a> {
     fn check(&self, recording: &Recording) -> Result<(), String> {
         let mut worst: f64 = 0.0;
         self.run(lost, |cycle, torques| {
-            let theirs = &recording.torques[cycle];
-            let largest = theirs.amax();
-            let apart = (0..4).map(|motor| (torques[motor] - theirs[motor]).abs()).fold(0.0, f64::max);
-            worst = worst.max(apart / largest);
+            worst = larger(worst, apart(torques, &recording.torques[cycle].into()));
         });
         if worst.is_nan() || worst > 1e-9 {
             return Err(format!("the torques differ by {worst:e} of the largest one: one of the two steps is wrong"));

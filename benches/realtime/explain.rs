@@ -1,6 +1,7 @@
 //! Classifies late cycles by their causes. A clock records the times at which the servo calls it, and watch threads
 //! record when their core paused.
 
+use crate::cores::permitted;
 use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -115,7 +116,8 @@ fn thread_time() -> u64 {
 /// ns.
 pub type Pause = (u64, u64);
 
-/// One thread for each core. Like the threads of cyclictest, it only wakes up, and records when it was late.
+/// One thread for each core on which this process may run. Like the threads of cyclictest, it only wakes up, and
+/// records when it was late.
 pub struct Watchers {
     ended: Arc<AtomicBool>,
     threads: Vec<JoinHandle<Vec<Pause>>>,
@@ -131,12 +133,11 @@ const PAUSE: u64 = 50_000;
 impl Watchers {
     pub fn start(priority: u8) -> std::io::Result<Self> {
         let ended = Arc::new(AtomicBool::new(false));
-        let cores = std::thread::available_parallelism()?.get();
         let watch = |core| {
             let ended = ended.clone();
             spawn("watcher", Priority { fifo: priority, core: Some(core) }, move |_| watch(&ended))
         };
-        let threads = (0..cores).map(watch).collect::<Result<_, _>>()?;
+        let threads = permitted()?.into_iter().map(watch).collect::<Result<_, _>>()?;
         Ok(Self { ended, threads })
     }
 

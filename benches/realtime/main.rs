@@ -13,6 +13,7 @@
 //! compares two cases measures them alternately. Without a name, everything except the long run is measured.
 
 mod attempts;
+mod cores;
 mod cyclictest;
 mod events;
 mod explain;

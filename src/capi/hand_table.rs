@@ -83,6 +83,12 @@ fn free_place(table: &[Place]) -> Option<(usize, MutexGuard<'_, ()>)> {
     })
 }
 
+/// Occupies all places for the hands of sun2xp_open while the result exists.
+#[cfg(test)]
+pub(super) fn occupy() -> Vec<MutexGuard<'static, ()>> {
+    TABLE[DEFAULT + 1..].iter().map(|place| place.lifecycle.lock()).collect()
+}
+
 /// Opens a hand at a free place. The caller has locked its lifecycle.
 fn open_at(place: usize, from: SourceWithIo, open_remote: RemoteOpener) -> Result<Handle, Refusal> {
     process::watch(close_at_exit);

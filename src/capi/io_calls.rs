@@ -102,7 +102,7 @@ pub unsafe extern "C" fn sun2xp_open_io_text(
         open("sun2xp_open_io_text", hand, || {
             non_null(configuration, "configuration", Wanted::Text)?;
             let io = io_table::load(count, io)?;
-            Ok(Source::in_memory(configuration)?.with_io(io))
+            Ok(Source::in_memory(configuration).with_io(io))
         })
     }
 }

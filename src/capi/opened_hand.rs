@@ -20,7 +20,8 @@ pub(super) enum Source {
     /// The file that OpenHand finds, or none.
     Found,
     File(PathBuf),
-    Text(String),
+    /// A text that may not be UTF-8. It is checked when it is read, because the calls promise to check it after EMFILE.
+    Text(Vec<u8>),
 }
 
 /// A configuration, and the hardware that the program provides.
@@ -50,17 +51,13 @@ impl Source {
         Self::File(PathBuf::from(OsStr::from_bytes(path.to_bytes())))
     }
 
-    /// A configuration in the memory of the program.
+    /// A configuration in the memory of the program. The text may not be UTF-8.
     ///
     /// # Safety
     /// `configuration` points to a text that ends with 0.
-    pub unsafe fn in_memory(configuration: *const c_char) -> Result<Self, Refusal> {
+    pub unsafe fn in_memory(configuration: *const c_char) -> Self {
         // SAFETY: by the contract of this function.
-        let text = unsafe { CStr::from_ptr(configuration) }.to_str().map_err(|_| {
-            let (file, reason) = ("configuration text".into(), "is not UTF-8".into());
-            HandError::from(ConfigurationError::Invalid { file, line: None, reason })
-        })?;
-        Ok(Self::Text(text.to_owned()))
+        Self::Text(unsafe { CStr::from_ptr(configuration) }.to_bytes().to_vec())
     }
 
     pub fn with_io(self, io: HandIo) -> SourceWithIo {
@@ -71,7 +68,7 @@ impl Source {
         let configured = match self {
             Self::Found => Configured::find_with_io(with_io),
             Self::File(path) => Configured::read_with_io(path, with_io),
-            Self::Text(text) => Configured::from_text_with_io(text, with_io),
+            Self::Text(text) => Configured::from_text_with_io(utf_8(text)?, with_io),
         };
         configured.map_err(HandError::from)
     }
@@ -80,10 +77,15 @@ impl Source {
     /// came neither from a text nor from a file.
     fn into_remote(self, found: &Configured) -> Option<RemoteSource> {
         match self {
-            Self::Text(text) => Some(RemoteSource::Text(text)),
+            Self::Text(text) => String::from_utf8(text).ok().map(RemoteSource::Text),
             Self::Found | Self::File(_) => found.file.clone().map(RemoteSource::File),
         }
     }
+}
+
+fn utf_8(text: &[u8]) -> Result<&str, ConfigurationError> {
+    let file = "configuration text".into();
+    str::from_utf8(text).map_err(|_| ConfigurationError::Invalid { file, line: None, reason: "is not UTF-8".into() })
 }
 
 /// Opens the hand that a configuration describes. With a table `[remote]` it is a hand on another machine, and

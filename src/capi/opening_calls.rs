@@ -78,7 +78,7 @@ pub unsafe extern "C" fn sun2xp_open_text(configuration: *const c_char, hand: *m
     unsafe {
         open("sun2xp_open_text", hand, || {
             non_null(configuration, "configuration", Wanted::Text)?;
-            Source::in_memory(configuration)
+            Ok(Source::in_memory(configuration))
         })
     }
 }
@@ -111,7 +111,8 @@ pub unsafe extern "C" fn sun2xp_open_named(name: *const c_char, hand: *mut *mut 
             let name = CStr::from_ptr(name).to_bytes();
             let named = NamedHand::ALL.into_iter().find(|hand| hand.name().as_bytes() == name);
             let name = named.ok_or(Refusal::NoSuchName)?.name();
-            Ok(Source::Text(format!("[finger]\nport = \"simulated\"\nsimulation.hand = \"{name}\"\n")))
+            let text = format!("[finger]\nport = \"simulated\"\nsimulation.hand = \"{name}\"\n");
+            Ok(Source::Text(text.into_bytes()))
         })
     }
 }
@@ -170,4 +171,32 @@ pub(super) unsafe fn open<S: Into<SourceWithIo>>(
         unsafe { out.write_unaligned(Handle::from_value(opened.load(Ordering::Relaxed)).to_c()) };
     }
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capi::error_numbers::{SUN2XP_ERROR_CONFIGURATION, SUN2XP_ERROR_TOO_MANY};
+    use crate::capi::io_calls::sun2xp_open_io_text;
+    use crate::capi::process::errno;
+    use std::ptr::{null, null_mut};
+
+    /// The results of the calls that open the hand of a text, and their errnos.
+    fn opened(text: &CStr) -> [(c_int, c_int); 2] {
+        let mut hand = null_mut();
+        // SAFETY: the text is a C string, there is no hardware, and there is room for the handle.
+        let plain = unsafe { (sun2xp_open_text(text.as_ptr(), &raw mut hand), errno()) };
+        // SAFETY: as above.
+        let with_io = unsafe { (sun2xp_open_io_text(text.as_ptr(), 0, null(), &raw mut hand), errno()) };
+        assert!(hand.is_null());
+        [plain, with_io]
+    }
+
+    #[test]
+    fn a_text_that_is_not_utf_8_is_refused_after_too_many_hands() {
+        let places = hand_table::occupy();
+        assert_eq!(opened(c"# \xff\n"), [(-SUN2XP_ERROR_TOO_MANY, libc::EMFILE); 2]);
+        drop(places);
+        assert_eq!(opened(c"# \xff\n"), [(-SUN2XP_ERROR_CONFIGURATION, libc::EINVAL); 2]);
+    }
 }

@@ -45,7 +45,7 @@ pub struct sun2xp_touch {
 /// each period in which the line has time for it. A faulted finger keeps its last readings. They become
 /// invalid when the finger recovers, if the board may have been reset: after SUN2XP_FAULT_BOARD_RESET,
 /// SUN2XP_FAULT_LOST_REPLIES, SUN2XP_FAULT_DAMAGED_REPLIES, SUN2XP_FAULT_PORT_VANISHED and
-/// SUN2XP_FAULT_PORT_FAILED.
+/// SUN2XP_FAULT_PORT_FAILED, and after any other fault if the board was reset before the recovery.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -34,6 +34,9 @@ pub struct RestoredBoard {
     pub configured: Configured,
     /// The numbers of requests to stop that were made before the recovery began.
     pub stops: StopCounts,
+    /// Number of restarts of the board that recoveries have found since open. Only boards that lose something at a
+    /// restart are examined: their zeros, or the readings of tactile elements.
+    pub restarts: u32,
 }
 
 /// One finger of a link that the servo has kept. Its board has completed a new handshake over the relay.

@@ -8,6 +8,7 @@ use crate::files::replace_file;
 use crate::finger::{ControllerSource, CycleRecord};
 use crate::model::configuration::ConfiguredHand;
 use crate::model::snapshot;
+use crate::realtime::clock_offset;
 use serde::{Deserialize, Serialize};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -25,6 +26,8 @@ pub struct Recording {
     pub origin: Origin,
     /// Version of the library that made the recording.
     pub library: String,
+    /// Time since 1970 minus the time of the monotonic clock, ns. It converts the times of the cycles.
+    pub clock_offset: i64,
     /// The cycles, without a gap.
     pub cycles: Vec<CycleRecord<String>>,
 }
@@ -54,6 +57,9 @@ struct Header {
     cycles: usize,
     /// Time of writing, s since 1970.
     written: u64,
+    /// See [`Recording::clock_offset`]. A file of an older library does not have it.
+    #[serde(default)]
+    clock_offset: Option<i64>,
     origin: Origin,
 }
 
@@ -122,7 +128,7 @@ fn written_by(library: &str) -> String {
 
 impl Recording {
     pub(super) fn new(origin: Origin, cycles: Vec<CycleRecord<String>>) -> Self {
-        Self { origin, library: env!("CARGO_PKG_VERSION").into(), cycles }
+        Self { origin, library: env!("CARGO_PKG_VERSION").into(), clock_offset: clock_offset(), cycles }
     }
 
     /// Writes the recording to a file. An existing file stays unchanged until the new one is complete.
@@ -147,6 +153,7 @@ impl Recording {
             library: self.library.clone(),
             cycles: self.cycles.len(),
             written: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()),
+            clock_offset: Some(self.clock_offset),
             origin: self.origin.clone(),
         };
         serde_json::to_writer(&mut output, &header)?;

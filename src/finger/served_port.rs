@@ -50,9 +50,7 @@ impl<T: Transport> ServedPort<T> {
         self.handover = Some(handover);
         self
     }
-}
 
-impl<T: Transport> ServedPort<T> {
     /// Returns the memory of the port that is not in this value itself.
     pub(super) fn memory(&self) -> LockedMemory {
         let mut memory = LockedMemory::default();

@@ -135,15 +135,15 @@ impl DampingAdmission {
     }
 
     /// Returns the spring with the narrowest range of damping.
-    pub fn stiffest(&self, springs: [Matrix6<f64>; 2]) -> Result<Matrix6<f64>, SetPointError> {
-        let mut stiffest = (f64::NEG_INFINITY, Matrix6::zeros());
+    pub fn with_narrowest_range(&self, springs: [Matrix6<f64>; 2]) -> Result<Matrix6<f64>, SetPointError> {
+        let mut narrowest = (f64::NEG_INFINITY, Matrix6::zeros());
         for spring in springs {
             let largest = self.largest(&spring)?;
-            if largest > stiffest.0 {
-                stiffest = (largest, spring);
+            if largest > narrowest.0 {
+                narrowest = (largest, spring);
             }
         }
-        Ok(stiffest.1)
+        Ok(narrowest.1)
     }
 
     /// Returns the largest eigenvalue of the stiffness of a set point, N/cm.

@@ -15,7 +15,7 @@ use crate::model::configuration::{Configuration, FINGERS};
 use crate::model::{FingerNumber, Fingers, ShownPath};
 use std::path::{Path, PathBuf};
 use text::Said;
-pub(super) use text::overlay;
+pub(super) use text::{line_of_key, overlay};
 pub use values::deserialize;
 pub(super) use values::to_document;
 pub(crate) use with_io::FingersWithIo;

@@ -216,7 +216,7 @@ fn shake_hands(
     let zero_valid = configured.status.has(Status::ZERO_VALID);
     warn_of_lost_zero(number, finger, zero_valid);
     let has_io = finger.has_io();
-    let board = KnownBoard { finger: number, address, terms, identity, zero_valid, has_io, restarted: false };
+    let board = KnownBoard { finger: number, address, terms, identity, zero_valid, has_io, restarts: 0 };
     let (admission, events) = (admission(configuration, number), servo.event_log().clone());
     let touch = servo.touch().clone();
     let (servo, reflexes) = servo.with_reflexes(number, bulletin);

@@ -1,6 +1,6 @@
 //! Repair of a port: reopens it, checks that its boards are the same as at open, and shakes hands with them again.
 
-use crate::board::protocol::{Configured, Identity, Status};
+use crate::board::protocol::{Capabilities, Configured, Identity, Status};
 use crate::board::{Connection, Link, LinkError, Port, Terms, Transport};
 use crate::finger::{Fault, FaultKind, LinkRepairEnd, RepairedLink, RestoredBoard, RestoredFinger, StopCounts};
 use crate::hand::{HandError, RecoveryError};
@@ -32,7 +32,7 @@ pub(super) struct PortRepair {
     given: Option<usize>,
 }
 
-/// A board's properties at open, and whether it has restarted since then.
+/// A board's properties at open, and how often it has restarted since then.
 pub(super) struct KnownBoard {
     /// Number of the finger, 1 to 3.
     pub finger: FingerNumber,
@@ -43,8 +43,8 @@ pub(super) struct KnownBoard {
     /// Whether the program itself drives the hardware of this finger (`FingerIo`). Such hardware keeps its terms until
     /// the hand is closed.
     pub has_io: bool,
-    /// Whether the board was found without terms after open. This means that it has restarted.
-    pub restarted: bool,
+    /// How often the board was found without terms after open. This means that it has restarted.
+    pub restarts: u32,
 }
 
 impl PortRepair {
@@ -128,11 +128,14 @@ impl PortRepair {
     pub fn give_back(&mut self, configured: [Option<Configured>; FINGERS], stops: &[StopCounts; FINGERS]) {
         if let Some(link) = self.link.take() {
             self.released = false;
-            let board =
-                |place: usize| configured[place].map(|configured| RestoredBoard { configured, stops: stops[place] });
+            let board = |place: usize| {
+                let restored = |configured| self.boards[place].restored(configured, stops[place]);
+                configured[place].map(restored)
+            };
+            let boards = [board(0), board(1), board(2)];
             // The ring has room for one link. The servo has released its link, so it has already taken the link of the
             // last push.
-            let _ = self.handover.repaired.push(RepairedLink { link, boards: [board(0), board(1), board(2)] });
+            let _ = self.handover.repaired.push(RepairedLink { link, boards });
         }
     }
 
@@ -148,7 +151,7 @@ impl PortRepair {
         let Some(board) = self.boards.get_mut(place) else { return Ok(false) };
         board.compare(&mut self.handover.relay)?;
         let configured = board.configure(&mut self.handover.relay)?;
-        let board = RestoredFinger { address: board.address, board: RestoredBoard { configured, stops } };
+        let board = RestoredFinger { address: board.address, board: board.restored(configured, stops) };
         Ok(self.give(place, board, repairs))
     }
 
@@ -216,25 +219,32 @@ impl KnownBoard {
         // A board whose port failed has not received a Stop. If cable and power are back before its watchdog trips, the
         // board still executes its last command. If another board of the port does not answer `compare_all`, this one
         // gets no Stop in this attempt, and its watchdog stops it.
-        if self.zero_valid || self.has_io {
+        let loses_touch = self.identity.capabilities.has(Capabilities::TACTILE);
+        if self.has_io || self.zero_valid && !loses_touch {
             // Hardware of the program does not confirm a Stop that fails. The terms below stop it again, and report the
             // error of the program.
             let _ = link.stop(self.address, 0);
         } else {
-            // A board that never reports valid zeros has lost its counts exactly if it has lost its terms. It gets new
-            // terms below, so `restarted` keeps the finding for the next attempt.
+            // A board that never reports valid zeros has lost its counts exactly if it has lost its terms. The same is
+            // true of the readings of a board with tactile elements. It gets new terms below, so `restarts` keeps the
+            // finding for the next attempt.
             let deadline = link.transport().now() + ANSWER;
             let status = link.confirmed_stop(self.address, deadline).map_err(|error| self.failed(error))?;
-            self.restarted |= !status.has(Status::CONFIGURED);
+            self.restarts += u32::from(!status.has(Status::CONFIGURED));
         }
         let deadline = link.transport().now() + ANSWER;
         let configured = link.agree(self.address, &self.terms, &self.identity, deadline);
         let configured = configured.map_err(|error| self.failed(error))?;
         let status = configured.status;
-        match (self.zero_valid || self.restarted) && !status.has(Status::ZERO_VALID) {
+        match (self.zero_valid || self.restarts > 0) && !status.has(Status::ZERO_VALID) {
             true => Err(self.faulted(Fault::of(FaultKind::ZeroLost, f64::from(status.0)))),
             false => Ok(configured),
         }
+    }
+
+    /// The board after its handshake, for its servo.
+    fn restored(&self, configured: Configured, stops: StopCounts) -> RestoredBoard {
+        RestoredBoard { configured, stops, restarts: self.restarts }
     }
 
     fn failed(&self, source: LinkError) -> HandError {

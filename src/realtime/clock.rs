@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use std::io;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// A clock that a thread can read and wait for. Times are ns since an arbitrary start.
 pub trait Clock {
@@ -57,4 +58,10 @@ pub fn now() -> u64 {
     // SAFETY: `time` is writable; CLOCK_MONOTONIC exists on every Linux, so the call cannot fail.
     unsafe { libc::clock_gettime(libc::CLOCK_MONOTONIC, &mut time) };
     time.tv_sec as u64 * 1_000_000_000 + time.tv_nsec as u64
+}
+
+/// The time since 1970 minus the time of CLOCK_MONOTONIC, ns.
+pub fn clock_offset() -> i64 {
+    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as i64);
+    since_1970.wrapping_sub(now() as i64)
 }

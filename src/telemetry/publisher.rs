@@ -11,7 +11,7 @@ use crate::board::descriptor::Descriptor;
 use crate::finger::{Outlet, Stage};
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, FINGERS};
-use crate::realtime::now;
+use crate::realtime::clock_offset;
 use std::io;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -69,7 +69,7 @@ impl Publisher {
             name,
             process: std::process::id(),
             library: env!("CARGO_PKG_VERSION").into(),
-            started: since_1970() / 1_000_000_000,
+            started: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()),
             clock_offset: 0,
             fingers,
             configuration,
@@ -97,7 +97,7 @@ impl Publisher {
             }
         }
         let new = !requests.is_empty();
-        self.description.clock_offset = (since_1970() as i64).wrapping_sub(now() as i64);
+        self.description.clock_offset = clock_offset();
         if let Some(ring) = &self.ring {
             for socket in requests {
                 let reply = Reply::Attached {
@@ -176,9 +176,4 @@ impl Publisher {
             self.readers.wake();
         }
     }
-}
-
-/// Returns the time since 1970, ns.
-fn since_1970() -> u64 {
-    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64)
 }

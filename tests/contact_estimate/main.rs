@@ -4,6 +4,9 @@
 #[allow(dead_code)]
 #[path = "../../benches/contact/after_motion.rs"]
 mod after_motion;
+#[allow(dead_code)]
+#[path = "../../benches/contact/cases.rs"]
+mod cases;
 #[path = "../core_lagrange/mod.rs"]
 mod core_lagrange;
 #[allow(dead_code)]
@@ -12,9 +15,6 @@ mod false_alarms;
 #[allow(dead_code)]
 #[path = "../../benches/contact/finger.rs"]
 mod finger;
-#[allow(dead_code)]
-#[path = "../../benches/contact/hands.rs"]
-mod hands;
 mod independent;
 #[allow(dead_code)]
 #[path = "../../benches/contact/motion.rs"]

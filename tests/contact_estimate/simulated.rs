@@ -1,16 +1,16 @@
 //! The estimate on simulated fingers: a short version of `benches/contact`, and what docs/contact.md says of it.
 
 use crate::after_motion;
+use crate::cases::{CASES, Case};
 use crate::false_alarms;
 use crate::finger::{Finger, RATE};
-use crate::hands::{HANDS, Hand};
 use crate::noticed::{self, FORCES, Pushes};
 use nalgebra::Vector3;
 use sun2xp::control::ContactEstimate;
 use sun2xp::model::configuration::{ConfiguredContact, Surface};
 
-fn hand(name: &str) -> &'static Hand {
-    HANDS.iter().find(|hand| hand.name == name).expect("a hand of the benchmark")
+fn case(name: &str) -> &'static Case {
+    CASES.iter().find(|case| case.name == name).expect("a case of the benchmark")
 }
 
 fn start() -> Vector3<f64> {
@@ -18,8 +18,8 @@ fn start() -> Vector3<f64> {
 }
 
 fn nominal() -> Finger {
-    let (finger, own) = hand("nominal").finger(&ConfiguredContact::default(), 1);
-    Finger::new(&finger, &own, Vector3::zeros()).expect("a finger")
+    let (finger, belief) = case("nominal").finger(&ConfiguredContact::default(), 1);
+    Finger::new(&finger, &belief, Vector3::zeros()).expect("a finger")
 }
 
 /// Runs the finger for `seconds`, and returns the estimate of every cycle.
@@ -35,7 +35,7 @@ fn with_force(pushes: &[Pushes], force: f64) -> &Pushes {
 
 #[test]
 fn a_finger_at_rest_notices_a_tenth_of_a_newton() {
-    let pushes = noticed::at_rest(hand("nominal"), &ConfiguredContact::default(), 1).expect("a finger");
+    let pushes = noticed::at_rest(case("nominal"), &ConfiguredContact::default(), 1).expect("a finger");
     let weak = with_force(&pushes, 0.1);
     assert_eq!(weak.noticed, weak.pushes);
     // A force at the threshold is noticed when the dither and the noise of the gauges add to it. The last push depends
@@ -50,7 +50,7 @@ fn a_finger_at_rest_notices_a_tenth_of_a_newton() {
 
 #[test]
 fn a_moving_finger_notices_three_tenths_of_a_newton() {
-    let pushes = noticed::in_motion(hand("nominal"), &ConfiguredContact::default(), 2).expect("a finger");
+    let pushes = noticed::in_motion(case("nominal"), &ConfiguredContact::default(), 2).expect("a finger");
     let weak = with_force(&pushes, 0.3);
     assert_eq!(weak.noticed, weak.pushes);
     assert!(*weak.times.last().expect("pushes") < 0.1, "{:?}", weak.times);
@@ -59,12 +59,12 @@ fn a_moving_finger_notices_three_tenths_of_a_newton() {
 #[test]
 fn motion_causes_no_false_alarm() {
     for name in ["nominal", "masses 30 % higher, gravity", "masses 30 % lower, gravity", "sheathed, calibrated"] {
-        let alarms = false_alarms::count(hand(name), &ConfiguredContact::default(), 30.0, 2).expect("a finger");
+        let alarms = false_alarms::count(case(name), &ConfiguredContact::default(), 30.0, 2).expect("a finger");
         assert!(alarms.count == 0 && alarms.share == 0.0, "{name}: {} at {:?}", alarms.count, alarms.first);
     }
     // The count is not zero if the thresholds are too low.
     let low = ConfiguredContact { force: 0.001, force_per_rate: 0.0, torque: [0.01; 3], ..Default::default() };
-    let alarms = false_alarms::count(hand("nominal"), &low, 30.0, 2).expect("a finger");
+    let alarms = false_alarms::count(case("nominal"), &low, 30.0, 2).expect("a finger");
     assert!(alarms.count > 10, "{}", alarms.count);
 }
 
@@ -74,7 +74,7 @@ fn motion_causes_no_false_alarm() {
 #[test]
 fn a_contact_right_after_a_motion_has_no_error_of_the_motion() {
     for (name, most) in [("nominal", 0.03), ("sheathed, calibrated", 0.15)] {
-        let after = after_motion::measure(hand(name), &ConfiguredContact::default(), 1, 1.0).expect("a finger");
+        let after = after_motion::measure(case(name), &ConfiguredContact::default(), 1, 1.0).expect("a finger");
         let (sum, pushes) = after.iter().fold((0.0, 0), |(sum, pushes), one| (sum + one.sum, pushes + one.pushes));
         let mean = sum / pushes as f64;
         println!("{name}: {mean:.3} N cm");

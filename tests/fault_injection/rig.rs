@@ -283,7 +283,7 @@ impl Bench {
         let (identity, configured) = link.shake_hands(1, &self.terms, deadline).expect("the board answers again");
         assert_eq!(identity, self.served.identity);
         let stops = StopCounts { calls: stop_calls(), ..StopCounts::default() };
-        let restored = RestoredBoard { configured, stops };
+        let restored = RestoredBoard { configured, stops, restarts: 0 };
         let repaired = RepairedLink { link, boards: [Some(restored), None, None] };
         assert!(self.served.repair_end.repaired.push(repaired).is_ok());
         self.come_under_tension();

@@ -246,13 +246,18 @@ impl Bench {
     /// Takes the link from the servo, shakes hands with the board and gives the link back to the servo. The finger then
     /// takes up slack.
     pub fn repair(&mut self) {
+        self.repair_after(0);
+    }
+
+    /// Repairs the link, as `repair` does. `restarts` is the number of restarts of the board since open.
+    pub fn repair_after(&mut self, restarts: u32) {
         self.until("at rest", |bench| !bench.repair_end.released.is_empty());
         let mut link = self.repair_end.released.pop().expect("released").link;
         let terms = Terms::new(&self.configuration.hand, &self.configuration.fingers[0]);
         let deadline = Transport::now(&self.world) + 1000 * MILLISECOND;
         let (_, configured) = link.shake_hands(1, &terms, deadline).expect("the board answers");
         let stops = StopCounts { calls: stop_calls(), of_finger: self.mailbox.stops(), ..StopCounts::default() };
-        let restored = RestoredBoard { configured, stops };
+        let restored = RestoredBoard { configured, stops, restarts };
         let repaired = RepairedLink { link, boards: [Some(restored), None, None] };
         assert!(self.repair_end.repaired.push(repaired).is_ok());
         self.cycles(1);

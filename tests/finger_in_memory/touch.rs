@@ -218,3 +218,32 @@ fn a_fault_of_the_line_makes_the_readings_invalid() {
     bench.opens();
     assert_eq!((bench.touch.reading(1), bench.touch.lost()), (Some(Default::default()), 0));
 }
+
+/// A board may lose its power while its finger is faulted for another reason.
+#[test]
+fn a_reset_of_the_board_of_a_faulted_finger_makes_its_readings_invalid() {
+    let mut bench = Bench::with(two_elements);
+    push(&bench, [0.0, 0.0, -0.3]);
+    bench.cycles(3);
+    let stop = |bench: &mut Bench| {
+        bench.mailbox.stop();
+        bench.faults(FaultKind::FingerStopCall);
+    };
+    stop(&mut bench);
+    bench.repair();
+    bench.opens();
+    assert!(bench.touch.reading(0).expect("an element").pressed, "the board was not reset");
+    stop(&mut bench);
+    push(&bench, [0.0; 3]);
+    bench.with_finger(|finger| finger.reset());
+    bench.repair_after(1);
+    bench.opens();
+    assert_eq!((bench.touch.reading(0), bench.touch.lost()), (Some(Default::default()), 0));
+    // The next recovery finds no further restart.
+    push(&bench, [0.0, 0.0, -0.3]);
+    bench.cycles(3);
+    stop(&mut bench);
+    bench.repair_after(1);
+    bench.opens();
+    assert!(bench.touch.reading(0).expect("an element").pressed);
+}

@@ -1,14 +1,14 @@
 //! The tables `[remote]` and `[remote.tls]` of a configuration file.
 
 mod certificate;
-mod reading;
+mod text;
 
 pub use certificate::client_of;
 
 use crate::error::RemoteError;
-use reading::Wrong;
 use std::path::{Path, PathBuf};
 use sun2xp_remote_protocol::{ClientName, HandName};
+use text::Wrong;
 
 /// The default of `remote.stale_ms`, ms.
 const STALE_MS: u32 = 100;
@@ -79,7 +79,7 @@ impl RemoteConfiguration {
     }
 
     fn parse(text: &str, folder: &Path) -> Result<Option<Self>, Wrong> {
-        let Some((read, lines)) = reading::read(text)? else { return Ok(None) };
+        let Some((read, lines)) = text::read(text)? else { return Ok(None) };
         let tls = read.tls.map(|tls| RemoteTls {
             authority: folder.join(tls.authority),
             certificate: folder.join(tls.certificate),

@@ -60,7 +60,8 @@ impl MotorFriction {
             let (found, _) = fit.solve().ok_or(implausible("the friction", f64::NAN))?;
             let [a, coulomb, conduit]: [f64; 3] = found.into();
             let (a, conduit) = (a / gains[motor], conduit / gains[motor]);
-            if !RATIOS.contains(&a) || conduit >= a {
+            // Beyond these bounds of the conduit, the ratio below would be the root of a negative number.
+            if !RATIOS.contains(&a) || conduit.abs() >= a {
                 return Err(implausible("the ratio of commanded pull to tension", a));
             }
             friction.coulomb[motor] = coulomb.max(0.0);
@@ -70,5 +71,31 @@ impl MotorFriction {
             friction.ratio[motor] = ((a + conduit) * (a - conduit)).sqrt();
         }
         Ok(friction)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Solves for motors whose conduits have this friction, and whose pull equals the tension otherwise.
+    fn solved(conduit: f64) -> Result<MotorFrictionFound, Obstacle> {
+        let mut friction = MotorFriction::new();
+        for fit in &mut friction.fits {
+            for (tension, sign) in [(5.0, 1.0), (5.0, -1.0), (12.0, 1.0), (12.0, -1.0), (20.0, 1.0), (20.0, -1.0)] {
+                fit.add(&Vector3::new(tension, sign, sign * tension), tension + sign * conduit * tension);
+            }
+        }
+        friction.solve(&Vector4::repeat(1.0))
+    }
+
+    #[test]
+    fn a_friction_that_no_conduit_has_is_refused() {
+        let found = solved(0.1).expect("plausible");
+        assert!(found.ratio.add_scalar(-0.99f64.sqrt()).amax() < 1e-9, "{}", found.ratio);
+        for conduit in [1.5, -1.5] {
+            let found = solved(conduit);
+            assert!(matches!(found, Err(Obstacle::Implausible { .. })), "{found:?}");
+        }
     }
 }

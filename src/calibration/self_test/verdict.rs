@@ -6,7 +6,8 @@ use crate::calibration::obstacle::Obstacle;
 use crate::model::LinkDynamics;
 use nalgebra::{Vector3, Vector4};
 
-/// A gauge is dead if it rises by less than this part of the usual rise.
+/// A gauge is dead if it rises by less than this part of the usual rise. If the usual rise is less than this part of
+/// the expected one, most gauges are dead, and nothing is usual.
 const DEAD: f64 = 0.12;
 /// For each of two motors, take the response of the other motor's gauge minus the response of its own gauge, both
 /// divided by the largest response to this motor. The two gauges count as swapped if the sum of both differences
@@ -33,7 +34,7 @@ pub(super) fn judge(
     let raised = &responses.raised;
     let usual = median(&raised.abs());
     for gauge in 0..4 {
-        if raised[gauge].abs() < DEAD * usual {
+        if raised[gauge].abs() < DEAD * usual.max(DEAD) {
             let newton = raised[gauge] * expected_rise(instruments)[gauge];
             return Err(Obstacle::SilentGauge { gauge: number(gauge), newton });
         }
@@ -133,4 +134,28 @@ fn misfit(response: &Vector4<f64>, predicted: &Vector4<f64>) -> f64 {
 /// The mean of the middle two of four values.
 fn median(values: &Vector4<f64>) -> f64 {
     (values.sum() - values.min() - values.max()) / 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::configuration::ConfiguredFinger;
+
+    #[test]
+    fn no_gauge_is_right_if_all_are_dead() {
+        let finger = ConfiguredFinger::default();
+        let instruments = Instruments::new(&finger, 1000.0).expect("usable");
+        let (masses, radii) = (finger.links.masses, finger.links.radii);
+        let dynamics = LinkDynamics::new(finger.links(), masses, radii, Vector3::zeros());
+        let judged = |raised: f64| {
+            let responses = Responses { raised: Vector4::repeat(raised), ..Responses::default() };
+            judge(&responses, &instruments, &dynamics, &Vector4::zeros())
+        };
+        // The rise of dead gauges is zero, apart from rounding.
+        for raised in [0.0, 1e-15] {
+            let found = judged(raised);
+            assert!(matches!(found, Err(Obstacle::SilentGauge { gauge: 1, .. })), "{found:?}");
+        }
+        assert!(judged(1.0).is_ok() && judged(0.3).is_ok(), "a common error of the scales");
+    }
 }

@@ -109,14 +109,14 @@ impl FingerServo {
     /// Resumes after a fault. The board has been configured again, and no motor has moved since. A request to stop that
     /// is later than the requests in `restored` stops the finger again.
     pub(in crate::finger) fn recover(&mut self, restored: &RestoredBoard) {
-        let RestoredBoard { configured, stops } = restored;
+        let RestoredBoard { configured, stops, restarts } = restored;
         self.alarm.forget(stops);
         self.mailbox.forget_stops(*stops);
         self.mailbox.discard_groups();
         self.feedback = found(configured);
         self.status = configured.status;
         if let Stage::Faulted(fault) = self.report.stage {
-            self.touch.recover(fault.kind);
+            self.touch.recover(fault.kind, *restarts);
         }
         self.sampled_at = None;
         self.command = MotorCommand::default();

@@ -11,7 +11,8 @@ use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 #[non_exhaustive]
 pub struct TouchReading {
     /// Whether the board has reported this element since open and since its last reset, and could read it then.
-    /// Otherwise the other fields are 0. A recovery from a fault of the line counts as a reset.
+    /// Otherwise the other fields are 0. A recovery from a fault of the line counts as a reset. A reset is noticed at
+    /// the recovery of the finger.
     pub valid: bool,
     /// Whether something presses the element.
     pub pressed: bool,

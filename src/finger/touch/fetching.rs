@@ -27,6 +27,8 @@ pub(in crate::finger) struct TouchFetching {
     received: u8,
     /// The board's count of lost events in its last answer; none before the first answer.
     lost: Option<u8>,
+    /// Number of restarts of the board that recoveries have found since open.
+    restarts: u32,
     /// Number of requests in a row without an answer.
     unanswered: u32,
     /// Number of periods until the next request.
@@ -38,21 +40,25 @@ impl TouchFetching {
     pub fn new(elements: Elements, board: Capabilities, memory: &mut LockedMemory) -> Self {
         elements.add_to(memory);
         let enabled = board.has(Capabilities::TACTILE) && elements.count() > 0;
-        Self { elements, enabled, permitted: false, asked: None, received: 0, lost: None, unanswered: 0, pause: 0 }
+        let (asked, lost) = (None, None);
+        Self { elements, enabled, permitted: false, asked, received: 0, lost, restarts: 0, unanswered: 0, pause: 0 }
     }
 
     /// Resumes after a fault. The board may have been reset, so it may have begun to count its events again. The number
     /// of an earlier event could then delete events that were not received. If the board was not reset, one event may
     /// come twice. A board that was reset has also forgotten its readings, and never reports the end of a contact from
-    /// before the reset.
-    pub fn recover(&mut self, fault: FaultKind) {
+    /// before the reset. `restarts` is the number of restarts that recoveries have found since open. The board may have
+    /// restarted after any fault, because its finger was not under control.
+    pub fn recover(&mut self, fault: FaultKind, restarts: u32) {
         (self.asked, self.received, self.unanswered, self.pause) = (None, 0, 0, 0);
+        let restarted = std::mem::replace(&mut self.restarts, restarts) != restarts;
         self.lost = match fault {
             FaultKind::BoardReset => Some(0),
             // The board may have lost its power. It then counts lost events from 0 again.
             FaultKind::LostReplies | FaultKind::DamagedReplies | FaultKind::PortVanished | FaultKind::PortFailed => {
                 None
             }
+            _ if restarted => Some(0),
             _ => return,
         };
         self.elements.forget_readings();

@@ -1,10 +1,11 @@
 //! The checks of joint stiffnesses and joint torques.
 
 use super::Admission;
+use super::ranges::within_bound;
 use crate::control::TensionDistribution;
 use crate::hand::SetPointError;
-use crate::model::ContactError;
 use crate::model::configuration::OutOfRange;
+use crate::model::{ContactError, spring};
 use nalgebra::{Matrix3, Vector3};
 
 /// Torque that no tendon of any finger can make, N cm. The part of it that the tension bounds permit is the largest
@@ -19,13 +20,14 @@ impl Admission {
     /// the reason.
     pub fn k_theta(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
         let finger = self.finger;
-        let bound = self.stiffness_bound * self.links.0[2].powi(2);
-        let no_spring = |error: ContactError| match error {
+        let asked = Matrix3::from_fn(|row, column| rows[row][column]);
+        let (symmetric, (smallest, largest)) = spring(&asked).map_err(|error| match error {
             ContactError::NotFinite(value) => SetPointError::NotFinite { what: "K", finger, value },
             source => SetPointError::JointStiffness { finger, source },
-        };
-        let too_stiff = |largest| SetPointError::TooStiffJoints { finger, largest, bound };
-        self.ranges().spring(rows, bound, no_spring, too_stiff)
+        })?;
+        let bound = self.stiffness_bound * self.links.0[2].powi(2);
+        let admitted = within_bound(symmetric, (smallest, largest), bound, self.out_of_range);
+        admitted.ok_or(SetPointError::TooStiffJoints { finger, largest, bound })
     }
 
     /// Checks that the tendons can make a joint torque, N cm, within the bounds of their tensions, and returns it. The

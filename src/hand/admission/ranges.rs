@@ -47,40 +47,15 @@ impl Ranges {
     /// # Errors
     /// Returns an error if Kx is not finite, is not a spring or is too stiff.
     pub fn kx(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
-        let (finger, bound) = (self.finger, self.stiffness_bound);
-        let too_stiff = |largest| SetPointError::TooStiff { finger, largest, bound };
-        self.spring(rows, bound, |error| self.no_spring(error), too_stiff)
-    }
-
-    /// Checks that a stiffness is symmetric, positive semi-definite and within the bound of its eigenvalues, and
-    /// returns it. `rows` is `rows[row][column]`. The last two arguments give the errors.
-    ///
-    /// # Errors
-    /// Returns an error if the stiffness is not finite, is not a spring or is too stiff.
-    #[inline]
-    pub(super) fn spring(
-        &self,
-        rows: [[f64; 3]; 3],
-        bound: f64,
-        no_spring: impl FnOnce(ContactError) -> SetPointError,
-        refused: impl FnOnce(f64) -> SetPointError,
-    ) -> Result<Matrix3<f64>, SetPointError> {
         // nalgebra is column-major. Only this line converts from the row-major order of C.
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);
-        let (symmetric, (smallest, largest)) = spring(&asked).map_err(no_spring)?;
-        // A stiffness at the bound that is sent as `float` may be rounded beyond the bound. It must be accepted.
-        let too_stiff = largest > bound * (1.0 + 8.0 * f64::from(f32::EPSILON));
-        if too_stiff && self.out_of_range == OutOfRange::Refuse {
-            return Err(refused(largest));
-        }
-        if !too_stiff && smallest >= 0.0 {
-            return Ok(symmetric);
-        }
-        // The nearest admissible spring has the same principal directions.
-        let mut eigen = symmetric.symmetric_eigen();
-        eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
-        let recomposed = eigen.recompose();
-        Ok((recomposed + recomposed.transpose()) * 0.5)
+        let (symmetric, (smallest, largest)) = spring(&asked).map_err(|error| self.no_spring(error))?;
+        let bound = self.stiffness_bound;
+        within_bound(symmetric, (smallest, largest), bound, self.out_of_range).ok_or(SetPointError::TooStiff {
+            finger: self.finger,
+            largest,
+            bound,
+        })
     }
 
     /// The error for a Kx that is not a spring.
@@ -106,4 +81,27 @@ impl Ranges {
             Some(&value) => Err(SetPointError::NotFinite { what, finger: self.finger, value }),
         }
     }
+}
+
+/// Returns a symmetric stiffness with these eigenvalues, or the nearest one between zero and `bound`. Returns none if
+/// it is stiffer than `bound` and must be refused.
+pub(super) fn within_bound(
+    symmetric: Matrix3<f64>,
+    (smallest, largest): (f64, f64),
+    bound: f64,
+    out_of_range: OutOfRange,
+) -> Option<Matrix3<f64>> {
+    // A stiffness at the bound that is sent as `float` may be rounded beyond the bound. It must be accepted.
+    let too_stiff = largest > bound * (1.0 + 8.0 * f64::from(f32::EPSILON));
+    if too_stiff && out_of_range == OutOfRange::Refuse {
+        return None;
+    }
+    if !too_stiff && smallest >= 0.0 {
+        return Some(symmetric);
+    }
+    // The nearest admissible spring has the same principal directions.
+    let mut eigen = symmetric.symmetric_eigen();
+    eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
+    let recomposed = eigen.recompose();
+    Some((recomposed + recomposed.transpose()) * 0.5)
 }

@@ -199,6 +199,12 @@ fn span_of(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
     parent.as_table_like()?.key(last)?.span()
 }
 
+/// The line of a dotted key in a text with keys, counted from 1; none if the text does not contain the key.
+pub(in crate::hand) fn line_of_key(text: &str, dotted: &str) -> Option<usize> {
+    let keys = Document::parse(text).ok()?;
+    Wrong::at(span_of(Some(keys.as_item()), dotted), String::new()).line(text)
+}
+
 /// The position of the innermost table of a dotted key. It is used for a key that the file does not contain, and whose
 /// default value conflicts with another value in the file. That other value is usually in the same table.
 fn nearest_table(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {

@@ -80,7 +80,7 @@ impl Plan {
                 set_point.stiffen_tip(stiffness);
                 damping.admit(set_point)?;
             }
-            let stiffest = along.first().map(|&first| damping.stiffest([first, begin])).transpose()?;
+            let stiffest = along.first().map(|&first| damping.with_narrowest_range([first, begin])).transpose()?;
             Ok(PathExtent { lowest, highest, stiffest })
         }
     }

@@ -4,7 +4,7 @@ use super::*;
 use crate::board::OutgoingCommand;
 use crate::board::protocol::Command;
 use crate::finger::link_handover;
-use crate::model::configuration::{Configuration, EndState};
+use crate::model::configuration::{Configuration, EndState, TouchElement};
 use crate::simulated::{Defect, SimulatedBoard, SimulatedCable, SimulatedFinger};
 
 fn configuration() -> Configuration {
@@ -30,7 +30,7 @@ fn opened(mut board: SimulatedBoard, keeps_zero: bool) -> (Link<SimulatedCable>,
     let zero_valid = configured.status.has(Status::ZERO_VALID);
     assert_eq!(zero_valid, keeps_zero);
     let finger = FingerNumber::ONE;
-    (link, KnownBoard { finger, address: 1, terms, identity, zero_valid, has_io: false, restarted: false })
+    (link, KnownBoard { finger, address: 1, terms, identity, zero_valid, has_io: false, restarts: 0 })
 }
 
 fn finger(link: &mut Link<SimulatedCable>) -> &mut SimulatedFinger {
@@ -93,6 +93,23 @@ fn a_board_that_does_not_keep_its_zeros_must_not_have_restarted() {
     known.configure(&mut link).expect("it keeps its zeros");
 }
 
+/// A board that keeps its zeros forgets the readings of its tactile elements.
+#[test]
+fn a_restart_of_a_board_with_tactile_elements_is_counted() {
+    let mut touching = configuration();
+    let element = TouchElement { position: [0.0; 3], normal: [0.0, 0.0, 1.0], newton_per_count: 0.001, zero: 0 };
+    touching.fingers[0].touch.elements = vec![element];
+    let board = SimulatedBoard::new(&touching, &[FingerNumber::ONE]).expect("a board");
+    let (mut link, mut known) = opened(board, true);
+    let mut restarts = |link: &mut Link<SimulatedCable>| {
+        let configured = known.configure(link).expect("it keeps its zeros");
+        known.restored(configured, StopCounts::default()).restarts
+    };
+    assert_eq!(restarts(&mut link), 0);
+    finger(&mut link).reset();
+    assert_eq!((restarts(&mut link), restarts(&mut link)), (1, 1));
+}
+
 /// A finger that the servo takes and that faults at once must not have more recoveries than repairs, so its repair
 /// is counted before the servo gets it. A finger that the servo does not take has no repair.
 #[test]
@@ -101,7 +118,7 @@ fn a_repair_is_counted_exactly_if_the_servo_can_take_the_finger() {
     let mut repair = PortRepair::new(PathBuf::new(), 0, false, Vec::new(), repair_end);
     let repairs = [const { AtomicU32::new(0) }; FINGERS];
     let counts = || repairs.each_ref().map(|repairs| repairs.load(Ordering::Acquire));
-    let board = RestoredBoard { configured: Configured::default(), stops: StopCounts::default() };
+    let board = RestoredBoard { configured: Configured::default(), stops: StopCounts::default(), restarts: 0 };
     let mut give = |place: usize| {
         let address = place as u8 + 1;
         (repair.give(place, RestoredFinger { address, board }, &repairs[place]), counts())

@@ -81,17 +81,28 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
 }
 
 fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
-    let (subject, slack) = (format!("timer slack of servo thread {thread}"), wake_up.timer_slack);
-    if slack <= SLACK {
-        return Finding::good(subject, format!("{slack} ns"));
+    let subject = format!("timer slack of servo thread {thread}");
+    let (found, short) = match &wake_up.timer_slack {
+        Ok(slack) => (format!("{slack} ns"), *slack <= SLACK),
+        Err(refused) => {
+            (format!("unknown: the system refused to tell it (prctl, PR_GET_TIMERSLACK): {refused}"), false)
+        }
+    };
+    if short {
+        return Finding::good(subject, found);
     }
     if asked && wake_up.refusals.scheduling.is_none() {
-        return Finding::good(subject, format!("{slack} ns, which does not apply to a real-time thread"));
+        return Finding::good(subject, format!("{found}; does not apply to a real-time thread"));
+    }
+    if wake_up.timer_slack.is_err() {
+        let advice = "The kernel may delay each wake-up of this thread by up to this time. Permit prctl if a sandbox \
+                      forbids it, or make the thread real-time (finger.priority)";
+        return Finding::new(Rating::Warning, subject, found, advice);
     }
     let advice = "The kernel may delay each wake-up of this thread by up to this time, and the system refused to \
                   shorten it (prctl, PR_SET_TIMERSLACK). Permit that call if a sandbox forbids it, or make the thread \
                   real-time (finger.priority)";
-    Finding::new(Rating::Warning, subject, format!("{slack} ns"), advice)
+    Finding::new(Rating::Warning, subject, found, advice)
 }
 
 #[cfg(test)]
@@ -106,7 +117,7 @@ mod tests {
             configuration.hand.rate = rate;
             let mut late = Distribution::default();
             (late.p99, late.maximum) = (p99, worst);
-            judge(&configuration, 1, WakeUp { late, refusals, timer_slack: 1 })
+            judge(&configuration, 1, WakeUp { late, refusals, timer_slack: Ok(1) })
         };
         let judged = |rate, p99, refusals| judged_by_worst(rate, p99, p99, refusals);
         assert_eq!(judged(1000.0, 90.0, RealtimeRefusals::default()).verdict, Rating::Good);
@@ -130,12 +141,17 @@ mod tests {
     fn timer_slack_counts_for_a_thread_that_is_not_real_time() {
         let judged = |timer_slack, asked, scheduling| {
             let refusals = RealtimeRefusals { scheduling, ..RealtimeRefusals::default() };
-            judge_slack(1, asked, &WakeUp { late: Distribution::default(), refusals, timer_slack }).verdict
+            judge_slack(1, asked, &WakeUp { late: Distribution::default(), refusals, timer_slack })
         };
-        let refused = || Some(std::io::Error::from_raw_os_error(libc::EPERM));
-        assert_eq!(judged(1, false, None), Rating::Good);
-        assert_eq!(judged(50_000, true, None), Rating::Good);
-        assert_eq!(judged(50_000, true, refused()), Rating::Warning);
-        assert_eq!(judged(50_000, false, None), Rating::Warning);
+        let refused = || std::io::Error::from_raw_os_error(libc::EPERM);
+        assert_eq!(judged(Ok(1), false, None).verdict, Rating::Good);
+        assert_eq!(judged(Ok(50_000), true, None).verdict, Rating::Good);
+        assert_eq!(judged(Ok(50_000), true, Some(refused())).verdict, Rating::Warning);
+        assert_eq!(judged(Ok(50_000), false, None).verdict, Rating::Warning);
+        // A sandbox may refuse to tell the timer slack.
+        let unknown = judged(Err(refused()), false, None);
+        assert!(unknown.verdict == Rating::Warning && unknown.found.starts_with("unknown"), "{unknown:?}");
+        assert!(unknown.found.contains("PR_GET_TIMERSLACK): Operation not permitted"), "{unknown:?}");
+        assert_eq!(judged(Err(refused()), true, None).verdict, Rating::Good);
     }
 }

@@ -5,7 +5,6 @@ use crate::failure::Failure;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
-use std::time::UNIX_EPOCH;
 use sun2xp::finger::{self, CycleRecord, Fault, FaultKind, Origin, Stage};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::model::{FingerNumber, Part, ShownPath};
@@ -20,27 +19,25 @@ pub fn is_one(path: &Path) -> io::Result<bool> {
 /// Reads a black box.
 pub fn read(path: &Path) -> Result<(Description, Vec<Entry>), Failure> {
     let recording = finger::Recording::open(path)?;
-    let finger::Recording { origin, library, cycles, .. } = recording;
+    let finger::Recording { origin, library, clock_offset, cycles, .. } = recording;
     check(&origin).map_err(|reason| format!("{} cannot be used: {reason}", ShownPath(path)))?;
     let number = FingerNumber::new(origin.finger).ok_or("the black box names no finger")?;
     let mut configuration = Configuration { hand: origin.hand.clone(), ..Default::default() };
     if let Some(first) = origin.controllers.first() {
         configuration.fingers[number.index()] = first.finger.clone();
     }
-    // The cycles have times of the monotonic clock only. The last cycle gets the modification time of the file.
-    let written = path.metadata()?.modified()?.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64);
-    let last = cycles.last().map_or(0, |record| record.began);
+    let time = |began: u64| began.saturating_add_signed(clock_offset);
+    let begin = cycles.first().map_or(0, |record| record.began);
     let description = Description {
         name: "black box".into(),
         process: 0,
         library,
-        started: written / 1_000_000_000,
-        clock_offset: (written as i64).wrapping_sub(last as i64),
+        // The black box does not have the time at which the hand was opened.
+        started: time(begin) / 1_000_000_000,
+        clock_offset,
         fingers: vec![number],
         configuration,
     };
-    let begin = cycles.first().map_or(0, |record| record.began);
-    let time = |began: u64| began.saturating_add_signed(description.clock_offset);
     let mut entries = Vec::new();
     let mut add = |began, message| entries.push(Entry { time: time(began), item: Item::Message(message) });
     for source in origin.controllers {

@@ -6,11 +6,11 @@ use mcap::records::Metadata;
 use mcap::write::WriteOptions;
 use std::fs::{self, File};
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, UNIX_EPOCH};
 use sun2xp::hand::Hand;
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, RealTime};
-use sun2xp::realtime::now;
+use sun2xp::realtime::{clock_offset, now};
 use sun2xp::telemetry::{Message, Reader};
 
 fn open(name: &str) -> Hand {
@@ -162,15 +162,44 @@ fn a_recording_that_ends_anywhere_is_readable_up_to_its_last_chunk() {
     }
 }
 
+/// Waits until finger 2 has run 200 more cycles.
+fn run(hand: &Hand) {
+    let begun = hand.losses(2).expect("losses").cycles;
+    while hand.losses(2).expect("losses").cycles < begun + 200 {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn the_times_of_a_black_box_do_not_depend_on_that_of_its_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("black-box.jsonl");
+    let hand = open("times");
+    run(&hand);
+    hand.write_black_box(2, &path).expect("written");
+    drop(hand);
+    let offset = |copy: &str| {
+        fs::write(&path, copy).expect("written");
+        let file = File::options().write(true).open(&path).expect("a file");
+        file.set_modified(UNIX_EPOCH).expect("set");
+        Recording::open(&path).expect("a recording").description().clock_offset
+    };
+    let text = fs::read_to_string(&path).expect("text");
+    let error = offset(&text).abs_diff(clock_offset());
+    assert!(error < 1_000_000_000, "{error} ns");
+    // A file of an older library has only the time in whole seconds at which it was written.
+    let (before, after) = text.split_once("\"clock_offset\":").expect("the key");
+    let (_, after) = after.split_once(',').expect("the next key");
+    let error = offset(&format!("{before}{after}")).abs_diff(clock_offset());
+    assert!(error < 5_000_000_000, "{error} ns");
+}
+
 #[test]
 fn a_black_box_is_a_recording() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("black-box.jsonl");
     let hand = open("box");
-    let begun = hand.losses(2).expect("losses").cycles;
-    while hand.losses(2).expect("losses").cycles < begun + 200 {
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    run(&hand);
     hand.stop(2).expect("stopped");
     while hand.status(2).expect("status").stage == sun2xp::Stage::Running {
         std::thread::sleep(Duration::from_millis(5));

@@ -64,6 +64,7 @@ fn a_file_comes_back_as_it_was_and_a_damaged_one_is_refused_with_its_reason() {
     let text = fs::read_to_string(&file).expect("text");
     let cycles = |text: &str| text.split_once('\n').expect("a header").1.to_string();
     assert_eq!(cycles(&text), cycles(&fs::read_to_string(&again).expect("text")));
+    assert_eq!(Recording::open(&again).expect("read").clock_offset, recording.clock_offset);
 
     let refusal = |text: &str| {
         fs::write(&file, text).expect("written");

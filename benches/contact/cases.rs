@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use sun2xp::model::configuration::{ConfiguredContact, ConfiguredFinger, NamedHand, Scheme};
 
 /// A simulated finger and its controller's configuration.
-pub struct Hand {
+pub struct Case {
     pub name: &'static str,
     /// Simulated time in which false alarms are counted, s.
     pub seconds: f64,
@@ -21,82 +21,82 @@ const HOUR: f64 = 3600.0;
 const TEN_MINUTES: f64 = 600.0;
 
 /// The rows of the tables of docs/contact.md.
-pub const HANDS: [Hand; 15] = [
-    Hand { name: "nominal", seconds: HOUR, gravity: NONE, make: |_, _| {} },
-    Hand { name: "nominal, gravity", seconds: HOUR, gravity: ACROSS, make: |_, _| {} },
-    Hand {
+pub const CASES: [Case; 15] = [
+    Case { name: "nominal", seconds: HOUR, gravity: NONE, make: |_, _| {} },
+    Case { name: "nominal, gravity", seconds: HOUR, gravity: ACROSS, make: |_, _| {} },
+    Case {
         name: "nominal, figure 9",
         seconds: TEN_MINUTES,
         gravity: NONE,
-        make: |_, own| scheme(own, Scheme::Figure9),
+        make: |_, belief| scheme(belief, Scheme::Figure9),
     },
-    Hand {
+    Case {
         name: "nominal, figure 10",
         seconds: TEN_MINUTES,
         gravity: NONE,
-        make: |_, own| scheme(own, Scheme::Figure10),
+        make: |_, belief| scheme(belief, Scheme::Figure10),
     },
-    Hand {
+    Case {
         name: "nominal, figure 11",
         seconds: TEN_MINUTES,
         gravity: NONE,
-        make: |_, own| scheme(own, Scheme::Figure11),
+        make: |_, belief| scheme(belief, Scheme::Figure11),
     },
-    Hand { name: "masses 30 % higher", seconds: TEN_MINUTES, gravity: NONE, make: |finger, _| masses(finger, 1.3) },
-    Hand { name: "masses 30 % lower", seconds: TEN_MINUTES, gravity: NONE, make: |finger, _| masses(finger, 0.7) },
-    Hand {
+    Case { name: "masses 30 % higher", seconds: TEN_MINUTES, gravity: NONE, make: |finger, _| masses(finger, 1.3) },
+    Case { name: "masses 30 % lower", seconds: TEN_MINUTES, gravity: NONE, make: |finger, _| masses(finger, 0.7) },
+    Case {
         name: "masses 30 % higher, gravity",
         seconds: TEN_MINUTES,
         gravity: ACROSS,
         make: |finger, _| masses(finger, 1.3),
     },
-    Hand {
+    Case {
         name: "masses 30 % lower, gravity",
         seconds: TEN_MINUTES,
         gravity: ACROSS,
         make: |finger, _| masses(finger, 0.7),
     },
-    Hand { name: "worn", seconds: TEN_MINUTES, gravity: NONE, make: |finger, _| named(finger, NamedHand::Worn) },
-    Hand {
+    Case { name: "worn", seconds: TEN_MINUTES, gravity: NONE, make: |finger, _| named(finger, NamedHand::Worn) },
+    Case {
         name: "sheathed",
         seconds: TEN_MINUTES,
         gravity: NONE,
         make: |finger, _| named(finger, NamedHand::Sheathed),
     },
-    Hand { name: "cheap", seconds: TEN_MINUTES, gravity: NONE, make: |finger, _| named(finger, NamedHand::Cheap) },
-    Hand {
+    Case { name: "cheap", seconds: TEN_MINUTES, gravity: NONE, make: |finger, _| named(finger, NamedHand::Cheap) },
+    Case {
         name: "worn, calibrated",
         seconds: TEN_MINUTES,
         gravity: NONE,
-        make: |finger, own| calibrated(finger, own, NamedHand::Worn),
+        make: |finger, belief| calibrated(finger, belief, NamedHand::Worn),
     },
-    Hand {
+    Case {
         name: "sheathed, calibrated",
         seconds: TEN_MINUTES,
         gravity: NONE,
-        make: |finger, own| calibrated(finger, own, NamedHand::Sheathed),
+        make: |finger, belief| calibrated(finger, belief, NamedHand::Sheathed),
     },
-    Hand {
+    Case {
         name: "cheap, calibrated",
         seconds: TEN_MINUTES,
         gravity: NONE,
-        make: |finger, own| calibrated(finger, own, NamedHand::Cheap),
+        make: |finger, belief| calibrated(finger, belief, NamedHand::Cheap),
     },
 ];
 
-impl Hand {
+impl Case {
     /// Returns the simulated finger and the configuration of its controller.
     pub fn finger(&self, contact: &ConfiguredContact, seed: u64) -> (ConfiguredFinger, ConfiguredFinger) {
         let mut finger = ConfiguredFinger::default();
-        let mut own = ConfiguredFinger { contact: contact.clone(), ..ConfiguredFinger::default() };
-        (self.make)(&mut finger, &mut own);
+        let mut belief = ConfiguredFinger { contact: contact.clone(), ..ConfiguredFinger::default() };
+        (self.make)(&mut finger, &mut belief);
         finger.simulation.seed = seed;
-        (finger, own)
+        (finger, belief)
     }
 }
 
-fn scheme(own: &mut ConfiguredFinger, scheme: Scheme) {
-    own.controller.scheme = Some(scheme);
+fn scheme(belief: &mut ConfiguredFinger, scheme: Scheme) {
+    belief.controller.scheme = Some(scheme);
 }
 
 fn masses(finger: &mut ConfiguredFinger, ratio: f64) {
@@ -108,21 +108,21 @@ fn named(finger: &mut ConfiguredFinger, hand: NamedHand) {
 }
 
 /// Configures the values that a calibration without errors would store.
-fn calibrated(finger: &mut ConfiguredFinger, own: &mut ConfiguredFinger, hand: NamedHand) {
+fn calibrated(finger: &mut ConfiguredFinger, belief: &mut ConfiguredFinger, hand: NamedHand) {
     named(finger, hand);
     let simulation = &finger.simulation;
     for tendon in 0..4 {
         let scale = finger.gauge.newton_per_count[tendon];
-        own.gauge.newton_per_count[tendon] = scale / simulation.gauge_gain_ratio[tendon];
-        own.gauge.zero[tendon] = finger.gauge.zero[tendon] + simulation.gauge_offset[tendon] / scale;
+        belief.gauge.newton_per_count[tendon] = scale / simulation.gauge_gain_ratio[tendon];
+        belief.gauge.zero[tendon] = finger.gauge.zero[tendon] + simulation.gauge_offset[tendon] / scale;
         for joint in 0..3 {
-            own.geometry.r[joint][tendon] *= simulation.moment_arm_ratio[joint][tendon];
+            belief.geometry.r[joint][tendon] *= simulation.moment_arm_ratio[joint][tendon];
         }
     }
-    own.tendon.stiffness = simulation.tendon_stiffness;
-    own.friction.pulley = [simulation.pulley_friction; 4];
-    own.friction.conduit = [simulation.shaft_friction + simulation.conduit_friction; 4];
+    belief.tendon.stiffness = simulation.tendon_stiffness;
+    belief.friction.pulley = [simulation.pulley_friction; 4];
+    belief.friction.conduit = [simulation.shaft_friction + simulation.conduit_friction; 4];
     // The simulation has these values in N m, and the configuration of the controller has them in N cm.
-    own.friction.motor_coulomb = simulation.motor_coulomb_friction.map(|friction| friction * 100.0);
-    own.friction.joint_coulomb = simulation.joint_coulomb_friction.map(|friction| friction * 100.0);
+    belief.friction.motor_coulomb = simulation.motor_coulomb_friction.map(|friction| friction * 100.0);
+    belief.friction.joint_coulomb = simulation.joint_coulomb_friction.map(|friction| friction * 100.0);
 }

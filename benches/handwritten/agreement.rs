@@ -1,0 +1,15 @@
+//! Compares the motor torques of two steps.
+
+/// The larger number. Returns NaN if one of the numbers is NaN, which `f64::max` ignores.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
+/// Returns by how much the torques of a motor differ at most, relative to the largest of `theirs`. Returns NaN if a
+/// torque is NaN.
+pub fn apart(ours: &[f64; 4], theirs: &[f64; 4]) -> f64 {
+    let apart = ours.iter().zip(theirs).map(|(ours, theirs)| (ours - theirs).abs()).fold(0.0, larger);
+    let largest = theirs.iter().map(|torque| torque.abs()).fold(0.0, larger);
+    // Without torques there is nothing to relate a difference of zero to.
+    if apart == 0.0 { 0.0 } else { apart / largest }
+}

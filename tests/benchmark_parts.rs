@@ -1,0 +1,71 @@
+//! Tests parts of the benchmarks: how `realtime` counts measurements that other work on the machine disturbs, which
+//! cores it watches, and how `handwritten` compares torques.
+
+#[path = "../benches/handwritten/agreement.rs"]
+mod agreement;
+#[path = "../benches/realtime/attempts.rs"]
+mod attempts;
+#[path = "../benches/realtime/cores.rs"]
+mod cores;
+
+use agreement::{apart, larger};
+use attempts::{Attempts, MOST_DISTURBED};
+
+/// Makes measurements that always fail.
+fn fails(attempts: &mut Attempts) -> Option<u32> {
+    attempts.measure("failing", || Err::<u32, _>("a finger has faulted"))
+}
+
+#[test]
+fn a_disturbed_measurement_is_repeated() {
+    let mut attempts = Attempts::default();
+    let mut results = [Err("a finger has faulted"), Err("a finger has faulted"), Ok(7)].into_iter();
+    assert_eq!(attempts.measure("some", || results.next().expect("a result")), Some(7));
+    assert_eq!((attempts.disturbed, attempts.skipped), (2, 0));
+    assert_eq!(attempts.check([("some", 1)]), Ok(()));
+}
+
+#[test]
+fn measurements_that_are_skipped_are_counted_and_a_missing_result_is_an_error() {
+    let mut attempts = Attempts::default();
+    assert_eq!(fails(&mut attempts), None);
+    assert_eq!((attempts.disturbed, attempts.skipped), (MOST_DISTURBED, 1));
+    let unexpected = || -> Result<u32, &str> { panic!("too many have failed") };
+    assert_eq!(attempts.measure("others", unexpected), None);
+    assert_eq!((attempts.disturbed, attempts.skipped), (MOST_DISTURBED, 2));
+    let error = attempts.check([("some", 1), ("failing", 0), ("others", 0)]).expect_err("nothing was measured");
+    assert!(error.contains("failing, others: 10 measurements were disturbed, and 2 were skipped"), "{error}");
+}
+
+#[test]
+fn a_torque_that_is_nan_does_not_agree() {
+    let theirs = [1.0, -2.0, 0.5, 0.0];
+    assert_eq!(apart(&theirs, &theirs), 0.0);
+    assert_eq!(apart(&[1.0, -2.0, 0.5, 0.5], &theirs), 0.25);
+    assert_eq!(apart(&[0.0; 4], &[0.0; 4]), 0.0);
+    for motor in 0..4 {
+        let mut wrong = theirs;
+        wrong[motor] = f64::NAN;
+        assert!(apart(&wrong, &theirs).is_nan() && apart(&theirs, &wrong).is_nan(), "motor {motor}");
+    }
+    // One cycle of the run suffices, whatever follows.
+    assert!(larger(larger(0.0, f64::NAN), 1e-12).is_nan() && larger(1e-12, f64::NAN).is_nan());
+    assert_eq!((larger(1.0, 2.0), larger(2.0, 1.0)), (2.0, 2.0));
+}
+
+#[test]
+fn only_the_permitted_cores_are_watched() {
+    let last = *cores::permitted().expect("known").last().expect("this thread runs on a core");
+    // The thread ends with this test, so no other test gets its affinity.
+    let narrowed = std::thread::spawn(move || {
+        // SAFETY: a cpu_set_t is plain bits, and all zeros is the empty set. `last` is within it.
+        let refused = unsafe {
+            let mut only: libc::cpu_set_t = std::mem::zeroed();
+            libc::CPU_SET(last, &mut only);
+            libc::sched_setaffinity(0, size_of::<libc::cpu_set_t>(), &only)
+        };
+        assert_eq!(refused, 0);
+        cores::permitted().expect("known")
+    });
+    assert_eq!(narrowed.join().expect("no panic"), [last]);
+}
