@@ -52,7 +52,7 @@ use std::ffi::c_int;
 ///              force
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
 ///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
-///              sun2xp_close
+///              sun2xp_close, and the next calibration of the finger that can be stored stores them
 ///
 /// Threads: any.
 ///
