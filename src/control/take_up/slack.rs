@@ -198,6 +198,8 @@ impl SlackTakeUp {
                 slack.taut_at[motor] -= tension / self.pretension[motor] * self.stretch[motor];
             }
         }
+        // A tendon whose tension rises from the first sample on came taut before its motor turned.
+        slack.gauges.iter_mut().zip(&now.travel).for_each(|(gauge, &travel)| gauge.restart(travel));
         (slack.phase, slack.seconds) = (Phase::Touching, 0.0);
     }
 
@@ -230,5 +232,30 @@ impl SlackTakeUp {
             slack.common = -GAP / self.stretch.max();
             slack.unopposed = 0.0;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The finger moves while its gauges are read, and pulls a tendon taut before the motors turn.
+    #[test]
+    fn a_tendon_that_is_taut_in_the_first_sample_came_taut_where_its_motor_is() {
+        let finger = ConfiguredFinger::default();
+        let take_up = SlackTakeUp::new(&finger, &finger.tendons().expect("regular"), 1000.0);
+        let travel = Vector4::new(0.01, -0.02, 0.03, 0.005);
+        let with_first = |tension: f64| Slackness {
+            travel,
+            speeds: Vector4::zeros(),
+            tensions: Vector4::new(tension, 0.0, 0.0, 0.0),
+        };
+        let mut slack = take_up.start(&with_first(0.0));
+        while slack.phase == Phase::Taring {
+            take_up.step(&mut slack, &with_first(0.0), false);
+        }
+        take_up.step(&mut slack, &with_first(0.5), false);
+        assert_eq!(slack.touched, [true, false, false, false]);
+        assert_eq!((slack.taut_at[0], slack.targets.travel[0]), (travel[0], travel[0] - GAP));
     }
 }
