@@ -34,8 +34,8 @@ pub(super) struct Memory {
     turned: Vector4<f64>,
     /// Time since the last measurement of the speed, s.
     elapsed: f64,
-    /// The last measured speed, rad/s.
-    speed: Option<Vector4<f64>>,
+    /// The last measured speed, rad/s, and the interval over which it was measured, s.
+    speed: Option<(Vector4<f64>, f64)>,
 }
 
 impl EncoderJump {
@@ -58,12 +58,63 @@ impl EncoderJump {
             return None;
         }
         let (turned, elapsed) = (std::mem::take(&mut memory.turned), std::mem::take(&mut memory.elapsed));
-        let before = memory.speed.replace(turned / elapsed)?;
+        let (before, interval) = memory.speed.replace((turned / elapsed, elapsed))?;
+        // Both speeds are means, so the speed may have changed during both intervals. After lost replies the first one
+        // is much longer than the second.
+        let mean_interval = 0.5 * (interval.max(elapsed) + elapsed);
         first_of(Symptom::EncoderJump, Part::encoder, |encoder| {
             let unexpected = (turned[encoder] - before[encoder] * elapsed) * self.counts_per_radian[encoder];
-            // Both speeds are means, so the speed may have changed during up to two intervals of this length.
-            let possible = 2.0 * self.strongest[encoder] * elapsed.powi(2) * self.counts_per_radian[encoder];
+            let possible = 2.0 * self.strongest[encoder] * (elapsed * mean_interval) * self.counts_per_radian[encoder];
             (unexpected.abs() > possible + FLICKER).then_some(unexpected)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::signals::{Feedback, Report};
+
+    const PERIOD: f64 = 1e-3;
+
+    /// Watches motors that start from rest and keep the acceleration of the largest torque. `intervals` are the times
+    /// between the samples, periods. In the last interval, the first encoder gains `jump` counts.
+    fn alarmed(intervals: &[f64], jump: f64) -> bool {
+        let monitor = EncoderJump::new(&ConfiguredFinger::default(), PERIOD);
+        let acceleration = monitor.strongest / MARGIN;
+        let (feedback, report, mut memory) = (Feedback::default(), Report::default(), Memory::default());
+        let (mut time, mut alarmed) = (0.0f64, false);
+        for (number, periods) in intervals.iter().enumerate() {
+            let (before, elapsed) = (time, periods * PERIOD);
+            time += elapsed;
+            let mut turned = acceleration * (0.5 * (time * time - before * before));
+            if number + 1 == intervals.len() {
+                turned[0] += jump / monitor.counts_per_radian[0];
+            }
+            let sample = Sample {
+                feedback: &feedback,
+                report: &report,
+                tensions: Vector4::zeros(),
+                travel: Vector4::zeros(),
+                turned,
+                pulls: Vector4::zeros(),
+                elapsed,
+                full_scale: 4095,
+            };
+            alarmed |= monitor.watch(&mut memory, &sample).is_some();
+        }
+        alarmed
+    }
+
+    #[test]
+    fn an_acceleration_during_lost_replies_is_no_jump() {
+        assert!(!alarmed(&[1.0, 1.0, 10.0, 1.0, 1.0], 0.0));
+    }
+
+    #[test]
+    fn a_jump_is_detected_as_before() {
+        assert!(!alarmed(&[1.0, 1.0, 1.0, 1.0], 0.0));
+        assert!(alarmed(&[1.0, 1.0, 1.0, 1.0], 200.0));
+        assert!(alarmed(&[1.0, 1.0, 10.0, 1.0, 1.0, 1.0], 200.0));
     }
 }
