@@ -179,7 +179,7 @@ impl GaugeStuck {
         let last = std::mem::replace(&mut memory.last, counts);
         let same = |gauge: usize| counts[gauge] == last[gauge];
         let rises = |gauge: usize| counts[gauge] > last[gauge];
-        memory.same = std::array::from_fn(|gauge| if same(gauge) { memory.same[gauge] + 1 } else { 0 });
+        memory.same = std::array::from_fn(|gauge| if same(gauge) { memory.same[gauge].saturating_add(1) } else { 0 });
         let same_for = memory.same;
         let before = std::mem::replace(&mut memory.tensions, sample.tensions);
         // Whether at least two other gauges, of tendons that are not slack, have changed recently.
@@ -222,4 +222,30 @@ impl GaugeStuck {
 pub(super) fn alarm(sample: &Sample, gauge: usize) -> Alarm {
     let value = f64::from(sample.feedback.gauge_counts[gauge]);
     Alarm { symptom: Symptom::GaugeStuck, part: Part::gauge(gauge), value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::signals::{Feedback, Report};
+
+    /// At 1000 Hz, a gauge without noise reaches this number in 50 days.
+    #[test]
+    fn a_gauge_may_repeat_its_count_more_often_than_can_be_counted() {
+        let monitor = GaugeStuck::new(&ConfiguredFinger::default());
+        let feedback = Feedback { gauge_counts: [400; 4], ..Feedback::default() };
+        let mut memory = Memory { last: [400; 4], same: [u32::MAX; 4], samples: u32::MAX, ..Memory::default() };
+        let sample = Sample {
+            feedback: &feedback,
+            report: &Report::default(),
+            tensions: Vector4::repeat(10.0),
+            travel: Vector4::zeros(),
+            turned: Vector4::zeros(),
+            pulls: Vector4::zeros(),
+            elapsed: 1e-3,
+            full_scale: 4095,
+        };
+        assert_eq!(monitor.watch(&mut memory, &sample), None);
+        assert_eq!(memory.same, [u32::MAX; 4]);
+    }
 }

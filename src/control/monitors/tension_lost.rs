@@ -124,7 +124,7 @@ impl TensionLost {
     fn fault(&self, memory: &Memory, sample: &Sample, flicker: &Flicker, tendon: usize) -> Option<Alarm> {
         let others_hold = (0..4).all(|other| other == tendon || memory.low[other] == 0.0);
         let same = flicker.same[tendon];
-        let silent = flicker.known[tendon] && same + 1 >= memory.samples[tendon];
+        let silent = flicker.known[tendon] && same >= memory.samples[tendon].saturating_sub(1);
         let dead = match flicker.known[tendon] {
             // More samples are needed to be certain.
             true if silent && same < CERTAIN => return None,
