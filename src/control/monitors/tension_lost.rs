@@ -74,6 +74,11 @@ pub(super) struct Memory {
 }
 
 impl Memory {
+    /// Notes that the comparison of gauges and encoders restarts. The missing tensions then begin at zero again.
+    pub fn restart_comparison(&mut self) {
+        self.before = Vector4::zeros();
+    }
+
     /// Returns whether a tendon seems to have just lost its tension.
     pub fn suspects(&self) -> bool {
         self.missed.max() > 0.0
