@@ -285,7 +285,7 @@ impl FingerServo {
         if self.answered {
             if self.link.answered() {
                 self.restart = true;
-                self.supervision.begin();
+                self.supervision.resume();
             }
             return;
         }

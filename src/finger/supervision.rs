@@ -109,9 +109,14 @@ impl Supervision {
         self.watch.adjusted();
     }
 
-    /// Resets the monitors when the finger enters the stage `Running` or replies return.
+    /// Resets the monitors when the finger enters the stage `Running`.
     pub fn begin(&mut self) {
         self.watch = Watch::default();
+    }
+
+    /// Restarts the monitors when replies return after a long loss.
+    pub fn resume(&mut self) {
+        self.watch.resume();
     }
 
     /// Forgets the line and the overruns from before a recovery.

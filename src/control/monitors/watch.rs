@@ -50,6 +50,12 @@ impl Watch {
         self.agreement = Default::default();
         self.tension_lost.restart_comparison();
     }
+
+    /// Restarts the monitors after replies were lost for so long that the controller restarts. The time for which the
+    /// motors have been hot continues, because windings do not cool in the few milliseconds of such a loss.
+    pub fn resume(&mut self) {
+        *self = Self { motor_heat: self.motor_heat, ..Self::default() };
+    }
 }
 
 /// Data of the previous sample.
@@ -143,6 +149,25 @@ fn not_admitted(report: &Report) -> Option<Alarm> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_loss_of_replies_does_not_prolong_the_time_for_which_a_motor_may_be_hot() {
+        let mut finger = ConfiguredFinger::default();
+        finger.motor.thermal_time = 0.1;
+        let monitors = Monitors::new(&finger, &finger.tendons().expect("the default tendons"), 1000.0, 0.0);
+        let (mut watch, feedback, report) = (Watch::default(), Feedback::default(), Report::default());
+        let tensions = Vector4::repeat(10.0);
+        let measured = Measured { motor_angles: Vector4::zeros(), tensions };
+        let fault = |watch: &mut Watch| {
+            monitors.watch(watch, &feedback, &measured, &report, &tensions, &Vector4::repeat(1.0), 1.0, 4095).fault
+        };
+        for _ in 0..80 {
+            assert_eq!(fault(&mut watch), None);
+        }
+        watch.resume();
+        let found = (0..30).find_map(|_| fault(&mut watch));
+        assert_eq!(found.map(|alarm| alarm.symptom), Some(Symptom::OverheatedMotor));
+    }
 
     #[test]
     fn a_low_tension_after_an_adjustment_is_not_lost() {
