@@ -22,11 +22,20 @@ const UNUSABLE: f64 = 0.6;
 /// Share of damaged replies above which a finger that gets no valid reply reports the damage as the cause of its fault.
 const DAMAGED: f64 = 0.25;
 
+/// The board's clock counts as stopped after this number of samples in a row with less than [`LEAST_AGE`] between them.
+/// A late cycle that is followed immediately by the next one gives one such sample.
+const STOPPED: u32 = 16;
+
+/// Smallest time between two samples by a clock that runs, periods.
+const LEAST_AGE: f64 = 0.1;
+
 /// State of the monitors of one finger.
 pub(super) struct Supervision {
     watch: Watch,
     /// Periods between the last two samples.
     age: f64,
+    /// Number of samples in a row between which the board's clock has hardly advanced.
+    without_time: u32,
     /// Largest count of the gauges.
     full_scale: u16,
     noise: LineQuality,
@@ -47,6 +56,7 @@ impl Supervision {
         Self {
             watch: Watch::default(),
             age: 1.0,
+            without_time: 0,
             full_scale: (u32::from(u16::MAX) >> (16 - gauge_bits.clamp(1, 16))) as u16,
             noise: warnings,
             damage: LineQuality::new(f64::from(patience)),
@@ -59,10 +69,14 @@ impl Supervision {
         }
     }
 
-    /// Notes the warnings in the status of a reply. `age` is the number of periods between the sample of the previous
-    /// reply and the sample of this one.
-    pub fn note_reply(&mut self, status: Status, age: f64) {
-        self.age = age;
+    /// Notes the warnings in the status of a reply. `counted` is the number of periods between the sample of the
+    /// previous reply and the sample of this one by the servo's count, and `clocked` by the board's clock; `clocked` is
+    /// `None` if the clock does not give it.
+    pub fn note_reply(&mut self, status: Status, counted: f64, clocked: Option<f64>) {
+        let advanced = clocked.is_none_or(|age| age >= LEAST_AGE);
+        self.without_time = if advanced { 0 } else { self.without_time.saturating_add(1) };
+        // With a clock that stands still, no time would pass for the monitors, and they would detect nothing.
+        self.age = clocked.filter(|_| self.without_time < STOPPED).unwrap_or(counted);
         self.clipped = status.has(Status::TORQUE_CLIPPED);
     }
 
@@ -145,6 +159,22 @@ mod tests {
                 supervision.note_period(false, 0, frames).map(|fault| (fault, period))
             })
             .expect("the finger faults")
+    }
+
+    #[test]
+    fn time_passes_for_the_monitors_of_a_board_whose_clock_stands_still() {
+        let mut supervision = Supervision::new(1000.0, 18, 12);
+        let mut age = |counted, clocked| {
+            supervision.note_reply(Status::default(), counted, clocked);
+            supervision.age
+        };
+        // A reply was lost, a cycle was late, and the age was not known by the clock.
+        let ages = [(2.0, Some(2.01)), (1.0, Some(1.6)), (1.0, Some(0.0)), (70.0, None)];
+        assert_eq!(ages.map(|(counted, clocked)| age(counted, clocked)), [2.01, 1.6, 0.0, 70.0]);
+        let stopped: Vec<f64> = (0..100).map(|_| age(1.0, Some(0.0))).collect();
+        assert!(stopped[20..].iter().all(|&age| age == 1.0), "{stopped:?}");
+        assert_eq!(age(2.0, Some(0.0)), 2.0);
+        assert_eq!(age(1.0, Some(1.01)), 1.01);
     }
 
     #[test]

@@ -106,20 +106,20 @@ impl FingerServo {
         (self.answered, self.replied) = (true, true);
         self.last_answer = received.sequence;
         let reply = &received.reply;
-        let mut age = self.sample_age as f64;
+        let (counted, mut clocked) = (self.sample_age as f64, None);
         // This cycle's command took effect at this measurement, and was computed from the previous one. The age to note
         // is therefore the time between the two measurements.
         if let Some(before) = self.sampled_at
-            && age * self.limits.period_ms < CLOCK_UNKNOWN_MS
+            && counted * self.limits.period_ms < CLOCK_UNKNOWN_MS
         {
             let microseconds = reply.sampled_at.wrapping_sub(before);
             self.timing.note(CycleStage::Age, 0, u64::from(microseconds) * 1000);
-            age = f64::from(microseconds) * 1e-3 / self.limits.period_ms;
+            clocked = Some(f64::from(microseconds) * 1e-3 / self.limits.period_ms);
         }
         (self.sampled_at, self.sample_age) = (Some(reply.sampled_at), 0);
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
-        self.supervision.note_reply(reply.status, age);
+        self.supervision.note_reply(reply.status, counted, clocked);
         let zero_lost = self.status.has(Status::ZERO_VALID) && !reply.status.has(Status::ZERO_VALID);
         self.status = reply.status;
         if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
