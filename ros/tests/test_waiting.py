@@ -250,3 +250,11 @@ def test_the_time_of_a_measurement_does_not_depend_on_the_time_of_reading(monkey
     monkeypatch.setattr(time, "monotonic_ns", lambda: 21_000_000)
     assert moment.time_of(900_000).to_msg() == Stamp(sec=8, nanosec=499_900_000)
     assert moment.time_of(1_100_000).to_msg() == Stamp(sec=8, nanosec=500_100_000)
+
+
+def test_a_measurement_before_the_clock_of_ros_began_has_the_time_of_its_beginning(monkeypatch):
+    node = Node()
+    monkeypatch.setattr(time, "monotonic_ns", lambda: 1_000_000)
+    for now_ns, stamp in ((0, Stamp()), (200_000, Stamp(nanosec=100_000)), (50_000, Stamp())):
+        node.now_ns = now_ns
+        assert Moment(node).time_of(900_000).to_msg() == stamp
