@@ -3,6 +3,7 @@
 import errno
 import gc
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -166,6 +167,19 @@ def test_a_forked_child_is_refused_and_leaves_the_hand_alone(hand):
     assert os.waitpid(child, 0)[1] == 0
     assert hand.status(1).stage == "running"
     hand.position(1)
+
+
+def test_an_exception_keeps_its_attributes_on_the_way_from_another_process(hand):
+    hand.push(1, [0, 0, -5])
+    hand.send_position(1, [0.2, 0.6, 0.9])
+    with pytest.raises(sun2xp.TimedOut) as late:
+        hand.wait(1, timeout=0)
+    fault = sun2xp.Fault("stopped: recover it", number=9, errno=errno.ENODEV, finger=2, fault=50)
+    for error in (late.value, fault):
+        copy = pickle.loads(pickle.dumps(error))
+        assert type(copy) is type(error) and str(copy) == str(error) and copy.errno == error.errno
+        assert vars(copy) == vars(error)
+    assert late.value.errno == errno.ETIMEDOUT
 
 
 def test_an_open_hand_is_closed_at_the_end_of_the_program():
