@@ -1,5 +1,6 @@
 """What the node publishes at low and at high rates, with a hand that a test sets."""
 
+import pathlib
 import time
 import types
 
@@ -106,6 +107,20 @@ def test_a_wrong_rate_ends_the_node_before_a_hand_is_opened(ros, opened):
         with pytest.raises(rclpy.exceptions.ParameterException):
             node_with(**parameters)
     assert not opened
+
+
+def test_the_file_of_parameters_serves_a_node_in_a_namespace(ros, opened, tmp_path):
+    text = (pathlib.Path(__file__).parents[1] / "config/hand.yaml").read_text()
+    for default, value in (('    simulated: ""\n', '    simulated: "nominal"\n'), ("    rate: 100.0\n", "    rate: 50.0\n")):
+        assert default in text
+        text = text.replace(default, value)
+    file = tmp_path / "hand.yaml"
+    file.write_text(text)
+    node = HandNode(namespace="/left", cli_args=["--ros-args", "--params-file", str(file)])
+    try:
+        assert node.get_namespace() == "/left" and node.get_parameter("rate").value == 50.0 and len(opened) == 1
+    finally:
+        node.destroy_node()
 
 
 def test_the_rates_are_means_since_the_previous_measurement():
