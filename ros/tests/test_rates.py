@@ -111,9 +111,9 @@ def test_a_wrong_rate_ends_the_node_before_a_hand_is_opened(ros, opened):
 
 def test_the_file_of_parameters_serves_a_node_in_a_namespace(ros, opened, tmp_path):
     text = (pathlib.Path(__file__).parents[1] / "config/hand.yaml").read_text()
-    for default, value in (('    simulated: ""\n', '    simulated: "nominal"\n'), ("    rate: 100.0\n", "    rate: 50.0\n")):
-        assert default in text
-        text = text.replace(default, value)
+    for name, default, value in (("simulated", '""', '"nominal"'), ("rate", "100.0", "50.0")):
+        assert f"    {name}: {default}\n" in text
+        text = text.replace(f"    {name}: {default}\n", f"    {name}: {value}\n")
     file = tmp_path / "hand.yaml"
     file.write_text(text)
     node = HandNode(namespace="/left", cli_args=["--ros-args", "--params-file", str(file)])
