@@ -13,6 +13,7 @@ import time
 import pytest
 
 import sun2xp
+from sun2xp import _sun2xp
 
 
 def run(program, *arguments):
@@ -109,6 +110,25 @@ def test_waiting_leaves_the_interpreter_to_others(hand):
         assert len(counts) - before > 10
     done.set()
     counter.join()
+
+
+def test_a_hand_that_got_no_object_is_closed_without_the_interpreter_lock():
+    opened = _sun2xp.open_simulated("nominal", 1000.0, "")
+    counts, done = [], threading.Event()
+
+    def count():
+        while not done.is_set():
+            counts.append(time.monotonic())
+
+    counter = threading.Thread(target=count)
+    counter.start()
+    begin = time.monotonic()
+    del opened
+    quarter = (time.monotonic() - begin) / 4
+    done.set()
+    counter.join()
+    # The fingers need 0.2 s for their end states. After that, this thread may wait for the lock before it goes on.
+    assert quarter > 0.02 and any(quarter < at - begin < 3 * quarter for at in counts)
 
 
 def test_a_hand_is_closed_while_another_thread_waits(hand):
