@@ -27,13 +27,13 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 export BUILT := $(TARGET)/dist
 
 all:
-	BUILT=$(BUILT) packaging/build --target-dir $(TARGET) $(CARGOFLAGS)
+	packaging/build --target-dir "$(TARGET)" $(CARGOFLAGS)
 
 install:
 	packaging/install
 
 remote:
-	BUILT=$(BUILT) packaging/build-remote --target-dir $(TARGET) $(CARGOFLAGS)
+	packaging/build-remote --target-dir "$(TARGET)" $(CARGOFLAGS)
 
 install-remote:
 	packaging/install-remote
@@ -45,12 +45,12 @@ deb: all
 	packaging/deb
 
 wheel:
-	packaging/wheel $(TARGET)/wheels
+	packaging/wheel "$(TARGET)/wheels"
 
 check-installed: all
 	packaging/check-installed
 
 clean:
-	rm -rf $(BUILT)
+	rm -rf "$(BUILT)"
 
 .PHONY: all install remote install-remote uninstall deb wheel check-installed clean

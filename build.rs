@@ -17,6 +17,7 @@ const EMPTY: &str = "#![no_std]\n#[panic_handler]\nfn panicked(_: &core::panic::
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=RUSTFLAGS");
+    println!("cargo::rerun-if-env-changed=CARGO_ENCODED_RUSTFLAGS");
     // Without a soname, a program that is linked by path stores the path of the build.
     println!("cargo::rustc-cdylib-link-arg=-Wl,-soname,libsun2xp.so.{ABI}");
     // Servo threads run code of the library, so dlclose must not unmap it.

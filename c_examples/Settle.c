@@ -17,7 +17,10 @@ int main(void)
         return 1;
     }
     for (finger = 1; finger <= 3; finger++)
-        sun2xp_send_position(hand, finger, Pos);
+        if (sun2xp_send_position(hand, finger, Pos) != 0) {
+            fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
+            return 1;
+        }
     Event.size = sizeof Event;
     while (moving > 0 && sun2xp_wait_event(hand, &Event, LONGEST_WAIT) == 1) {
         if (Event.kind == SUN2XP_EVENT_SETTLED) {

@@ -329,10 +329,13 @@ public:
     {
     }
 
+    /// Closes the hand that this object had, as its destructor does.
     hand &operator=(hand &&other) noexcept
     {
-        std::swap(hand_, other.hand_);
-        std::swap(callback_, other.callback_);
+        // Its destructor closes that hand. An object that is moved to itself keeps its hand.
+        hand moved(std::move(other));
+        std::swap(hand_, moved.hand_);
+        std::swap(callback_, moved.callback_);
         return *this;
     }
 

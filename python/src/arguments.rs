@@ -6,6 +6,7 @@ use numpy::{PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedAr
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::{PyList, PyTuple};
 
 /// Returns the numbers of an array with this shape, row by row.
 pub fn numbers(object: &Bound<'_, PyAny>, name: &str, shape: &[usize]) -> PyResult<Vec<f64>> {
@@ -32,14 +33,17 @@ pub fn list(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
 
 /// Returns three numbers.
 pub fn vector(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
-    // These two cases are quick. All others become an array first.
+    // These two cases are quick. All others become an array first, which shows their shape. Python's conversion of a
+    // sequence would also take bytes, and with numpy before 2.4 the column of an array.
     if let Ok(array) = object.cast::<PyArray1<f64>>() {
         if is_regular(array)
             && let (3, [Some(x), Some(y), Some(z)]) = (array.len(), [0, 1, 2].map(|place| array.get_owned(place)))
         {
             return Ok([x, y, z]);
         }
-    } else if let Ok(numbers) = object.extract::<[f64; 3]>() {
+    } else if (object.is_instance_of::<PyList>() || object.is_instance_of::<PyTuple>())
+        && let Ok(numbers) = object.extract::<[f64; 3]>()
+    {
         return Ok(numbers);
     }
     let numbers = numbers(object, name, &[3])?;

@@ -138,6 +138,15 @@ impl Drop for Hand {
 #[pyclass(frozen, module = "sun2xp._sun2xp")]
 pub struct Opened(pub Mutex<Option<(sun2xp::Hand, Pending)>>);
 
+impl Drop for Opened {
+    fn drop(&mut self) {
+        // Ctrl-C may come before the constructor has taken the hand. Its closing waits, as that of a `Hand`.
+        if let Some(opened) = self.0.get_mut().take() {
+            Python::attach(|py| py.detach(|| drop(opened)));
+        }
+    }
+}
+
 /// Closes all hands at the end of the interpreter, so that their fingers reach their end states. Ends the openings of
 /// other threads, and waits until their hands are closed.
 #[pyfunction]

@@ -11,11 +11,17 @@ from sun2xp import EventKind, _hand, _log, then, when
 HOME = [0.0, 0.6, 0.9]
 
 
-@pytest.mark.parametrize("value", ["there", [1, [2, 3], 4], [0.0, "a", 1.0], object(), [1j, 0, 0]])
+@pytest.mark.parametrize("value", ["there", [1, [2, 3], 4], [0.0, "a", 1.0], object(), [1j, 0, 0], b"abc"])
 def test_what_is_no_array_is_refused(shared, value):
     for call in (shared.send_position, shared.send_stiffness, shared.inverse_kinematics, shared.push):
         with pytest.raises(sun2xp.Refused, match="is no array of numbers .*: pass numbers"):
             call(1, value)
+
+
+def test_a_column_is_no_vector(shared):
+    for dtype in ("f4", "f8"):
+        with pytest.raises(sun2xp.Refused, match=r"has the shape \(3, 1\): pass an array with the shape \(3,\)"):
+            shared.send_position(1, numpy.zeros((3, 1), dtype))
 
 
 def test_the_times_of_a_path_have_one_dimension(shared):

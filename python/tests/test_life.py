@@ -3,6 +3,7 @@
 import errno
 import gc
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import time
 import pytest
 
 import sun2xp
+from sun2xp import _sun2xp
 
 
 def run(program, *arguments):
@@ -110,6 +112,25 @@ def test_waiting_leaves_the_interpreter_to_others(hand):
     counter.join()
 
 
+def test_a_hand_that_got_no_object_is_closed_without_the_interpreter_lock():
+    opened = _sun2xp.open_simulated("nominal", 1000.0, "")
+    counts, done = [], threading.Event()
+
+    def count():
+        while not done.is_set():
+            counts.append(time.monotonic())
+
+    counter = threading.Thread(target=count)
+    counter.start()
+    begin = time.monotonic()
+    del opened
+    quarter = (time.monotonic() - begin) / 4
+    done.set()
+    counter.join()
+    # The fingers need 0.2 s for their end states. After that, this thread may wait for the lock before it goes on.
+    assert quarter > 0.02 and any(quarter < at - begin < 3 * quarter for at in counts)
+
+
 def test_a_hand_is_closed_while_another_thread_waits(hand):
     # A finger that is pushed away does not arrive.
     hand.push(1, [0, 0, -5])
@@ -166,6 +187,19 @@ def test_a_forked_child_is_refused_and_leaves_the_hand_alone(hand):
     assert os.waitpid(child, 0)[1] == 0
     assert hand.status(1).stage == "running"
     hand.position(1)
+
+
+def test_an_exception_keeps_its_attributes_on_the_way_from_another_process(hand):
+    hand.push(1, [0, 0, -5])
+    hand.send_position(1, [0.2, 0.6, 0.9])
+    with pytest.raises(sun2xp.TimedOut) as late:
+        hand.wait(1, timeout=0)
+    fault = sun2xp.Fault("stopped: recover it", number=9, errno=errno.ENODEV, finger=2, fault=50)
+    for error in (late.value, fault):
+        copy = pickle.loads(pickle.dumps(error))
+        assert type(copy) is type(error) and str(copy) == str(error) and copy.errno == error.errno
+        assert vars(copy) == vars(error)
+    assert late.value.errno == errno.ETIMEDOUT
 
 
 def test_an_open_hand_is_closed_at_the_end_of_the_program():

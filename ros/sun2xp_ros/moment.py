@@ -18,5 +18,7 @@ class Moment:
         self.monotonic: int = time.monotonic_ns()
 
     def time_of(self, measured: int) -> Time:
-        """Returns the time of a measurement on the clock of ROS. `measured` is its time on CLOCK_MONOTONIC, ns."""
-        return self.on_ros + Duration(nanoseconds=measured - self.monotonic)
+        """Returns the time of a measurement on the clock of ROS. `measured` is its time on CLOCK_MONOTONIC, ns. If this
+        clock began after the measurement, as a simulated one can, its beginning is returned: no time is negative."""
+        since = max(measured - self.monotonic, -self.on_ros.nanoseconds)
+        return self.on_ros + Duration(nanoseconds=since)

@@ -12,6 +12,7 @@ import sun2xp
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Vector3, Wrench, WrenchStamped
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+from rclpy.clock import Clock, ClockType
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -79,9 +80,11 @@ class HandNode(Node):
         self._faults = [described.fault() for described in self._described]
         self._takes = Commands(self, self.hand, self.fingers, self._prefix)
         self._serves = Services(self, self.hand, self.fingers, self._takes.forget)
-        self.create_timer(1.0 / rate, self._publish_measurements)
-        self.create_timer(1.0 / slow, self._publish_diagnostics)
-        self.create_timer(FAULT_WATCH, self._watch_faults)
+        # The clock of ROS stands still while the simulated time does, and after the system's clock was set back.
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.create_timer(1.0 / rate, self._publish_measurements, clock=steady)
+        self.create_timer(1.0 / slow, self._publish_diagnostics, clock=steady)
+        self.create_timer(FAULT_WATCH, self._watch_faults, clock=steady)
 
     def destroy_node(self) -> None:
         """Closes the hand, which brings every finger to its end state, and ends the node."""

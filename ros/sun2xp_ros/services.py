@@ -40,7 +40,15 @@ class Services:
 
     async def _answer_later(self, fingers: Sequence[int], action: Action, request: Any, response: Any) -> Any:
         done = Future(executor=self._node.executor)
-        self._waiting.submit(lambda: done.set_result(self._answer(fingers, action, request, response)))
+
+        def work() -> None:
+            try:
+                done.set_result(self._answer(fingers, action, request, response))
+            except BaseException as defect:
+                # The node ends with it, as with an exception of any other callback. A planner must not wait for ever.
+                done.set_exception(defect)
+
+        self._waiting.submit(work)
         return await done
 
     def _answer(self, fingers: Sequence[int], action: Action, _request: Any, response: Any) -> Any:
@@ -48,10 +56,12 @@ class Services:
         for finger in fingers:
             try:
                 said.append(f"finger {finger} {action(finger)}")
-            except sun2xp.Error as refusal:
+            except Exception as refusal:
+                # After a defect of one finger, the other fingers must be stopped too.
+                text = str(refusal) if isinstance(refusal, sun2xp.Error) else f"finger {finger}: {refusal!r}"
                 response.success = False
-                said.append(str(refusal))
-                self._node.get_logger().error(str(refusal))
+                said.append(text)
+                self._node.get_logger().error(text)
         response.message = "; ".join(said)
         return response
 

@@ -1,5 +1,6 @@
 """What the node publishes at low and at high rates, with a hand that a test sets."""
 
+import pathlib
 import time
 import types
 
@@ -81,11 +82,45 @@ def test_a_new_fault_is_published_at_once_at_every_rate(ros, opened):
     assert published and published[0].status[0].level == DiagnosticStatus.ERROR
 
 
+def test_the_rates_are_kept_while_the_clock_of_ros_stands_still(ros, opened):
+    # Nobody publishes the simulated time.
+    node = node_with(use_sim_time=True, diagnostics_rate=10.0)
+    states, described = [], []
+    node._joint_states = types.SimpleNamespace(publish=states.append)
+    node._diagnostics = types.SimpleNamespace(publish=described.append)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    end = time.monotonic() + 20
+    while (len(states) < 3 or not described) and time.monotonic() < end:
+        executor.spin_once(timeout_sec=0.05)
+    (hand,) = opened
+    hand.stopped = FAULT
+    while described and described[-1].status[0].level != DiagnosticStatus.ERROR and time.monotonic() < end:
+        executor.spin_once(timeout_sec=0.05)
+    executor.shutdown()
+    node.destroy_node()
+    assert len(states) >= 3 and described and described[-1].status[0].level == DiagnosticStatus.ERROR
+
+
 def test_a_wrong_rate_ends_the_node_before_a_hand_is_opened(ros, opened):
     for parameters in ({"rate": 5000.0}, {"diagnostics_rate": 0.0}):
         with pytest.raises(rclpy.exceptions.ParameterException):
             node_with(**parameters)
     assert not opened
+
+
+def test_the_file_of_parameters_serves_a_node_in_a_namespace(ros, opened, tmp_path):
+    text = (pathlib.Path(__file__).parents[1] / "config/hand.yaml").read_text()
+    for name, default, value in (("simulated", '""', '"nominal"'), ("rate", "100.0", "50.0")):
+        assert f"    {name}: {default}\n" in text
+        text = text.replace(f"    {name}: {default}\n", f"    {name}: {value}\n")
+    file = tmp_path / "hand.yaml"
+    file.write_text(text)
+    node = HandNode(namespace="/left", cli_args=["--ros-args", "--params-file", str(file)])
+    try:
+        assert node.get_namespace() == "/left" and node.get_parameter("rate").value == 50.0 and len(opened) == 1
+    finally:
+        node.destroy_node()
 
 
 def test_the_rates_are_means_since_the_previous_measurement():

@@ -148,6 +148,69 @@ def test_a_finger_is_recovered_although_its_stage_does_not_show_the_stop_yet():
         services.close()
 
 
+class Failing:
+    """A hand whose finger 1 cannot be recovered or stopped, because of an exception that is no refusal."""
+
+    def __init__(self, defect):
+        self.defect, self.stopped = defect, []
+
+    def status(self, _finger):
+        return types.SimpleNamespace(stage="faulted")
+
+    def recover(self, finger):
+        if finger == 1:
+            raise self.defect
+
+    def stop(self, finger):
+        if finger == 1:
+            raise self.defect
+        self.stopped.append(finger)
+
+
+@pytest.fixture
+def failing():
+    def begin(defect):
+        node = types.SimpleNamespace(
+            create_service=lambda *_arguments, **_options: None, executor=None, get_logger=lambda: Logger()
+        )
+        hand = Failing(defect)
+        begun.append(Services(node, hand, (1, 3), lambda _finger: None))
+        return begun[0], hand
+
+    begun = []
+    yield begin
+    begun[0].close()
+
+
+def answer_of(services, action):
+    """What a service that waits in a thread answers."""
+    call = services._answer_later((1, 3), action, None, types.SimpleNamespace())
+    deadline = time.monotonic() + 20
+    while time.monotonic() < deadline:
+        try:
+            call.send(None)
+        except StopIteration as ended:
+            return ended.value
+    raise AssertionError("no answer")
+
+
+def test_a_service_answers_and_does_the_rest_although_one_finger_has_a_defect(failing):
+    services, hand = failing(RuntimeError("broken"))
+    answer = answer_of(services, services._recover)
+    assert not answer.success and answer.message == "finger 1: RuntimeError('broken'); finger 3 has recovered"
+    answer = services._answer((1, 3), services._stop, None, types.SimpleNamespace())
+    assert not answer.success and "finger 3 is stopped" in answer.message and hand.stopped == [3]
+
+
+def test_a_panic_in_the_thread_of_a_service_reaches_the_node(failing):
+    class Panic(BaseException):
+        """As a panic of the library, which is no Exception."""
+
+    services, _ = failing(Panic())
+    with pytest.raises(Panic):
+        answer_of(services, services._recover)
+
+
 def test_a_later_command_replaces_a_trajectory_that_waits(one):
     node, hand, commands = one
     take = node.takes["joint_trajectory"]
@@ -187,3 +250,11 @@ def test_the_time_of_a_measurement_does_not_depend_on_the_time_of_reading(monkey
     monkeypatch.setattr(time, "monotonic_ns", lambda: 21_000_000)
     assert moment.time_of(900_000).to_msg() == Stamp(sec=8, nanosec=499_900_000)
     assert moment.time_of(1_100_000).to_msg() == Stamp(sec=8, nanosec=500_100_000)
+
+
+def test_a_measurement_before_the_clock_of_ros_began_has_the_time_of_its_beginning(monkeypatch):
+    node = Node()
+    monkeypatch.setattr(time, "monotonic_ns", lambda: 1_000_000)
+    for now_ns, stamp in ((0, Stamp()), (200_000, Stamp(nanosec=100_000)), (50_000, Stamp())):
+        node.now_ns = now_ns
+        assert Moment(node).time_of(900_000).to_msg() == stamp

@@ -84,6 +84,20 @@ static void is_refused()
     CHECK(hand.handle() == nullptr);
 }
 
+// A hand that is replaced is closed at once, and not when the variable ends from which the other hand comes.
+static void is_replaced()
+{
+    sun2xp::hand kept = sun2xp::hand::named("nominal"), other = sun2xp::hand::named("nominal");
+    sun2xp::hand &same = kept;
+    const int before = closed;
+
+    kept = std::move(other);
+    CHECK(closed == before + 1);
+    CHECK(kept.handle() != nullptr && other.handle() == nullptr);
+    kept = std::move(same);
+    CHECK(closed == before + 1 && kept.handle() != nullptr);
+}
+
 // For the C calls, a negative time would be no limit, or an error.
 static void does_not_wait_after_a_deadline()
 {
@@ -109,6 +123,8 @@ int main()
     CHECK(closed == 1);
     is_refused();
     CHECK(closed == 3);
+    is_replaced();
+    CHECK(closed == 5);
     does_not_wait_after_a_deadline();
     return 0;
 }

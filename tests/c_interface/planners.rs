@@ -78,6 +78,18 @@ fn events_are_taken_and_waited_for_in_every_way() {
 }
 
 #[test]
+fn the_example_of_events_reports_a_refused_command_and_does_not_wait() {
+    let bench = Bench::new();
+    bench.write("named.toml", "[hand]\nfingers = [2]\n[finger]\nport = \"simulated\"\n");
+    let source = c::root().join("c_examples/Settle.c");
+    let settle = bench.build(c_compiler(), &["-std=c89"], &[source.to_str().expect("the path is text")]);
+    let run = bench.run(Command::new(settle));
+    assert_eq!(run.status.code(), Some(1), "{}", said(&run));
+    assert!(said(&run).contains("opened without finger 1"), "{}", said(&run));
+    assert!(!said(&run).contains("rests"), "{}", said(&run));
+}
+
+#[test]
 fn reflexes_fire_and_are_refused_and_removed() {
     succeed(&strict(&["-std=c99"]), &["reflex.c"]);
 }

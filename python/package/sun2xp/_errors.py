@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import enum
 import errno as system
-from typing import Any, Optional
+from typing import Any, Optional, Tuple
 
 
 class ErrorNumber(enum.IntEnum):
@@ -97,6 +97,10 @@ class ConfigurationError(Error):
 # OSError has an attribute errno too, whose value may be None.
 class TimedOut(Error, TimeoutError):  # type: ignore[misc]
     """A finger has not arrived or settled within the time limit."""
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        # OSError keeps its errno outside the dictionary, so a copy from another process would not have it.
+        return type(self), self.args, {**vars(self), "errno": self.errno}
 
 
 class Fault(Error):
