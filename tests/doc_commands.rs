@@ -108,8 +108,8 @@ fn pages() -> Vec<PathBuf> {
     files.filter(is_page).collect()
 }
 
-/// Returns the commands of a page. A command in running text ends with a backquote and may continue on the next line. Any
-/// other command ends with its line or with a comment.
+/// Returns the commands of a page. A command in running text ends with a backquote and may continue on the next line.
+/// Any other command ends with its line or with a comment.
 fn commands(page: &str) -> Vec<Command> {
     let mut commands = Vec::new();
     for (place, begin) in page.match_indices("cargo test") {

@@ -64,8 +64,8 @@ fn note(_: &Event, _: u64) {
     EVENTS.fetch_add(1, Relaxed);
 }
 
-/// Sends groups until finger 1 has run `end` cycles in total. Groups wait in the servo until their period begins. Returns
-/// the number of groups that the hand has taken.
+/// Sends groups until finger 1 has run `end` cycles in total. Groups wait in the servo until their period begins.
+/// Returns the number of groups that the hand has taken.
 fn send_groups(hand: &Hand, end: u64) -> usize {
     let mut taken = 0;
     for step in 0u32.. {
