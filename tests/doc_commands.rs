@@ -19,8 +19,9 @@ struct Command {
     program: Option<String>,
     lib: bool,
     filter: String,
-    /// Whether only tests run that are ignored otherwise, and whether they run too.
+    /// Whether only tests that are marked `#[ignore]` run.
     only_ignored: bool,
+    /// Whether these tests run too.
     include_ignored: bool,
 }
 
