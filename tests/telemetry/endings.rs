@@ -35,8 +35,8 @@ fn a_killed_hand_leaves_nothing_behind_and_is_a_clear_end() {
     let mut reader = reader(&name);
     read_for(&mut reader, Duration::from_millis(200), &mut Vec::new());
     assert!(hands().expect("names").contains(&name));
-    // The shared memory of the hand has no name in a folder, so it cannot stay there. The folder itself is not compared,
-    // because other programs of the machine use it too.
+    // The shared memory of the hand has no name in a folder, so it cannot stay there. The folder itself is not
+    // compared, because other programs of the machine use it too.
     let mapped = fs::read_to_string(format!("/proc/{}/maps", process.child.id())).expect("the memory of the process");
     assert!(mapped.contains("/memfd:sun2xp telemetry"), "{mapped}");
     assert!(!mapped.contains("/dev/shm/"), "{mapped}");
