@@ -120,6 +120,7 @@ fn fingers_that_are_not_opened_do_not_touch_the_object() {
     let hand = Hand::open_limp(around_a_ball(), None, fingers).expect("open");
     wait(&hand, 0.2);
     let state = hand.object().expect("an object");
+    assert_eq!(state.forces[1..], [[0.0; 3]; FINGERS - 1], "fingers 2 and 3 are not opened");
     assert!((Vector3::from(state.position) - START).amax() < 0.1, "{state:?}");
 }
 

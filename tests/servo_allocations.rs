@@ -64,19 +64,39 @@ fn note(_: &Event, _: u64) {
     EVENTS.fetch_add(1, Relaxed);
 }
 
-/// Sends paths until finger 1 has run `end` cycles in total. Each path replaces the one that is running.
-fn send_paths(hand: &Hand, end: u64) {
+/// Sends groups until finger 1 has run `end` cycles in total. Groups wait in the servo until their period begins.
+/// Returns the number of groups that the hand has taken.
+fn send_groups(hand: &Hand, end: u64) -> usize {
+    let mut taken = 0;
+    for step in 0u32.. {
+        let angle = 0.2 + 0.1 * f64::from(step % 7);
+        let commands = [1, 2, 3].map(|finger| FingerCommand::new(finger).joints([0.0, 0.5, angle]));
+        // A refusal means that groups are sent faster than they take effect.
+        taken += usize::from(hand.send_group(&commands).is_ok());
+        if hand.report(1).expect("a report").losses.cycles >= end {
+            break;
+        }
+        std::thread::yield_now();
+    }
+    taken
+}
+
+/// Sends paths until finger 1 has run `end` cycles in total. Each path replaces the one that is running. Returns the
+/// number of paths that the hand has taken.
+fn send_paths(hand: &Hand, end: u64) -> usize {
+    let mut taken = 0;
     for step in 0u32.. {
         let joints = [0.1, 0.5, 1.0 + 0.1 * f64::from(step % 7)];
         let pose = |time| PathPose { time, pose: Pose::Joints(joints), stiffness: None };
         // A path that begins in motion may be too fast.
-        let _ = hand.send_path(1, &[pose(0.5), pose(0.9)], None);
+        taken += usize::from(hand.send_path(1, &[pose(0.5), pose(0.9)], None).is_ok());
         let _ = hand.keep_valid(1, Validity::hold_after(Some(Duration::from_secs(1))));
         if hand.report(1).expect("a report").losses.cycles >= end {
             break;
         }
         std::thread::yield_now();
     }
+    taken
 }
 
 #[test]
@@ -108,19 +128,11 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     assert_eq!(BY_REPORTS.load(Relaxed), reports_before, "allocations in the thread that collects reports");
     others = BY_OTHERS.load(Relaxed) - others;
     assert!(others < 100, "the planner's calls allocate: {others}");
-    // Groups wait in the servo until their period begins.
-    let end = cycles(1) + 200;
-    for step in 0u32.. {
-        let commands = [1, 2, 3].map(|finger| FingerCommand::new(finger).joints([0.0, 0.5, f64::from(step % 7) * 0.1]));
-        // A refusal means that groups are sent faster than they take effect.
-        let _ = hand.send_group(&commands);
-        if cycles(1) >= end {
-            break;
-        }
-        std::thread::yield_now();
-    }
+    let groups = send_groups(&hand, cycles(1) + 200);
     assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads while groups are sent");
-    send_paths(&hand, cycles(1) + 500);
+    assert!(groups > 10, "only {groups} groups were taken");
+    let paths = send_paths(&hand, cycles(1) + 500);
+    assert!(paths > 10, "only {paths} paths were taken");
     assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads while paths are sent");
     // The planner makes a new controller, and the servo only copies it.
     let end = cycles(1) + 200;

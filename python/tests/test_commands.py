@@ -1,5 +1,7 @@
 """Every command reaches the finger, and every query has its shape."""
 
+import dataclasses
+
 import numpy
 import pytest
 
@@ -121,7 +123,7 @@ def test_results_have_their_shapes(shared):
     with pytest.raises(sun2xp.Refused, match="wake_up, write"):
         shared.timing(1, "lunch")
     assert shared.fault(1).stopped is None
-    with pytest.raises(Exception):
+    with pytest.raises(dataclasses.FrozenInstanceError):
         status.rate = 7
 
 

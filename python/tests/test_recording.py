@@ -40,10 +40,16 @@ def test_the_tool_starts_the_server_beside_it(tmp_path):
 
 
 def test_control_c_ends_the_tool(tmp_path):
-    process = subprocess.Popen([TOOL, "board", "--link", "unused"], stdout=subprocess.PIPE, cwd=tmp_path)
-    time.sleep(1)
+    arguments = [TOOL, "board", "--link", "unused"]
+    process = subprocess.Popen(arguments, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=tmp_path)
+    # The tool runs: a tool that has failed has the exit status 1 too.
+    assert process.stdout.readline().startswith(b"/dev/pts/") and process.poll() is None
     process.send_signal(2)
-    assert process.wait(20) in (0, 1, -2)
+    try:
+        assert process.wait(20) in (0, 1, -2)
+    finally:
+        process.kill()
+        process.communicate()
 
 
 def test_a_black_box_has_the_last_cycles(hand):

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 import time
+import types
 
 import pytest
 import rclpy
@@ -68,9 +69,12 @@ class Planner:
         subscribe(Log, "/rosout")
         for finger in (1, 2, 3):
             subscribe(WrenchStamped, f"finger{finger}/wrench")
-        self.trajectories = self.node.create_publisher(JointTrajectory, "joint_trajectory", 10)
-        self.targets = self.node.create_publisher(PointStamped, "finger1/target", 10)
-        self.stiffnesses = self.node.create_publisher(Float64MultiArray, "finger1/stiffness", 10)
+        #: Number of lines of the log before the last message that was published.
+        self.logged = 0
+        self.publishers = []
+        self.trajectories = self._publisher(JointTrajectory, "joint_trajectory")
+        self.targets = self._publisher(PointStamped, "finger1/target")
+        self.stiffnesses = self._publisher(Float64MultiArray, "finger1/stiffness")
         self.executor = SingleThreadedExecutor()
         self.executor.add_node(self.node)
         self.thread = threading.Thread(target=self.executor.spin, daemon=True)
@@ -84,11 +88,26 @@ class Planner:
 
         return self.node.create_subscription(kind, topic, keep, qos)
 
+    def _publisher(self, kind, topic):
+        publisher = self.node.create_publisher(kind, topic, 10)
+        self.publishers.append(publisher)
+
+        def publish(message):
+            with self.changed:
+                self.logged = len(self.received.get("/rosout", []))
+            publisher.publish(message)
+
+        return types.SimpleNamespace(publish=publish)
+
     def wait(self, topic, condition=lambda message: True):
-        """Waits for a message that arrives after this call and fulfils the condition, and returns it."""
+        """Waits for a message that arrives after this call and fulfils the condition, and returns it.
+
+        For the log, it is a line that arrives after the last message was published. The node may write this line before
+        this call.
+        """
         deadline = time.monotonic() + LONGEST
         with self.changed:
-            place = len(self.received.get(topic, []))
+            place = self.logged if topic == "/rosout" else len(self.received.get(topic, []))
             while True:
                 messages = self.received.get(topic, [])
                 for message in messages[place:]:
@@ -129,7 +148,7 @@ class Planner:
     def ready(self):
         """Waits until the node has subscribed to the publishers of this planner, and a message of the node arrives."""
         deadline = time.monotonic() + LONGEST
-        for publisher in (self.trajectories, self.targets, self.stiffnesses):
+        for publisher in self.publishers:
             while publisher.get_subscription_count() == 0:
                 assert time.monotonic() < deadline, f"nobody subscribes to {publisher.topic_name}"
                 time.sleep(0.05)

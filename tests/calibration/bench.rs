@@ -87,11 +87,16 @@ impl Bench {
             self.plant.step(self.wiring.torques(torques));
             self.largest_tension = self.largest_tension.max(self.plant.tensions().max());
         }
+        // The tests compare maxima, which skip NaN. So a finger that has diverged to NaN would pass.
+        let (joints, tensions) = (self.plant.joints(), self.plant.tensions());
+        assert!(joints.iter().chain(tensions.iter()).all(|value| value.is_finite()), "{joints} {tensions}");
         let (state, feedback, activity) = (&mut self.state, Some(feedback), &self.activity);
         (self.command, self.report) = match previous {
             None => self.controller.cycle(state, feedback, activity),
             Some(previous) => self.controller.take_over(previous, state, feedback, activity),
         };
+        let torques = self.command.motor_torques;
+        assert!(torques.iter().all(|torque| torque.is_finite()), "{torques}");
     }
 
     pub fn run(&mut self, seconds: f64, activity: &Activity) {

@@ -38,7 +38,9 @@ impl Settling {
     }
 }
 
-/// The largest distance of a joint from its target, rad.
+/// The largest distance of a joint from its target, rad. An angle that is NaN is infinitely far away: `f64::max` skips
+/// NaN, so without this rule a finger whose angles are all NaN would be at its target.
 pub fn distance(position: [f64; 3], target: [f64; 3]) -> f64 {
-    position.iter().zip(target).map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max)
+    let distances = position.iter().zip(target).map(|(is, wanted)| (is - wanted).abs());
+    distances.map(|distance| if distance.is_nan() { f64::INFINITY } else { distance }).fold(0.0, f64::max)
 }

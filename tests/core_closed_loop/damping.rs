@@ -16,10 +16,11 @@ fn restlessness(finger: &ConfiguredFinger, rate: f64, stiffness: f64, damping: f
         let hard_finger = SetPoint::hard_finger(joints, Matrix3::identity() * stiffness);
         Activity::Follow(SetPoint { law: Law::Exact, damping, ..hard_finger })
     };
-    let mut worst = 0.0f64;
+    let (mut worst, mut tried) = (0.0f64, 0);
     for (number, pose) in poses_of(SEED).into_iter().enumerate().step_by(2) {
         let way = Vector3::ith(number % 3, if number % 4 == 0 { 0.5 } else { -0.5 });
         let Some(goal) = shifted(finger, &pose, &way) else { continue };
+        tried += 1;
         let mut finger = finger.clone();
         finger.simulation.start_degrees = pose.map(f64::to_degrees).into();
         let mut servo = Loop::new(&finger, rate);
@@ -39,6 +40,7 @@ fn restlessness(finger: &ConfiguredFinger, rate: f64, stiffness: f64, damping: f
         let square = tips.iter().map(|tip| (tip - mean).norm_squared()).sum::<f64>() / tips.len() as f64;
         worst = worst.max(square.sqrt());
     }
+    assert!(tried >= 9, "only {tried} of 12 poses have a goal within the joint limits");
     worst
 }
 

@@ -122,6 +122,9 @@ impl Loop {
             self.plant.step((self.command.motor_torques * 0.01).into());
             self.least_true = self.least_true.min(self.plant.tensions().min());
         }
+        // The tests compare minima and maxima, which skip NaN. So a finger that has diverged to NaN would pass.
+        let (joints, tensions) = (self.plant.joints(), self.plant.tensions());
+        assert!(joints.iter().chain(tensions.iter()).all(|value| value.is_finite()), "{joints} {tensions}");
         let lost = (self.random.next_u32() as f64) < self.loss * 4294967296.0;
         let feedback = if lost { None } else { Some(&feedback) };
         if let Some(gravity) = &self.set_gravity {
@@ -131,6 +134,7 @@ impl Loop {
             None => self.controller.cycle(&mut self.state, feedback, activity),
             Some(previous) => self.controller.take_over(&previous, &mut self.state, feedback, activity),
         };
+        assert!(command.motor_torques.iter().all(|torque| torque.is_finite()), "{}", command.motor_torques);
         self.watch(feedback, activity);
         let jump = (command.motor_torques - self.command.motor_torques).amax() / 0.0475;
         self.largest_jump = self.largest_jump.max(jump);

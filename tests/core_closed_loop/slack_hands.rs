@@ -151,6 +151,7 @@ fn take_up(hand: &Hand, pose: &Vector3<f64>, seed: u64, found: &mut Found) {
 fn the_joints_stay_on_every_hand() {
     let seeds = std::env::var("SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(1);
     let only = std::env::var("HAND").unwrap_or_default();
+    assert!(HANDS.iter().any(|hand| hand.name.contains(&only)), "no hand has {only:?} in its name");
     for hand in HANDS.iter().filter(|hand| hand.name.contains(&only)) {
         let mut found = Found::default();
         for seed in 1..=seeds {

@@ -235,8 +235,9 @@ fn a_dead_gauge_of_a_rubbing_hand_is_reported() {
 
 #[test]
 fn a_jammed_motor_of_a_rubbing_hand_is_reported() {
-    let (_, worst) = reports(8, &[FaultKind::StalledMotor], Defect::JammedMotor, out_of_balance);
-    assert!(worst <= 200.0, "{worst} ms");
+    let (median, worst) = reports(8, &[FaultKind::StalledMotor], Defect::JammedMotor, out_of_balance);
+    // The time is 0 if the motor is never out of balance. Then nothing would be measured.
+    assert!(median > 0.0 && worst <= 200.0, "{median}, {worst} ms");
 }
 
 #[test]
@@ -250,11 +251,12 @@ fn a_drifting_gauge_of_a_rubbing_hand_is_reported() {
     }
 }
 
-/// Prints how many fingers of each hand have a false alarm:
+/// Prints how many fingers of each hand have a false alarm. docs/faults.md says that none has one:
 /// `cargo test --test monitors_on_rubbing_hands -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn table_of_false_alarms() {
+    let mut all = Vec::new();
     for truth in truths() {
         let mut alarms: BTreeMap<String, u32> = BTreeMap::new();
         for seed in 0..12 {
@@ -266,5 +268,7 @@ fn table_of_false_alarms() {
             *alarms.entry(alarm).or_default() += 1;
         }
         println!("| {} | {alarms:?} |", truth.what);
+        all.extend(alarms.into_keys().map(|alarm| format!("{}: {alarm}", truth.what)));
     }
+    assert!(all.is_empty(), "{all:#?}");
 }

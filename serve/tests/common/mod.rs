@@ -5,10 +5,12 @@
 
 pub mod child;
 pub mod client;
+#[path = "../../../tests/common/free_port.rs"]
+mod free_port;
 
 pub use client::Client;
+pub use free_port::free_port;
 
-use std::net::TcpListener;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use sun2xp::hand::parse_configuration;
@@ -73,11 +75,6 @@ impl Rig {
     pub fn connect(&self, name: &str) -> Client {
         Client::connect(&self.endpoint, name, None).expect("connected")
     }
-}
-
-/// A port of loopback that is free now.
-pub fn free_port() -> u16 {
-    TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a free port").port()
 }
 
 /// Waits until `found` returns something.

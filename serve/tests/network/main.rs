@@ -2,6 +2,8 @@
 //! or is cut. Tests that need a namespace are left out where this process may not make one.
 
 mod bad_line;
+#[path = "../../../tests/common/free_port.rs"]
+mod free_port;
 mod line;
 mod line_tests;
 mod namespace;

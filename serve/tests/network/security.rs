@@ -1,7 +1,7 @@
 //! Who may do what, and which Targets are taken: against a server in this process, at loopback.
 
+use super::free_port::free_port;
 use super::raw::{Files, Raw, joints};
-use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use sun2xp::model::configuration::RealTime;
@@ -17,8 +17,7 @@ const ARRIVES: Duration = Duration::from_millis(300);
 
 /// Returns an endpoint at loopback where nobody listens.
 pub fn loopback() -> String {
-    let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
-    format!("tcp/{}", listener.local_addr().expect("an address"))
+    format!("tcp/127.0.0.1:{}", free_port())
 }
 
 /// The table [serve.clients] for clients that may command.

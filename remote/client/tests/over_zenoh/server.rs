@@ -1,8 +1,12 @@
 //! A small server that speaks the protocol over Zenoh on loopback, with fingers that reach every commanded position at
 //! once.
 
+#[path = "../../../../tests/common/free_port.rs"]
+mod free_port;
+
+pub use free_port::free_port;
+
 use crate::fake_hand::FakeHand;
-use std::net::TcpListener;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -12,12 +16,6 @@ use zenoh::{Config, Session, Wait};
 
 /// How long a test waits for what must happen. The machine may be busy.
 pub const LIMIT: Duration = Duration::from_secs(20);
-
-/// A port that is free now.
-pub fn free_port() -> u16 {
-    let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
-    listener.local_addr().expect("an address").port()
-}
 
 /// The configuration of a client of this port. The machine may be busy, so a position counts as stale only after 5 s.
 pub fn configuration(port: u16, hand: &str, client: &str) -> RemoteConfiguration {

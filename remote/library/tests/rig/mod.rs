@@ -2,10 +2,13 @@
 
 #![allow(dead_code, reason = "each test program uses a part")]
 
+#[path = "../../../../tests/common/free_port.rs"]
+mod free_port;
+
+use free_port::free_port;
 use std::env;
 use std::fs;
 use std::io::{BufRead, BufReader};
-use std::net::TcpListener;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -144,12 +147,6 @@ impl Drop for Rig {
         let _ = self.server.kill();
         let _ = self.server.wait();
     }
-}
-
-/// A port of the loopback device that was free a moment ago.
-fn free_port() -> u16 {
-    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-    listener.local_addr().expect("an address").port()
 }
 
 fn serve_until_ready(configuration: &Path) -> Child {

@@ -234,7 +234,8 @@ fn all_kinds(seeds: std::ops::Range<u64>) {
         }
         println!("| {name} | {named} of {} | {tension:.1} | {:.1} |", seeds.clone().count(), beyond.to_degrees());
         assert!(tension <= 60.0, "{name}: {tension} N");
-        assert!(beyond <= 0.02, "{name}: {beyond} rad beyond the stops");
+        // docs/commissioning.md: no joint reaches a stop.
+        assert!(beyond < 0.0, "{name}: {beyond} rad beyond the stops");
         right_names += named;
         all += seeds.clone().count() as u64;
     }

@@ -87,7 +87,7 @@ fn zero_error(seed: u64, method: ZeroingMethod, steps: &[Step]) -> Option<f64> {
 /// accepted, and the largest error of a joint angle, degrees. Returns the largest of all errors, degrees. The
 /// measurement is described in docs/commissioning.md, "How exact the zeros are".
 fn zeros_of_all_hands(rounds: u64, steps: &[Step]) -> f64 {
-    let mut largest: f64 = 0.0;
+    let (mut largest, mut all): (f64, usize) = (0.0, 0);
     for method in [ZeroingMethod::Stops, ZeroingMethod::Pose] {
         for (hand, name) in (0..).zip(NamedHand::ALL) {
             let errors: Vec<Option<f64>> =
@@ -96,8 +96,11 @@ fn zeros_of_all_hands(rounds: u64, steps: &[Step]) -> f64 {
             let accepted = errors.iter().flatten().count();
             println!("| {} | {method:?} | {accepted} of {rounds} | {worst:.3} |", name.name());
             largest = largest.max(worst);
+            all += accepted;
         }
     }
+    // If every zeroing were refused, no zero would be wrong.
+    assert!(all as u64 >= 4 * rounds, "only {all} of {} commissionings were accepted", 8 * rounds);
     largest
 }
 
@@ -106,12 +109,15 @@ const ZEROED: [Step; 4] = [Step::Encoders, Step::Gauges, Step::Motors, Step::Zer
 #[test]
 #[ignore = "long: 160 zeroings"]
 fn zeros_of_every_hand_are_right_or_refused() {
-    zeros_of_all_hands(20, &ZEROED);
+    // Before identification, the stretch of the tendons and the gains of the gauges are not known.
+    let largest = zeros_of_all_hands(20, &ZEROED);
+    assert!(largest < 1.0, "{largest} degrees");
 }
 
 #[test]
 #[ignore = "long: 40 identifications"]
 fn zeros_after_identification_are_right_or_refused() {
     let steps = [&ZEROED[..], &[Step::Tendons]].concat();
-    zeros_of_all_hands(5, &steps);
+    let largest = zeros_of_all_hands(5, &steps);
+    assert!(largest <= 0.1, "{largest} degrees, and docs/calibration.md promises 0.1 degrees");
 }
