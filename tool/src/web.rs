@@ -42,15 +42,21 @@ pub struct Address {
     bind: IpAddr,
 }
 
+/// Reserves the address of the page. Browsers that connect wait for [`serve`].
+///
+/// # Errors
+/// Returns an error if the address cannot be used.
+pub fn listen(address: &Address) -> Result<TcpListener, Failure> {
+    let at = SocketAddr::new(address.bind, address.port);
+    TcpListener::bind(at).map_err(|error| format!("cannot serve at {at}: {error}").into())
+}
+
 /// Serves the page until SIGINT, SIGTERM, SIGHUP or SIGQUIT. Prints its address. With a `control`, pages may move the
 /// hand, and they need the token on loopback too.
 ///
 /// # Errors
-/// Returns an error if the address cannot be used.
-pub fn serve(address: &Address, source: Source, control: Option<Control>) -> Result<(), Failure> {
-    let at = SocketAddr::new(address.bind, address.port);
-    let listener = TcpListener::bind(at)
-        .map_err(|error| io::Error::new(error.kind(), format!("cannot serve at {at}: {error}")))?;
+/// Returns an error if the page cannot be served.
+pub fn serve(listener: TcpListener, source: Source, control: Option<Control>) -> Result<(), Failure> {
     let bound = listener.local_addr()?;
     let secret = control.is_some() || !bound.ip().is_loopback();
     let token = if secret { Some(access::new_token().map_err(io::Error::other)?) } else { None };
