@@ -81,11 +81,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if interrupt.requested() {
         return Ok(());
     }
+    let own = Wanted::Process(std::process::id());
     if let Some(listener) = listener {
         let control = if arguments.control { Some(web::Control::start(&hand, configuration.clone())?) } else { None };
-        return web::serve(listener, web::Source::Own, control);
+        return web::serve(listener, own, control);
     }
-    let source = Source::start(Wanted::Process(std::process::id()))?;
+    let source = Source::start(own)?;
     let worker = Worker::start(hand.clone(), configuration.clone())?;
     let mut view = View::new("the hand is open, and its first cycles have not arrived yet".into());
     view.jog = Some(JogPanel::new(real));

@@ -80,7 +80,11 @@ impl Drop for Source {
 }
 
 impl Wanted {
-    fn attach(&self) -> Result<Reader, AttachError> {
+    /// Attaches a reader to the hand.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such hand, or if it does not answer.
+    pub fn attach(&self) -> Result<Reader, AttachError> {
         let process = match self {
             Self::Named(name) => return Reader::attach(name.as_deref()),
             Self::Process(process) => *process,
