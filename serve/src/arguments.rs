@@ -3,7 +3,6 @@
 use crate::ServeError;
 use crate::certificates::{self, Wanted};
 use crate::output::say;
-use crate::process::ignores;
 use crate::router::Router;
 use crate::server::{Server, prepare};
 use crate::settings::{Overrides, Permission, Settings, client_name};
@@ -13,6 +12,7 @@ use signal_hook::iterator::Signals;
 use std::path::PathBuf;
 use sun2xp::hand::find_configuration;
 use sun2xp::model::Shown;
+use sun2xp::realtime::is_ignored;
 use sun2xp::{Configured, Hand};
 use sun2xp_remote_protocol::ClientName;
 
@@ -99,7 +99,7 @@ pub fn run(arguments: Arguments) -> Result<(), ServeError> {
 /// The signals that end the server.
 fn ending() -> Vec<i32> {
     // A terminal that closes sends SIGHUP. A person who starts the program with nohup wants it to stay.
-    [SIGINT, SIGTERM].into_iter().chain((!ignores(SIGHUP)).then_some(SIGHUP)).collect()
+    [SIGINT, SIGTERM].into_iter().chain((!is_ignored(SIGHUP)).then_some(SIGHUP)).collect()
 }
 
 /// Reads the names that were given with an option. clap does not read them itself, because its messages would show

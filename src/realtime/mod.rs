@@ -42,7 +42,7 @@ pub use pages::{Pages, SharedPages};
 pub use period::Schedule;
 pub use response_time::{PeriodicThread, Response, response_times};
 pub use ring::{Consumer, Producer, ring};
-pub use signals::SignalsBlocked;
+pub use signals::{SignalsBlocked, is_ignored};
 pub use standard_error::{MessageReceiver, Severity, offer_messages_to, report};
 pub use threads::{LockedStack, Priority, RealtimeRefusals, spawn, touch_stack};
 pub use timing::{CycleStage, CycleTiming, Distribution, Histograms};

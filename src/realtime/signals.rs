@@ -80,6 +80,17 @@ fn under<T>(change: c_int, signals: &libc::sigset_t, work: impl FnOnce() -> T) -
     result
 }
 
+/// Whether this process ignores a signal. A program that was started by nohup ignores SIGHUP until it has a handler of
+/// its own for this signal.
+pub fn is_ignored(signal: c_int) -> bool {
+    let mut action = MaybeUninit::<libc::sigaction>::uninit();
+    // SAFETY: a null action changes nothing. A call that succeeds initialises `action`.
+    unsafe {
+        libc::sigaction(signal, std::ptr::null(), action.as_mut_ptr()) == 0
+            && action.assume_init().sa_sigaction == libc::SIG_IGN
+    }
+}
+
 /// Whether a signal is pending for the calling thread, which blocks it.
 pub fn is_pending(signal: c_int) -> bool {
     let mut pending = MaybeUninit::uninit();
@@ -104,5 +115,21 @@ fn set_of(signals: &[c_int]) -> libc::sigset_t {
             libc::sigaddset(set.as_mut_ptr(), signal);
         }
         set.assume_init()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_ignored_signal_is_known() {
+        assert!(!is_ignored(libc::SIGWINCH) && !is_ignored(0));
+        // SAFETY: no function of the process runs at a signal that is ignored, and nothing else here uses this one.
+        let before = unsafe { libc::signal(libc::SIGWINCH, libc::SIG_IGN) };
+        assert!(is_ignored(libc::SIGWINCH));
+        // SAFETY: the action is the previous one.
+        unsafe { libc::signal(libc::SIGWINCH, before) };
+        assert!(!is_ignored(libc::SIGWINCH));
     }
 }

@@ -97,14 +97,17 @@ fn mass(text: &str) -> Result<f64, String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
+    let (file, number) = (path_beside(&arguments.config), arguments.finger.get());
     if !arguments.config.exists() {
         new_file::create(&arguments.config, arguments.finger, &arguments.ports)?;
+        ProgressFile::forget(&file, number)?;
     }
     let configured = Configured::read(&arguments.config)?.local()?;
     let configured = match configured.configuration.hand.fingers.contains(arguments.finger) {
         true => configured,
         false => {
             new_finger::add(&arguments.config, &configured.configuration, arguments.finger, &arguments.ports)?;
+            ProgressFile::forget(&file, number)?;
             Configured::read(&arguments.config)?.local()?
         }
     };
@@ -120,8 +123,6 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
             finger.tendon.maximum
         )));
     }
-    let file = path_beside(&arguments.config);
-    let number = arguments.finger.get();
     let known = ProgressFile::read(&file)?.fingers.remove(&number).unwrap_or_default();
     let steps = arguments.steps_left(|step| known.steps.contains_key(&step));
     let mut terminal = Terminal::new(arguments.yes, steps.clone());

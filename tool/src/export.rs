@@ -14,6 +14,7 @@ use std::collections::btree_map::Entry;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use sun2xp::model::ShownPath;
 use sun2xp::simulated::ObjectState;
 
 /// Writes a recording as CSV: one file for each finger, one for the events, and one for the object of a simulated hand.
@@ -58,7 +59,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // An interrupted export must return, because only files that are dropped are removed.
     let interrupt = Interrupt::watch()?;
     trace::read(&arguments.file, "export", &mut |item| {
-        if interrupt.requested() { Err("the export was interrupted".into()) } else { files.take(item) }
+        if interrupt.requested() {
+            return Err("the export was interrupted".into());
+        }
+        files.take(item).map_err(|failure| if standard_output { failure } else { arguments.explained(failure) })
     })?;
     files.finish()
 }
@@ -195,8 +199,21 @@ impl Arguments {
             OBJECT => self.name("object"),
             finger => self.name(&format!("finger{finger}")),
         }?;
-        let folder = self.output.clone().or_else(|| self.file.parent().map(Path::to_path_buf));
-        Ok(folder.unwrap_or_default().join(name))
+        Ok(self.folder().join(name))
+    }
+
+    /// The folder of the CSV files.
+    fn folder(&self) -> &Path {
+        self.output.as_deref().or_else(|| self.file.parent()).unwrap_or(Path::new(""))
+    }
+
+    /// Adds the folder to an error of the system, such as a full disk.
+    fn explained(&self, failure: Failure) -> Failure {
+        let folder = Some(self.folder()).filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        match failure.downcast_ref::<io::Error>() {
+            Some(error) => format!("cannot write into {}: {error}", ShownPath(folder)).into(),
+            None => failure,
+        }
     }
 
     /// The name of a CSV file: the name of the recording without its extension, and the part.

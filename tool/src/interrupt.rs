@@ -1,9 +1,11 @@
-//! The request to end: SIGINT, as Ctrl-C sends it, SIGTERM, SIGHUP or SIGQUIT.
+//! The request to end: SIGINT, as Ctrl-C sends it, SIGTERM, SIGHUP or SIGQUIT. A program that nohup has started ignores
+//! SIGHUP.
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use sun2xp::realtime::is_ignored;
 
 /// The request, which all parts of the program share. `None` before the signals are watched.
 static REQUESTED: Mutex<Option<Arc<AtomicBool>>> = Mutex::new(None);
@@ -12,8 +14,8 @@ static REQUESTED: Mutex<Option<Arc<AtomicBool>>> = Mutex::new(None);
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Replaces the default action of the signals, which ends the process. If the signals are already watched, the
-    /// result also reports a request that has come since the first call.
+    /// Replaces the default action of the signals, which ends the process. An ignored SIGHUP stays ignored. If the
+    /// signals are already watched, the result also reports a request that has come since the first call.
     ///
     /// # Errors
     /// Returns an error if the system refuses to watch the signals.
@@ -23,7 +25,9 @@ impl Interrupt {
             return Ok(Self(requested.clone()));
         }
         let requested = Arc::new(AtomicBool::new(false));
-        for signal in [SIGHUP, SIGINT, SIGQUIT, SIGTERM] {
+        // A person who starts a recorder with nohup wants it to stay when the terminal closes.
+        let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
+        for signal in hangup.into_iter().chain([SIGINT, SIGQUIT, SIGTERM]) {
             signal_hook::flag::register(signal, requested.clone())?;
         }
         *shared = Some(requested.clone());

@@ -52,12 +52,14 @@ pub struct Arguments {
 /// Opens the hand, and closes it at SIGINT, SIGTERM, SIGHUP or SIGQUIT. Without a page, a key closes it too.
 ///
 /// # Errors
-/// Returns an error if there is no terminal, if the configuration cannot be used, if the person does not confirm, or
-/// if the hand cannot be opened.
+/// Returns an error if there is no terminal, if the page cannot be served, if the configuration cannot be used, if the
+/// person does not confirm, or if the hand cannot be opened.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !arguments.web && !Screen::available() {
         return Err("jog needs a terminal: run it in one, or with --web".into());
     }
+    // If the page cannot be served, the hand need not be opened, and nothing moves.
+    let listener = arguments.web.then(|| web::listen(&arguments.address)).transpose()?;
     let mut configuration = match &arguments.config {
         Some(file) => hand::read_configuration(file)?,
         None => {
@@ -79,11 +81,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if interrupt.requested() {
         return Ok(());
     }
-    if arguments.web {
+    let own = Wanted::Process(std::process::id());
+    if let Some(listener) = listener {
         let control = if arguments.control { Some(web::Control::start(&hand, configuration.clone())?) } else { None };
-        return web::serve(&arguments.address, web::Source::Own, control);
+        return web::serve(listener, own, control);
     }
-    let source = Source::start(Wanted::Process(std::process::id()))?;
+    let source = Source::start(own)?;
     let worker = Worker::start(hand.clone(), configuration.clone())?;
     let mut view = View::new("the hand is open, and its first cycles have not arrived yet".into());
     view.jog = Some(JogPanel::new(real));

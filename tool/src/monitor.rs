@@ -48,7 +48,7 @@ pub struct Arguments {
 /// the page cannot be served.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.web {
-        return web::serve(&arguments.address, web::Source::Named(arguments.name.clone()), None);
+        return web::serve(web::listen(&arguments.address)?, Wanted::Named(arguments.name.clone()), None);
     }
     if !Screen::available() {
         return Err("the monitor needs a terminal: use `sun2xp status` for a file, a pipe or a script".into());

@@ -4,17 +4,17 @@ mod counts;
 mod display;
 mod files;
 
-use crate::failure::ExitStatus;
-use crate::failure::{Failure, wrong_usage};
+use crate::failure::{ExitStatus, Failure, wrong_usage};
 use crate::interrupt::Interrupt;
-use crate::recording::{Item, Recording};
+use crate::recording::{Entry, Item, Recording};
 use counts::Counts;
 use display::Display;
 use files::{Files, Limits, Turn};
+use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use sun2xp::model::{Counted, FingerNumber};
+use sun2xp::model::{Counted, FingerNumber, ShownPath};
 use sun2xp::realtime::now;
 use sun2xp::telemetry::{Description, Ended, Message, Reader};
 
@@ -135,16 +135,28 @@ fn report(path: &files::Written, took: Duration, counts: &Counts, reason: Option
 /// Converts a black box.
 fn convert(black_box: &Path, arguments: &Arguments, limits: Limits) -> Result<ExitStatus, Failure> {
     let recording = Recording::open(black_box)?;
+    if !recording.is_black_box() {
+        let reason = "is a recording already, and not a black box: use it as it is";
+        return Err(wrong_usage(format!("{} {reason}", ShownPath(black_box))));
+    }
     let description: Description = recording.description().clone();
     let output = arguments.output.clone().unwrap_or_else(|| black_box.with_extension("mcap"));
     let mut recording = recording.peekable();
     // The first entry has the time of the first cycle. A black box without cycles begins at 0.
     let begin = recording.peek().and_then(|entry| entry.as_ref().ok()).map_or(0, |entry| entry.time);
     let begin = begin.saturating_add_signed(description.clock_offset.saturating_neg());
-    let mut files = Files::begin(Some(output), &description, limits, begin)?;
+    let files = Files::begin(Some(output.clone()), &description, limits, begin)?;
+    copy(recording, files).inspect_err(|_| {
+        // A part of a black box would look like the file of a recorder that was killed.
+        let _ = fs::remove_file(&output);
+    })
+}
+
+/// Writes the entries of a black box.
+fn copy(entries: impl Iterator<Item = Result<Entry, Failure>>, mut files: Files) -> Result<ExitStatus, Failure> {
     let mut counts = Counts::default();
     let (mut first, mut last) = (None, 0);
-    for entry in recording {
+    for entry in entries {
         let entry = entry?;
         // A black box has no gaps.
         let Item::Message(message) = &entry.item else { continue };

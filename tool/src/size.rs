@@ -25,7 +25,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     /// The finger.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = finger)]
+    #[arg(long, value_name = "N", default_value = "1", value_parser = crate::commission::finger)]
     finger: FingerNumber,
     #[command(flatten)]
     wanted: Wanted,
@@ -59,11 +59,6 @@ fn positive(text: &str) -> Result<f64, String> {
         Ok(number) if f64::is_finite(number) && number > 0.0 => Ok(number),
         _ => Err("not a number above 0".into()),
     }
-}
-
-fn finger(text: &str) -> Result<FingerNumber, String> {
-    let number: i32 = text.parse().map_err(|_| "not a number")?;
-    FingerNumber::try_from(number).map_err(|_| "not 1, 2 or 3".into())
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {

@@ -16,9 +16,9 @@ mod session;
 mod translation;
 
 pub use control::Control;
-pub use feed::Source;
 
 use crate::failure::Failure;
+use crate::monitor::source::Wanted;
 use access::Access;
 use hub::Hub;
 use server::Server;
@@ -42,22 +42,28 @@ pub struct Address {
     bind: IpAddr,
 }
 
+/// Reserves the address of the page. Browsers that connect wait for [`serve`].
+///
+/// # Errors
+/// Returns an error if the address cannot be used.
+pub fn listen(address: &Address) -> Result<TcpListener, Failure> {
+    let at = SocketAddr::new(address.bind, address.port);
+    TcpListener::bind(at).map_err(|error| format!("cannot serve at {at}: {error}").into())
+}
+
 /// Serves the page until SIGINT, SIGTERM, SIGHUP or SIGQUIT. Prints its address. With a `control`, pages may move the
 /// hand, and they need the token on loopback too.
 ///
 /// # Errors
-/// Returns an error if the address cannot be used.
-pub fn serve(address: &Address, source: Source, control: Option<Control>) -> Result<(), Failure> {
-    let at = SocketAddr::new(address.bind, address.port);
-    let listener = TcpListener::bind(at)
-        .map_err(|error| io::Error::new(error.kind(), format!("cannot serve at {at}: {error}")))?;
+/// Returns an error if the page cannot be served.
+pub fn serve(listener: TcpListener, wanted: Wanted, control: Option<Control>) -> Result<(), Failure> {
     let bound = listener.local_addr()?;
     let secret = control.is_some() || !bound.ip().is_loopback();
     let token = if secret { Some(access::new_token().map_err(io::Error::other)?) } else { None };
     writeln!(io::stdout(), "{}", url(bound, token.as_deref()))?;
     let hub = Arc::new(Hub::new());
     let (its_hub, may_control) = (Arc::clone(&hub), control.is_some());
-    thread::Builder::new().name("sun2xp feed".into()).spawn(move || feed::run(&source, may_control, &its_hub))?;
+    thread::Builder::new().name("sun2xp feed".into()).spawn(move || feed::run(&wanted, may_control, &its_hub))?;
     let access = Arc::new(Access { address: bound, token, machine: access::machine() });
     let server = Server { access, hub, control: control.map(Arc::new) };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;

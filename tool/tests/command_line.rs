@@ -3,7 +3,9 @@
 #[path = "common/terminal.rs"]
 mod terminal;
 
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 use terminal::{bare, on_terminal};
 
 const TOOL: &str = env!("CARGO_BIN_EXE_sun2xp");
@@ -135,6 +137,31 @@ fn a_terminal_shows_a_bar_that_disappears() {
     // The last picture is erased before the result appears.
     assert!(bar.trim_end().ends_with("\u{1b}[2K") || bar.trim_end().ends_with("\u{1b}[1A"), "{bar:?}");
     assert!(result.contains("───") && !result.contains("| thread"), "{result}");
+}
+
+/// A person who starts the program with nohup closes the terminal. The program must stay.
+#[test]
+fn an_ignored_signal_stays_ignored() {
+    let script = "trap '' HUP; exec \"$0\" monitor no-such-hand --web";
+    let mut program =
+        Command::new("sh").args(["-c", script, TOOL]).stdout(Stdio::piped()).spawn().expect("the shell runs");
+    let status = format!("/proc/{}/status", program.id());
+    let mask = |name: &str| {
+        let text = std::fs::read_to_string(&status).expect("a running program");
+        let mask = text.lines().find_map(|line| line.strip_prefix(name)).expect("a mask").trim().to_owned();
+        u64::from_str_radix(&mask, 16).expect("a mask")
+    };
+    let bit = |signal: i32| 1u64 << (signal - 1);
+    let begun = Instant::now();
+    // The program watches SIGTERM last.
+    while mask("SigCgt:") & bit(libc::SIGTERM) == 0 {
+        assert!(begun.elapsed() < Duration::from_secs(60), "the program does not watch its signals");
+        sleep(Duration::from_millis(5));
+    }
+    let (caught, ignored) = (mask("SigCgt:"), mask("SigIgn:"));
+    program.kill().expect("killed");
+    program.wait().expect("ended");
+    assert_eq!((caught & bit(libc::SIGHUP), ignored & bit(libc::SIGHUP)), (0, 1), "{caught:x} {ignored:x}");
 }
 
 /// Nobody reads standard error.

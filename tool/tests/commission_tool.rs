@@ -115,3 +115,21 @@ fn a_finger_that_the_file_does_not_have_is_added_with_its_board() {
     contains(&output.stderr, &["has no finger 3, and only boards of other fingers answer"]);
     assert_eq!(fs::read_to_string(desk.file()).expect("a file"), text);
 }
+
+/// The configuration file was deleted, and the notes beside it were not. They say that every step has passed.
+#[test]
+fn a_new_finger_does_not_inherit_the_notes_about_an_earlier_one() {
+    let desk = Desk(tempfile::tempdir().expect("a folder"));
+    let ports = desk.0.path().join("board*").to_string_lossy().into_owned();
+    let _boards = [1, 2].map(|finger| Board::start(finger, &desk.0.path().join(format!("board{finger}"))));
+    let names = ["board", "computer", "encoders", "gauges", "motors", "zeros", "tendons", "bound", "spring"];
+    let steps = names.map(|step| format!(r#""{step}": {{ "when": "long ago", "found": [] }}"#)).join(", ");
+    let fingers = [1, 2].map(|finger| format!(r#""{finger}": {{ "steps": {{ {steps} }} }}"#)).join(", ");
+    fs::write(desk.0.path().join("hand.commission.json"), format!(r#"{{ "fingers": {{ {fingers} }} }}"#))
+        .expect("written");
+    for finger in ["1", "2"] {
+        let output = desk.commission(&["--finger", finger, "--port", &ports, "--step", "board"]);
+        assert!(output.status.success(), "{output:?}");
+        contains(&output.stdout, &["not commissioned yet. Steps left: computer, encoders, gauges, motors, zeros"]);
+    }
+}

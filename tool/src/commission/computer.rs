@@ -1,7 +1,7 @@
 //! The steps that need no motion: the board, the bound of the stiffness, and the computer.
 
 use super::desk::Desk;
-use super::machine::Bound;
+use super::machine::{BoardSeen, Bound};
 use super::outcome::Outcome;
 use super::person::{Act, Answer};
 use super::wrong::Wrong;
@@ -11,19 +11,12 @@ use crate::failure::Failure;
 pub fn board(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     let seen = desk.machine.board()?;
-    if seen.emergency_stop {
-        outcome.wrong(Wrong::EmergencyStop);
-    }
-    if seen.supply_fault {
-        outcome.wrong(Wrong::Supply);
-    }
-    if let (Some(refusal), true) = (seen.refusal, outcome.wrong.is_empty()) {
-        outcome.wrong(Wrong::Board(refusal));
-    }
+    let name = seen.name.clone();
+    judge(&mut outcome, seen);
     if !outcome.passed() {
         return Ok(outcome);
     }
-    outcome.found(seen.name);
+    outcome.found(name);
     if desk.person.ask(Act::PressEmergencyStop)? == Answer::Cannot {
         outcome.found("the emergency stop was not tested");
         return Ok(outcome);
@@ -34,10 +27,21 @@ pub fn board(desk: &mut Desk) -> Result<Outcome, Failure> {
         true => outcome.found("the board sees the emergency stop"),
         false => outcome.wrong(Wrong::EmergencyStopUnseen),
     }
-    if desk.machine.board()?.emergency_stop {
+    judge(&mut outcome, desk.machine.board()?);
+    Ok(outcome)
+}
+
+/// Reports why a board does not work.
+fn judge(outcome: &mut Outcome, seen: BoardSeen) {
+    if seen.emergency_stop {
         outcome.wrong(Wrong::EmergencyStop);
     }
-    Ok(outcome)
+    if seen.supply_fault {
+        outcome.wrong(Wrong::Supply);
+    }
+    if let (Some(refusal), true) = (seen.refusal, outcome.passed()) {
+        outcome.wrong(Wrong::Board(refusal));
+    }
 }
 
 /// Carries out the step `bound`.

@@ -88,6 +88,15 @@ impl ProgressFile {
         })
     }
 
+    /// Removes the notes about a finger that is new in its configuration file. They are about an earlier finger with
+    /// this number, whose results are not in the file.
+    pub fn forget(path: &Path, finger: i32) -> Result<(), Failure> {
+        match Self::read(path)?.fingers.contains_key(&finger) {
+            true => Self::update(path, |file| drop(file.fingers.remove(&finger))),
+            false => Ok(()),
+        }
+    }
+
     /// The steps of a finger that have not passed yet.
     pub fn left(&self, finger: i32) -> Vec<Step> {
         let passed = |step: &Step| self.fingers.get(&finger).is_some_and(|finger| finger.steps.contains_key(step));

@@ -3,7 +3,7 @@
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle, sleep};
 use std::time::Duration;
 use sun2xp::model::configuration::FINGERS;
@@ -14,6 +14,11 @@ const READ_TIME: Duration = Duration::from_millis(200);
 
 /// Interval at which a missing hand is looked for.
 const SEARCH_INTERVAL: Duration = Duration::from_millis(300);
+
+/// Number of news that may wait. The terminal may take nothing for hours, for example because its connection is
+/// stalled. Meanwhile the memory of this process must not grow. What does not fit waits in the memory of the hand,
+/// which loses the oldest cycles after two seconds.
+const WAITING: usize = 8;
 
 /// The hand to read.
 #[derive(Clone, Debug)]
@@ -50,12 +55,12 @@ impl Source {
     /// # Errors
     /// Returns an error if the system cannot start a thread.
     pub fn start(wanted: Wanted) -> io::Result<Self> {
-        let (sender, news) = channel();
+        let (sender, news) = sync_channel(WAITING);
         let ended = Arc::new(AtomicBool::new(false));
         let thread = {
             let ended = ended.clone();
             thread::Builder::new().name("telemetry".into()).spawn(move || {
-                // The receiver is gone only when the program ends.
+                // The receiver is gone only when this value is dropped.
                 let _ = run(&wanted, &sender, &ended);
             })?
         };
@@ -66,6 +71,8 @@ impl Source {
 impl Drop for Source {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
+        // The thread may wait for room. Without a receiver it does not.
+        self.news = sync_channel(0).1;
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
@@ -73,7 +80,11 @@ impl Drop for Source {
 }
 
 impl Wanted {
-    fn attach(&self) -> Result<Reader, AttachError> {
+    /// Attaches a reader to the hand.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such hand, or if it does not answer.
+    pub fn attach(&self) -> Result<Reader, AttachError> {
         let process = match self {
             Self::Named(name) => return Reader::attach(name.as_deref()),
             Self::Process(process) => *process,
@@ -91,7 +102,7 @@ impl Wanted {
 }
 
 /// Reads one hand after the other until `ended` is set. Returns an error if nobody receives the news.
-fn run(wanted: &Wanted, news: &Sender<News>, ended: &AtomicBool) -> Result<(), ()> {
+fn run(wanted: &Wanted, news: &SyncSender<News>, ended: &AtomicBool) -> Result<(), ()> {
     let send = |piece| news.send(piece).map_err(|_| ());
     let mut missing = String::new();
     while !ended.load(Ordering::Relaxed) {
@@ -123,4 +134,46 @@ fn run(wanted: &Wanted, news: &Sender<News>, ended: &AtomicBool) -> Result<(), (
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sun2xp::Hand;
+    use sun2xp::model::configuration::{Configuration, RealTime};
+
+    /// Opens a hand that is watched. Returns when it has run for two seconds and nobody has taken the news.
+    fn watched(name: &str) -> (Hand, Source) {
+        let mut configuration = Configuration::default();
+        configuration.telemetry.name = format!("source-{}-{name}", std::process::id());
+        configuration.hand.real_time = RealTime::Ignore;
+        let wanted = Wanted::Named(Some(configuration.telemetry.name.clone()));
+        let hand = Hand::open(configuration).expect("the simulated hand opens");
+        let source = Source::start(wanted).expect("a thread");
+        let cycles = || hand.report(1).expect("open").losses.cycles;
+        let end = cycles() + 2000;
+        while cycles() < end {
+            sleep(Duration::from_millis(10));
+        }
+        (hand, source)
+    }
+
+    #[test]
+    fn news_that_nobody_takes_take_little_memory() {
+        let (hand, source) = watched("stalled");
+        drop(hand);
+        let mut count = 0;
+        // The machine of the tests may be busy.
+        while !matches!(source.news.recv_timeout(Duration::from_secs(60)).expect("news"), News::Ended(_)) {
+            count += 1;
+        }
+        // The hand publishes 20 times a second.
+        assert!(count < 25, "{count} news");
+    }
+
+    #[test]
+    fn a_source_ends_although_nobody_takes_its_news() {
+        let (_hand, source) = watched("ended");
+        drop(source);
+    }
 }

@@ -1,6 +1,7 @@
 //! The files of a recording. Each can be read by itself: a new file begins with the description and the controllers.
 
 use crate::failure::Failure;
+use crate::monitor::words::utc;
 use crate::recording::RecordingWriter;
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::{self, Display, Formatter};
@@ -198,8 +199,14 @@ impl Files {
 
 impl OpenFile {
     fn begin(path: PathBuf, file: File, description: &Description, time: u64) -> Result<Self, Failure> {
-        let writer = RecordingWriter::new(BufWriter::new(file), description, time)?;
-        Ok(Self { path, writer, since: Instant::now() })
+        match RecordingWriter::new(BufWriter::new(file), description, time) {
+            Ok(writer) => Ok(Self { path, writer, since: Instant::now() }),
+            Err(error) => {
+                // The file has no cycle, and would be in the way of the next attempt.
+                let _ = fs::remove_file(&path);
+                Err(format!("cannot write {}: {error}", ShownPath(&path)).into())
+            }
+        }
     }
 
     /// Calls `write`. If it fails, the error that is returned names the file.
@@ -254,23 +261,7 @@ fn numbered(first: &Path, number: u32) -> PathBuf {
 /// Returns date and time for a name, in universal time: 20261122-154900.
 fn date_and_time() -> String {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    let (year, month, day) = date(seconds / 86_400);
-    let of_day = seconds % 86_400;
-    format!("{year:04}{month:02}{day:02}-{:02}{:02}{:02}", of_day / 3600, of_day / 60 % 60, of_day % 60)
-}
-
-/// Returns the Gregorian year, month and day of the date that is `days` days after 1970-01-01.
-fn date(days: u64) -> (u64, u64, u64) {
-    // Years are counted from March, so that the leap day is the last day of a year. The calendar repeats after 400
-    // years, which have 146 097 days. From 0000-03-01 to 1970-01-01 there are 719 468 days.
-    let days = days + 719_468;
-    let (era, day) = (days / 146_097, days % 146_097);
-    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
-    let day = day - (365 * year + year / 4 - year / 100);
-    let month = (5 * day + 2) / 153;
-    let of_month = day - (153 * month + 2) / 5 + 1;
-    let (month, next) = if month < 10 { (month + 3, 0) } else { (month - 9, 1) };
-    (400 * era + year + next, month, of_month)
+    utc(seconds).replace(['-', ':', 'Z'], "").replace('T', "-")
 }
 
 #[cfg(test)]

@@ -108,6 +108,11 @@ impl Recording {
         &self.description
     }
 
+    /// Returns whether the file is a black box.
+    pub fn is_black_box(&self) -> bool {
+        matches!(self.source, Source::BlackBox(_))
+    }
+
     /// Returns whether the recorder has finished the file. For an MCAP file, the result is false until the last entry
     /// has been read, and stays false if the recorder was killed. For a black box, the result is always true.
     pub fn is_complete(&self) -> bool {

@@ -82,13 +82,13 @@ pub fn replay(file: &Path) -> Result<Report, Failure> {
         progress.reach((recording.progress() * STEPS as f64) as u64);
     }
     drop(progress);
-    if newest.is_none() {
-        return Err(in_file(file, "it contains no cycles"));
-    }
     let reports: Vec<FingerReport> = fingers.into_values().map(|finger| finger.report).collect();
-    let proven = reports.iter().any(|report| report.replayed > 0);
-    if !proven && reports.iter().any(|report| report.without_state > 0) {
-        let reason = "no cycle can be replayed, because no recorded state precedes one: record for at least a second";
+    if reports.iter().all(|report| report.replayed == 0) {
+        let without_state = reports.iter().any(|report| report.without_state > 0);
+        let reason = match without_state {
+            true => "no cycle can be replayed, because no recorded state precedes one: record for at least a second",
+            false => "it contains no cycles in which a controller has run",
+        };
         return Err(in_file(file, reason));
     }
     Ok(Report::new(recording.description().library.clone(), !recording.is_complete(), reports))

@@ -3,9 +3,10 @@
 use super::hub::{Hub, Kind};
 use super::message::ToPage;
 use super::translation::Translation;
+use crate::monitor::source::Wanted;
 use std::thread::sleep;
 use std::time::Duration;
-use sun2xp::telemetry::{Reader, hands};
+use sun2xp::telemetry::Reader;
 
 /// Interval of the attempts to attach.
 const RETRY: Duration = Duration::from_millis(300);
@@ -13,20 +14,11 @@ const RETRY: Duration = Duration::from_millis(300);
 /// Longest wait for the next batch of the hand.
 const WAIT: Duration = Duration::from_millis(200);
 
-/// Which hand is shown.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Source {
-    /// The hand with this name, or the only one.
-    Named(Option<String>),
-    /// The hand that this process has opened.
-    Own,
-}
-
 /// Reads the hand until the process ends.
-pub fn run(source: &Source, control: bool, hub: &Hub) {
+pub fn run(wanted: &Wanted, control: bool, hub: &Hub) {
     let mut reported = None;
     loop {
-        match attach(source) {
+        match wanted.attach().map_err(|error| error.to_string()) {
             Ok(reader) => {
                 reported = None;
                 let reason = follow(reader, control, hub);
@@ -48,16 +40,6 @@ pub fn publish(hub: &Hub, kind: Kind, message: &ToPage) {
     if let Ok(text) = serde_json::to_string(message) {
         hub.publish(kind, text);
     }
-}
-
-fn attach(source: &Source) -> Result<Reader, String> {
-    let Source::Named(name) = source else {
-        let own = |reader: &Reader| reader.description().process == std::process::id();
-        let names = hands().map_err(|error| error.to_string())?;
-        let found = names.iter().filter_map(|name| Reader::attach(Some(name)).ok()).find(own);
-        return found.ok_or_else(|| "the hand of this program is not open".into());
-    };
-    Reader::attach(name.as_deref()).map_err(|error| error.to_string())
 }
 
 /// Publishes what a hand does. Returns why it ended.

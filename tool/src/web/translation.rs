@@ -8,12 +8,11 @@ use super::message::{
 };
 use crate::model::geometry;
 use crate::monitor::words::event_text;
-use std::time::{SystemTime, UNIX_EPOCH};
 use sun2xp::events::{Event, EventKind};
 use sun2xp::finger::CycleRecord;
 use sun2xp::model::configuration::FINGERS;
 use sun2xp::object::ObjectState;
-use sun2xp::realtime::CycleStage;
+use sun2xp::realtime::{CycleStage, now};
 use sun2xp::telemetry::{Description, Message, Sample, Status, View};
 use sun2xp::{Distribution, FingerNumber};
 
@@ -55,8 +54,7 @@ struct Finger {
 impl<'a> Translation<'a> {
     /// Announces a hand to the page.
     pub fn new(description: &Description, control: bool, hub: &'a Hub) -> Self {
-        let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos() as u64;
-        let beginning = since_epoch.saturating_add_signed(description.clock_offset.saturating_neg());
+        let beginning = now();
         let message = hand(description, beginning, control);
         publish(hub, Kind::Hand, &ToPage::Hand(Box::new(message)));
         Self {
@@ -252,4 +250,44 @@ fn quantiles(distribution: &Distribution) -> Quantiles {
 /// Returns the time from `beginning` to `time`, s. It is negative if `time` is earlier.
 fn seconds(time: u64, beginning: u64) -> f64 {
     (time as i64).wrapping_sub(beginning as i64) as f64 * 1e-9
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::Value;
+    use sun2xp::Stage;
+    use sun2xp::model::configuration::Configuration;
+
+    /// The clock of the machine may be set between the reading of the offset and this call.
+    #[test]
+    fn the_time_of_the_page_begins_at_zero_whatever_the_clock_of_the_machine_shows() {
+        let description = Description {
+            name: "hand".into(),
+            process: 1,
+            library: "test".into(),
+            started: 1,
+            clock_offset: 1_000_000_000,
+            fingers: vec![FingerNumber::ONE],
+            configuration: Configuration::default(),
+        };
+        let hub = Hub::new();
+        let mut translation = Translation::new(&description, false, &hub);
+        let (_, mut updates) = hub.subscribe();
+        let record = CycleRecord {
+            cycle: 1,
+            began: now(),
+            stage: Stage::Limp,
+            timing: Default::default(),
+            feedback: None,
+            status: 0,
+            control: None,
+        };
+        translation.take(&[Message::Cycle { finger: FingerNumber::ONE, record }], 0);
+        let mut texts = std::iter::from_fn(|| updates.try_recv().ok()).filter(|update| update.kind == Kind::Batch);
+        let batch: Value = serde_json::from_str(texts.next().expect("a batch").text.as_str()).expect("JSON");
+        let time = batch["fingers"][0]["rows"][0][0].as_f64().expect("a time");
+        // The machine of the tests may be busy.
+        assert!((0.0..60.0).contains(&time), "{time}");
+    }
 }

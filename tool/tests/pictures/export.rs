@@ -142,6 +142,21 @@ fn a_refused_or_failed_export_leaves_the_folder_as_it_was() {
     assert_eq!(fs::read_to_string(path("hand-finger2.csv")).expect("read"), "old");
 }
 
+/// A limit on the size of files acts as a full disk.
+#[test]
+fn a_full_disk_is_named_with_the_folder() {
+    let recorded = recorded();
+    let folder = tempfile::tempdir().expect("a folder");
+    let script = "trap '' XFSZ; ulimit -f 16; exec \"$0\" export \"$1\" --output csv";
+    fs::create_dir(folder.path().join("csv")).expect("made");
+    let mut shell = Command::new("sh");
+    shell.args(["-c", script, env!("CARGO_BIN_EXE_sun2xp")]).arg(recorded.file()).current_dir(folder.path());
+    let run = shell.output().expect("the shell runs");
+    let told = String::from_utf8_lossy(&run.stderr);
+    assert!(run.status.code() == Some(1) && told.contains("cannot write into csv: "), "{told}");
+    assert_eq!(fs::read_dir(folder.path().join("csv")).expect("there").count(), 0);
+}
+
 /// Nobody reads the names of the files.
 #[test]
 fn work_that_is_done_is_a_success_whoever_reads_its_names() {

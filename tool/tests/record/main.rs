@@ -9,6 +9,7 @@ mod terminal;
 mod tools;
 
 mod contents;
+mod conversion;
 
 use contents::{Contents, contents};
 use std::fs;
@@ -171,28 +172,6 @@ fn files_rotate_and_the_oldest_are_deleted() {
     for finger in 0..3 {
         assert_eq!(both[0].cycles[finger].last().expect("cycles") + 1, both[1].cycles[finger][0], "no cycle between");
     }
-}
-
-#[test]
-fn a_black_box_is_converted() {
-    let (name, folder) = (name("box"), tempfile::tempdir().expect("a folder"));
-    let hand = open(&name);
-    let limit = Instant::now() + Duration::from_secs(20);
-    while hand.losses(2).expect("losses").cycles < 300 {
-        assert!(Instant::now() < limit, "finger 2 does not run");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    hand.write_black_box(2, &folder.path().join("box.jsonl")).expect("written");
-    drop(hand);
-    let mut command = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
-    command.args(["record", "--from-black-box", "box.jsonl"]).current_dir(folder.path());
-    let run = command.output().expect("the tool runs");
-    assert!(run.status.success(), "{run:?}");
-    let contents = contents(&fs::read(folder.path().join("box.mcap")).expect("the file"));
-    let black_box = sun2xp::Recording::open(&folder.path().join("box.jsonl")).expect("a black box");
-    let expected: Vec<u64> = black_box.cycles.iter().map(|record| record.cycle).collect();
-    assert!(expected.len() > 100, "a black box with hardly any cycle: {expected:?}");
-    assert_eq!(contents.cycles, [vec![], expected, vec![]]);
 }
 
 #[test]

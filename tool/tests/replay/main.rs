@@ -14,6 +14,7 @@ use damage::damaged;
 use recorded::{Recorded, recorded};
 use rig::replayed_with;
 use serde_json::Value;
+use sun2xp::finger::CycleRecord;
 use sun2xp::model::FingerNumber;
 use sun2xp::telemetry::Message;
 
@@ -125,6 +126,21 @@ fn a_recording_without_states_is_refused() {
     let file = recording.write(&rest.cloned().collect::<Vec<_>>());
     let (status, told) = replayed_with(file.path(), &[]);
     assert!(status == Some(1) && told.contains("no recorded state precedes one"), "{told}");
+}
+
+/// Nothing was compared, so nothing may count as equal.
+#[test]
+fn a_recording_in_which_no_controller_runs_is_refused() {
+    let recording = recorded();
+    let cycles = recording.messages.iter().filter_map(|message| match message {
+        Message::Cycle { finger, record } => {
+            Some(Message::Cycle { finger: *finger, record: CycleRecord { control: None, ..*record } })
+        }
+        _ => None,
+    });
+    let file = recording.write(&cycles.collect::<Vec<_>>());
+    let (status, told) = replayed_with(file.path(), &[]);
+    assert!(status == Some(1) && told.contains("no cycles in which a controller has run"), "{told}");
 }
 
 #[test]

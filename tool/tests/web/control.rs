@@ -5,6 +5,8 @@ use super::program::Program;
 use super::socket::{Frame, Socket};
 use serde_json::Value;
 use std::fs;
+use std::net::TcpListener;
+use std::process::Command;
 use tempfile::TempDir;
 
 /// A hand that may be delayed for long.
@@ -81,6 +83,18 @@ fn a_page_with_the_token_moves_the_hand_and_its_push_ends_with_the_page() {
     wait_until(&mut page, |angle| angle > 0.23);
     drop(page);
     wait_until(&mut open(&program), |angle| (angle - 0.2).abs() < 0.02);
+}
+
+/// A real hand tightens its tendons when it is opened.
+#[test]
+fn a_hand_whose_page_cannot_be_served_is_not_opened() {
+    let taken = TcpListener::bind("127.0.0.1:0").expect("a free port");
+    let port = taken.local_addr().expect("an address").port().to_string();
+    let mut tool = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+    let run = tool.args(["jog", "--web", "--port", &port]).output().expect("the tool runs");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    assert!(run.status.code() == Some(1) && text(&run.stderr).contains("cannot serve at 127.0.0.1:"), "{run:?}");
+    assert!(!text(&run.stdout).contains("opening the hand"), "{run:?}");
 }
 
 #[test]

@@ -129,6 +129,8 @@ pub struct Helper {
     pub right_way: bool,
     /// The weight, N, that the person really hangs when the tool asks for a weight, N.
     pub hung: fn(f64) -> f64,
+    /// Whether the supply stays off when the person releases the emergency stop.
+    pub loses_supply: bool,
     /// What the person cannot do.
     pub cannot: Option<fn(Act) -> bool>,
     /// What the person was asked after failures.
@@ -150,6 +152,7 @@ impl Helper {
             patience: 0,
             right_way: true,
             hung: |newton| newton,
+            loses_supply: false,
             cannot: None,
             questions: Vec::new(),
             acts: Vec::new(),
@@ -177,7 +180,9 @@ impl Person for Helper {
         };
         match act {
             Act::PressEmergencyStop => world.wiring.emergency_stop = true,
-            Act::ReleaseEmergencyStop => world.wiring.emergency_stop = false,
+            Act::ReleaseEmergencyStop => {
+                (world.wiring.emergency_stop, world.wiring.no_supply) = (false, self.loses_supply);
+            }
             Act::ConfirmDirection if !self.right_way => return Ok(Answer::Cannot),
             Act::ConfirmDirection => {}
             Act::TurnMotor(motor) if world.wiring.blocked_motor == Some(motor - 1) => return Ok(Answer::Cannot),

@@ -44,6 +44,17 @@ fn a_gauge_below_the_range_of_its_converter_is_named_and_left_out_of_the_line() 
     assert!(!outcome.wrong.iter().any(|wrong| matches!(wrong, Wrong::GaugeNotLinear(..))), "{outcome:?}");
 }
 
+/// The emergency stop may have tripped a fuse.
+#[test]
+fn a_supply_that_stays_off_after_the_emergency_stop_is_named() {
+    let (world, belief) = world(|_| ());
+    let mut person = Helper::new(&world);
+    assert!(step(Step::Board, &world, &mut person, &belief).0.passed());
+    person.loses_supply = true;
+    let (outcome, _) = step(Step::Board, &world, &mut person, &belief);
+    assert_eq!(outcome.wrong, [Wrong::Supply]);
+}
+
 #[test]
 fn lost_replies_are_read_again_and_the_weighed_tendons_are_kept() {
     let (world, belief) = world(|_| ());
