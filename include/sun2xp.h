@@ -736,10 +736,11 @@ int sun2xp_position(sun2xp_hand *hand, int finger, double *position);
  and stiffness are zero. The member contact_force does not contain constant errors of the gauges. The
  member stiffness is the part of Kx, or of the joint stiffness, that the present pose admits, plus three
  other springs: the soft joint limits, the spring of joint 0 while the tip is near the axis of this
- joint, and the rotational stiffness of a contact. A change of Kx counts in the next cycle, although the
- finger takes 50 ms for it. The members contact_force, stiffness and touching are zero while the finger
- is not running. The member slide_speed is 0 while the member touching is 0. While touching is 1, the
- tip slides on the object at this speed, or tip and object move together at this speed.
+ joint, and the rotational stiffness of a contact. After a change of Kx, this member has its new value
+ in the next cycle, although the stiffness of the finger itself changes over 50 ms. The members
+ contact_force, stiffness and touching are zero while the finger is not running. The member slide_speed
+ is 0 while the member touching is 0. While touching is 1, the tip slides on the object at this speed,
+ or tip and object move together at this speed.
  */
 struct sun2xp_tip {
     size_t size;                            /* sizeof (struct sun2xp_tip), set before the call. */
@@ -1408,7 +1409,7 @@ struct sun2xp_touch {
  each period in which the line has time for it. A faulted finger keeps its last readings. They become
  invalid when the finger recovers, if the board may have been reset: after SUN2XP_FAULT_BOARD_RESET,
  SUN2XP_FAULT_LOST_REPLIES, SUN2XP_FAULT_DAMAGED_REPLIES, SUN2XP_FAULT_PORT_VANISHED and
- SUN2XP_FAULT_PORT_FAILED.
+ SUN2XP_FAULT_PORT_FAILED, and after any other fault if the board was reset before the recovery.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1982,7 +1983,7 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
               force
    ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
    EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
-              sun2xp_close
+              sun2xp_close, and the next calibration of the finger that can be stored stores them
 
  Threads: any.
 
