@@ -40,6 +40,7 @@ mod servo_threads;
 mod set_points;
 mod simulated_hand;
 mod status;
+mod storing;
 mod together;
 mod touch;
 mod unstored;

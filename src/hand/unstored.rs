@@ -1,10 +1,8 @@
-//! The calibration results of an open hand that are not in its configuration file yet, and how they get there.
+//! The calibration results of an open hand that are not in its configuration file yet.
 
-use crate::hand::calibration_file::store_findings;
-use crate::hand::{Found, Hand, HandError};
+use crate::hand::Found;
 use crate::model::FingerNumber;
 use crate::realtime::Mutex;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Results that are not stored yet, at most one entry for each finger. Clones share the results.
@@ -24,51 +22,12 @@ impl Unstored {
         }
     }
 
-    fn of(&self, finger: FingerNumber) -> Option<Found> {
+    pub fn of(&self, finger: FingerNumber) -> Option<Found> {
         self.0.lock().iter().find(|found| found.finger() == finger).cloned()
     }
 
     /// Removes results that have been stored. If others have been added since, all of them stay.
-    fn remove(&self, stored: &Found) {
+    pub fn remove(&self, stored: &Found) {
         self.0.lock().retain(|found| found != stored);
-    }
-}
-
-impl Hand {
-    /// Uses `store_findings` to write calibration results of finger 1, 2 or 3 into the configuration file with which
-    /// the hand was opened. It writes the results that no earlier call has written. Returns false if there is no such
-    /// file, or nothing to write.
-    ///
-    /// # Errors
-    /// Returns an error if there is no such finger. Returns [`HandError::NotStored`] with the reason if the file cannot
-    /// be written. Then the results stay in force until the hand is closed, and a later call stores them.
-    pub fn store_calibration(&self, finger: i32) -> Result<bool, HandError> {
-        let finger = FingerNumber::try_from(finger)?;
-        self.dispatcher.member(finger)?;
-        self.to_store(finger).map_or(Ok(false), |calibration| calibration.store().map(|()| true))
-    }
-
-    /// Returns the results that [`Hand::store_calibration`] would write, with the file. The caller writes them. It need
-    /// not keep the hand locked for this.
-    pub(crate) fn to_store(&self, finger: FingerNumber) -> Option<ToStore> {
-        let file = self.file.clone()?;
-        Some(ToStore { file, found: self.unstored.of(finger)?, unstored: self.unstored.clone() })
-    }
-}
-
-/// Results, and the file to store them in.
-pub(crate) struct ToStore {
-    file: PathBuf,
-    found: Found,
-    unstored: Unstored,
-}
-
-impl ToStore {
-    pub(crate) fn store(&self) -> Result<(), HandError> {
-        let finger = self.found.finger();
-        let not_stored = |source| HandError::NotStored { finger, source };
-        store_findings(&self.file, std::slice::from_ref(&self.found)).map_err(not_stored)?;
-        self.unstored.remove(&self.found);
-        Ok(())
     }
 }

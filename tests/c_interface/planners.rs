@@ -85,7 +85,7 @@ fn the_example_of_events_reports_a_refused_command_and_does_not_wait() {
     let settle = bench.build(c_compiler(), &["-std=c89"], &[source.to_str().expect("the path is text")]);
     let run = bench.run(Command::new(settle));
     assert_eq!(run.status.code(), Some(1), "{}", said(&run));
-    assert!(said(&run).contains("opened without finger 1"), "{}", said(&run));
+    assert!(said(&run).contains("this hand has no finger 1"), "{}", said(&run));
     assert!(!said(&run).contains("rests"), "{}", said(&run));
 }
 

@@ -80,5 +80,7 @@ fn the_entries_say_what_else_a_result_depends_on() {
         let entry = manual.entry(call);
         assert!(entry.contains(sentence), "{sentence:?} is not in {entry}");
     }
-    assert!(manual.comment("sun2xp_tip").contains("A change of Kx counts in the next cycle"));
+    assert!(
+        manual.comment("sun2xp_tip").contains("After a change of Kx, this member has its new value in the next cycle")
+    );
 }

@@ -55,7 +55,7 @@ fn a_joint_beyond_its_limit_is_pushed_back() {
         // A limp finger bent by a force, which would push joint 2 to its stop.
         let limp = spring(Vector3::zeros(), 0.0);
         let beyond = |servo: &Loop| servo.plant.joints()[2] - high[2];
-        servo.plant.set_external_force(Vector3::new(0.0, 0.0, -0.3));
+        servo.plant.set_external_force(Vector3::new(0.0, 0.0, -0.6));
         // Without a gain on the tension error, motor friction delays the finger's return.
         let seconds = if scheme == Scheme::Figure11 { 4.0 } else { 2.0 };
         let mut farthest = f64::NEG_INFINITY;
