@@ -15,7 +15,7 @@ pub struct WakeUp {
     pub late: Distribution,
     /// What the system refused to the thread.
     pub refusals: RealtimeRefusals,
-    /// Timer slack: how late the kernel may wake an ordinary thread, ns; an error if the system does not tell it.
+    /// Timer slack: how late the kernel may wake an ordinary thread, ns; an error if the system refuses the query.
     pub timer_slack: io::Result<u64>,
 }
 
@@ -36,8 +36,8 @@ pub fn measure_wake_up(priority: Priority, mut schedule: Schedule, cycles: u64) 
         }
         // SAFETY: PR_GET_TIMERSLACK takes no argument, and concerns only the calling thread. A sandbox may refuse the
         // call, which then returns -1.
-        let told = unsafe { libc::prctl(libc::PR_GET_TIMERSLACK) };
-        let timer_slack = u64::try_from(told).map_err(|_| io::Error::last_os_error());
+        let returned = unsafe { libc::prctl(libc::PR_GET_TIMERSLACK) };
+        let timer_slack = u64::try_from(returned).map_err(|_| io::Error::last_os_error());
         WakeUp { late: histograms.distribution(CycleStage::WakeUp), refusals, timer_slack }
     })
 }

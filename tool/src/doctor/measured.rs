@@ -85,7 +85,7 @@ fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
     let (found, short) = match &wake_up.timer_slack {
         Ok(slack) => (format!("{slack} ns"), *slack <= SLACK),
         Err(refused) => {
-            (format!("unknown: the system refused to tell it (prctl, PR_GET_TIMERSLACK): {refused}"), false)
+            (format!("unknown, because the system refused the query (prctl, PR_GET_TIMERSLACK): {refused}"), false)
         }
     };
     if short {
@@ -148,7 +148,7 @@ mod tests {
         assert_eq!(judged(Ok(50_000), true, None).verdict, Rating::Good);
         assert_eq!(judged(Ok(50_000), true, Some(refused())).verdict, Rating::Warning);
         assert_eq!(judged(Ok(50_000), false, None).verdict, Rating::Warning);
-        // A sandbox may refuse to tell the timer slack.
+        // A sandbox may refuse the query of the timer slack.
         let unknown = judged(Err(refused()), false, None);
         assert!(unknown.verdict == Rating::Warning && unknown.found.starts_with("unknown"), "{unknown:?}");
         assert!(unknown.found.contains("PR_GET_TIMERSLACK): Operation not permitted"), "{unknown:?}");
