@@ -32,7 +32,7 @@ use std::ffi::{c_char, c_int};
 ///   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
 ///   EINVAL   the configuration is unusable; HandError names file, line and reason
 ///   ENOENT, EACCES, EBUSY ...  a port cannot be opened; errno of the system
-///   ETIMEDOUT and other errnos of a link: a board does not answer, or the device is not a board
+///   ETIMEDOUT ...  a board does not answer, or the device at the port is not a board
 ///   EIO      a finger does not come under tension in time, or faults before it does
 ///   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
 ///            configured core is not available; HandError says what to change
@@ -62,10 +62,11 @@ pub extern "C" fn OpenHand() -> c_int {
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
-///   EBUSY    in a callback of sun2xp_on_event: another thread is opening or closing the hand
+///   EBUSY    the call was made in a callback of sun2xp_on_event while another thread was opening or
+///            closing the hand
 ///
 /// Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes. Waits until the
-/// callback of sun2xp_on_event has returned, except in a callback.
+/// callback of sun2xp_on_event has returned, unless the call was made in a callback.
 #[unsafe(no_mangle)]
 pub extern "C" fn CloseHand() -> c_int {
     let close = if in_callback() { hand_table::close_default_in_callback } else { hand_table::close_default };
@@ -79,14 +80,14 @@ pub extern "C" fn CloseHand() -> c_int {
 ///   i     finger, 1 to 3
 ///   Pos   Pos[3]: desired angles of joints 0, 1, 2, rad (chapter 3)
 ///
-/// All three angles take effect together. From the next cycle on, the anchor of the fingertip's spring
-/// moves to Pos, along a straight line in joint angles and at a bounded speed. The stiffness is the one
-/// sent last. When the anchor is at Pos, the force of the fingertip is Kx (Tip - p) at any distance: Tip
-/// is the position of the fingertip at the angles Pos, and p is its present position. With
-/// controller.law = "report" the finger follows the law of the report, which holds for small distances.
-/// The call does not wait until the finger arrives; GetPos reads where it is. The limits are the
-/// configured joint limits, by default -1.0472 to 1.0472 for joint 0, -0.5236 to 1.7453 for joint 1 and
-/// 0.0873 to 2.0944 for joint 2.
+/// All three angles take effect together. From the next cycle on, the anchor (rest position) of the
+/// fingertip's spring moves to Pos, along a straight line in joint angles and at a bounded speed. The
+/// stiffness is the one sent last. When the anchor is at Pos, the force of the fingertip is Kx (Tip - p)
+/// at any distance: Tip is the position of the fingertip at the angles Pos, and p is its present
+/// position. With finger.controller.law = "report" the finger follows the law of the report, which holds
+/// for small distances. The call does not wait until the finger arrives; GetPos reads where it is. The
+/// limits are the configured joint limits, by default -1.0472 to 1.0472 rad for joint 0, -0.5236 to
+/// 1.7453 rad for joint 1 and 0.0873 to 2.0944 rad for joint 2.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -136,8 +137,8 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 /// taken effect after 50 ms. Kx must be symmetric; two mirrored entries that differ by up to 1e-3 of
 /// the largest entry are averaged. No eigenvalue may be below -1e-3 times the largest one. Kx may be
 /// singular or zero: along directions without stiffness the finger is limp but still damped. The
-/// largest eigenvalue may be at most the configured bound, by default 6 N/cm at 1000 Hz and above, and
-/// 5 N/cm below.
+/// largest eigenvalue may be at most the configured bound, by default 6 N/cm if the servo rate
+/// (hand.rate) is 1000 Hz or more, and 5 N/cm otherwise.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -147,7 +148,8 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 ///   EDOM     Kx is not symmetric, or has a negative eigenvalue
 ///   ERANGE   Kx is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
 ///   EIO      the finger is faulted
-///   ERANGE   Kx is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio instead)
+///   ERANGE   Kx is too stiff for the damping ratio of sun2xp_send_damping ("clamp" clamps this ratio
+///            instead)
 ///
 /// Threads: any. Never waits for a servo. Takes about 1 us.
 ///
