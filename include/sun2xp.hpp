@@ -2,7 +2,8 @@
 ///
 /// This header has no library of its own: everything is inline, over the C interface. Most functions make the call of
 /// sun2xp.h with the same name; the manual of the call is in sun2xp.h. A refused call throws sun2xp::error with the
-/// number and the text of the refusal. Structs are those of sun2xp.h. This header sets their member size.
+/// number and the text of the refusal. The structs are those of sun2xp.h. This header sets the member `size` of each
+/// struct.
 ///
 ///     sun2xp::hand hand = sun2xp::hand::named("nominal");
 ///     hand.finger(1).send_position({0.0, 0.5, 0.8});
@@ -27,7 +28,7 @@
 
 namespace sun2xp {
 
-/// Three numbers: joint angles, rad, or x, y, z.
+/// Three numbers, for joints 0, 1 and 2 or along x, y and z. The manual of each call in sun2xp.h gives the unit.
 using vector3 = std::array<double, 3>;
 
 /// A matrix, row by row.
@@ -50,7 +51,7 @@ public:
     {
     }
 
-    /// SUN2XP_ERROR_...
+    /// The number of the refusal: a constant SUN2XP_ERROR_... of sun2xp.h.
     int number() const noexcept { return number_; }
     /// errno of the refusal.
     int system_errno() const noexcept { return system_errno_; }
@@ -86,18 +87,18 @@ template <class Struct, class Call> Struct filled(Call call)
     return result;
 }
 
-/// The limit of a wait, s. A negative time, for example because a deadline has passed, is no wait. For the C calls it
-/// would be no limit, or an error.
+/// The limit of a wait, s. A time of 0 or less, for example because a deadline has passed, means that the call does not
+/// wait. The C calls would refuse a negative time, or would wait without a limit.
 inline double limit(seconds longest) noexcept { return longest.count() > 0 ? longest.count() : 0; }
 
 /// A function that gets events.
 using event_callback = std::function<void(const struct sun2xp_event &)>;
 
-/// The functions that get the events of all hands, by numbers that are never used again. The library gets the number
-/// and not the address: if the callback of one hand ends the callback of another hand, sun2xp_on_event does not wait,
-/// and the library may still be about to call the function that was ended.
+/// The functions that get the events of all hands. Each has a number that is never used again. The library gets this
+/// number and not the address of the function, because it may still call a function that was removed: if the callback
+/// of one hand removes the callback of another hand, sun2xp_on_event does not wait.
 #if defined(__GNUC__)
-// One table for all shared objects of the process, because a hand can be moved from one to another.
+// One table for all shared objects of the process, because one shared object can move a `hand` to another.
 class __attribute__((visibility("default"))) callbacks {
 #else
 class callbacks {
@@ -195,7 +196,7 @@ public:
 
     void adjust(const std::string &keys) { detail::checked(sun2xp_adjust(hand_, number_, keys.c_str())); }
 
-    /// Sends a path. The sizes of the poses are set here.
+    /// Sends a path. This function sets the member `size` of each pose.
     void send_path(std::vector<sun2xp_path_pose> poses, seconds valid = seconds(0))
     {
         for (sun2xp_path_pose &pose : poses)
@@ -263,9 +264,9 @@ public:
         return position;
     }
 
-    /// Waits until the condition holds. Returns false if it does not hold within the time. If the hand is on another
-    /// machine, also returns false if no reports arrive from it. With a time of 0 or less, returns at once. An infinite
-    /// time is no limit. Accepts all_fingers.
+    /// Waits until the condition holds. Returns false if it does not hold within the time, or if the hand is on another
+    /// machine and no reports arrive from it. With a time of 0 or less, returns at once. With an infinite time, waits
+    /// without a limit. Accepts all_fingers.
     bool wait(until condition, seconds longest)
     {
         const int result = sun2xp_wait(hand_, number_, static_cast<int>(condition), detail::limit(longest));
@@ -283,14 +284,14 @@ public:
         detail::checked(sun2xp_write_black_box(hand_, number_, path.c_str()));
     }
 
-    /// Returns the number of the rule.
+    /// Installs a reflex. Returns the number of its rule.
     int install_reflex(sun2xp_reflex rule)
     {
         rule.size = sizeof rule;
         return detail::checked(sun2xp_install_reflex(hand_, number_, &rule));
     }
 
-    /// Removes a rule; 0 for all rules of the finger.
+    /// Removes the rule with this number. The number 0 removes all rules of the finger.
     void remove_reflex(int rule) { detail::checked(sun2xp_remove_reflex(hand_, number_, rule)); }
 
 private:
@@ -302,8 +303,8 @@ private:
 class hand {
 public:
     /// A function that is called with each event of a hand, in a thread of the library. It must not throw. It may
-    /// replace or end itself with on_event, and may destroy the hand. The function object stays alive until the call
-    /// returns. If it ends the function of another hand, that function may still be running.
+    /// replace or remove itself with on_event, and may destroy the hand. The function object stays alive until the call
+    /// returns. If the function removes the function of another hand, that one may still be running afterwards.
     using event_callback = detail::event_callback;
 
     /// Opens the hand of a configuration file.
@@ -332,7 +333,8 @@ public:
     /// Closes the hand that this object had, as its destructor does.
     hand &operator=(hand &&other) noexcept
     {
-        // Its destructor closes that hand. An object that is moved to itself keeps its hand.
+        // The swap gives `moved` the hand that this object had, and the destructor of `moved` closes it. An object that
+        // is moved to itself keeps its hand.
         hand moved(std::move(other));
         std::swap(hand_, moved.hand_);
         std::swap(callback_, moved.callback_);
@@ -351,7 +353,7 @@ public:
             detail::callbacks::all().remove(callback_);
     }
 
-    /// Closes the hand. After the refusal SUN2XP_ERROR_BUSY the hand is still open, and its handle is still here.
+    /// Closes the hand. After the refusal SUN2XP_ERROR_BUSY the hand is still open, and this object keeps its handle.
     void close()
     {
         // A callback may destroy this object as soon as the hand is closed.
@@ -368,7 +370,7 @@ public:
     /// A finger, 1 to 3, or all_fingers.
     class finger finger(int number) const noexcept { return {hand_, number}; }
 
-    /// Commands several fingers in the same cycle. The sizes are set here.
+    /// Commands several fingers in the same cycle. This function sets the member `size` of each set point.
     void send_group(std::vector<sun2xp_set_point> set_points)
     {
         for (sun2xp_set_point &set_point : set_points)
@@ -389,15 +391,15 @@ public:
         return event([this](struct sun2xp_event *to) { return sun2xp_next_event(hand_, to); });
     }
 
-    /// Waits for an event. Returns std::nullopt if no event occurs within the time. A time that is not above 0 is no
-    /// wait, and an infinite time is no limit.
+    /// Waits for an event. Returns std::nullopt if no event occurs within the time. With a time of 0 or less, returns
+    /// at once. With an infinite time, waits without a limit.
     std::optional<struct sun2xp_event> wait_event(seconds longest)
     {
         const double limit = detail::limit(longest);
         return event([&](struct sun2xp_event *to) { return sun2xp_wait_event(hand_, to, limit); });
     }
 
-    /// Calls a function with each event. An empty function ends these calls.
+    /// Calls a function with each event, in place of the previous function. An empty function ends the calls.
     void on_event(event_callback callback)
     {
         detail::callbacks &all = detail::callbacks::all();
