@@ -1,4 +1,4 @@
-/* Can.c - a hand whose drives are on a CAN bus. The program provides the hardware of the fingers to the library
+/* Can.c - a hand whose drives are on a CAN bus. The library reaches the drives through functions of this program
    (docs/other-hardware.md). GNU C99, Linux.
 
        Can [INTERFACE]
@@ -73,7 +73,7 @@ static int receive_sample(struct drives *drives, struct sun2xp_io_sample *sample
     return 0;
 }
 
-/* Removes the frames of an earlier exchange that came too late. */
+/* Removes frames that came too late for an earlier exchange. */
 static void discard(struct drives *drives)
 {
     int numbers[4];

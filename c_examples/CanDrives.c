@@ -1,4 +1,5 @@
-/* CanDrives.c - the far end of Can.c: three fingers with drives at a CAN bus, simulated. GNU C99.
+/* CanDrives.c - the far end of Can.c. It simulates three fingers on a CAN bus, each with one drive for its four motors.
+   GNU C99.
 
        CanDrives INTERFACE | FOLDER
 
@@ -12,7 +13,7 @@
 #include "can_bus.h"
 #include "finger_physics.h"
 
-#define STEPS 10                        /* of PHYSICS_STEP in 1 ms */
+#define STEPS 10                        /* number of PHYSICS_STEP in 1 ms */
 #define LONGEST_SILENCE 10.0            /* s */
 
 struct drive {

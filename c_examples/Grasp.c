@@ -1,12 +1,12 @@
 /* Grasp.c - three fingers grasp a ball, lift it from the table, hold it and put it down.
 
-   The hand is that of grasp.toml. The fingertips are springs. Their anchors are set inside the ball, and the springs
-   then press the tips against it. Friction carries the weight. The fingers press so little that the ball is about to
-   slip when they lift it. Reflexes tighten the grasp then: each finger presses harder when its contact or that of
-   another finger is about to slip. A call that moves the anchors removes the force that the reflexes have added. The
-   reflexes then add it again. The exit status is 0 if the grasp tightens, the ball is lifted, does not creep while it
-   is held, and is back on the table at the end. The program works with the simulated hand only, because sun2xp_object
-   gives the pose of the ball. C99. */
+   The hand is that of grasp.toml. The fingertips are springs. The program sets their anchors (rest positions) inside
+   the ball, so the springs press the tips against the ball. Friction carries the weight. The fingers press so little
+   that the ball is about to slip when they lift it. Reflexes then tighten the grasp: each finger presses harder when
+   its contact or that of another finger is about to slip. A call that moves the anchors removes the force that the
+   reflexes have added, and the reflexes must add it again. The exit status is 0 if the grasp tightens, and if the ball
+   is lifted, does not creep while it is held, and is back on the table at the end. The program works with a simulated
+   hand only, because sun2xp_object reads the pose of a simulated ball. C99. */
 
 #include <math.h>
 #include <stdio.h>
@@ -15,18 +15,18 @@
 #include "sun2xp.h"
 
 #define RADIUS 1.5                      /* of the ball, cm */
-#define CLEAR 0.4                       /* between the open fingertips and the ball, cm */
+#define CLEAR 0.4                       /* gap between the open fingertips and the ball, cm */
 #define SQUEEZE 0.25                    /* depth of the anchors below the surface of the ball, cm */
-#define TIGHTEN 0.05                    /* increase of the force of each finger with each slip, N */
+#define TIGHTEN 0.05                    /* increase of the force of each finger with each slip event, N */
 #define STRONGEST 4.0                   /* largest force of a finger, N */
-#define LIFT 1.5                        /* cm */
-#define HOLD 2.0                        /* s */
+#define LIFT 1.5                        /* height to which the ball is lifted, cm */
+#define HOLD 2.0                        /* time for which the ball is held, s */
 #define HALF 0.5
 #define SINE 0.8660254                  /* of 60 degrees */
 
-/* Position of the ball on the table, cm, and directions from its axis to the contacts around its equator, in the palm's
-   frame. Fingers 1 and 2 are side by side, and finger 3 is the thumb. The palm faces down: its z axis points down, and
-   the table is at z = 12 cm. */
+/* Position of the ball on the table, cm, and directions from its vertical axis to the contacts around its equator, in
+   the palm's frame. Fingers 1 and 2 are side by side, and finger 3 is the thumb. The palm faces down: its z axis points
+   down, and the table is at z = 12 cm. */
 static const double Start[3] = {0.0, 0.0, 10.5};
 static const double Contact[3][3] = {{SINE, HALF, 0.0}, {-SINE, HALF, 0.0}, {0.0, -1.0, 0.0}};
 
@@ -55,7 +55,7 @@ static struct sun2xp_object object(void)
     return Object;
 }
 
-/* Waits for the given simulated time. It passes more slowly than real time on a busy machine. */
+/* Waits for the given simulated time, s. On a busy machine, simulated time passes more slowly than real time. */
 static void pass(double seconds)
 {
     const struct timespec tick = {0, 2000000};
@@ -65,8 +65,8 @@ static void pass(double seconds)
         nanosleep(&tick, 0);
 }
 
-/* Sets the anchors of all fingertips in one cycle. up is their height above the centre of the ball on the table, and
-   distance is their distance from the axis of the ball, cm. */
+/* Sets the anchors of all fingertips in one cycle. up is the height of the anchors above the place that the centre of
+   the ball has on the table, cm. distance is their distance from the vertical axis of the ball, cm. */
 static void anchor(double up, double distance)
 {
     struct sun2xp_set_point Group[3] = {{0}};
@@ -85,7 +85,8 @@ static void anchor(double up, double distance)
     check(sun2xp_send_group(hand, 3, Group));
 }
 
-/* Each finger presses harder toward the axis of the ball when the contact of any finger is about to slip. */
+/* Installs the reflexes: each finger presses harder toward the axis of the ball when the contact of any finger is about
+   to slip. */
 static void tighten_on_slip(void)
 {
     struct sun2xp_reflex Rule = {0};
@@ -107,7 +108,7 @@ static void tighten_on_slip(void)
         }
 }
 
-/* Moves the anchors in small steps. */
+/* Moves the anchors in small steps. The arguments are those of anchor, at the beginning and at the end. */
 static void glide(double up, double distance, double to_up, double to_distance)
 {
     int step;
@@ -119,7 +120,7 @@ static void glide(double up, double distance, double to_up, double to_distance)
     pass(0.5);
 }
 
-/* Shows the ball. Returns the sum of the forces toward its axis, N. */
+/* Prints where the ball is and how hard each finger presses. Returns the sum of the forces toward its axis, N. */
 static double show(const char *doing)
 {
     struct sun2xp_object Object = object();
@@ -137,7 +138,7 @@ static double show(const char *doing)
     return sum;
 }
 
-/* Mean position of the ball over 0.1 s. The fingers vibrate by some micrometres. */
+/* Computes the mean position of the ball over 0.1 s, because the fingers vibrate by some micrometres. */
 static void average(double *Mean)
 {
     int tries, axis;
@@ -151,7 +152,7 @@ static void average(double *Mean)
     }
 }
 
-/* Distance by which the ball moves while it is held, cm. */
+/* Returns the distance by which the ball moves while it is held, cm. */
 static double hold(double seconds)
 {
     double Before[3], After[3];

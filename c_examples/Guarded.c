@@ -1,7 +1,7 @@
 /* Guarded.c - a guarded move: a finger bends until its tip touches something, and stays there.
 
-   A reflex in the servo ends the motion. It reacts within two cycles of the servo, so it does not matter how slow this
-   program is. The exit status is 0 if the reflex has fired and the tip presses only lightly. C89. */
+   A reflex in the servo ends the motion. The reflex reacts within two cycles of the servo, however slow this program
+   is. The exit status is 0 if the reflex has fired and the tip presses only lightly. C89. */
 
 #include <math.h>
 #include <stdio.h>
@@ -24,7 +24,8 @@ static int checked(int result)
     return result;
 }
 
-/* Waits for an event of this kind. Returns 1 if it has come, and 0 after the time limit. */
+/* Waits for an event of this kind of the finger. Returns 1 if it has occurred, and 0 if no event of any kind occurs for
+   the time PATIENCE. */
 static int wait_for(int kind)
 {
     struct sun2xp_event Event;

@@ -1,4 +1,4 @@
-/* High.c - the program of Figure 6, completed: a planner that calls the hand.
+/* High.c - the planner of Figure 6 of the report, completed.
 
    make run        (in this folder) compiles it and runs it on the simulated hand
 

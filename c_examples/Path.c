@@ -1,5 +1,5 @@
-/* Path.c - moves a fingertip along a circle of 1 cm radius, one turn a second, and prints how far it is from the
-   circle. C89. */
+/* Path.c - moves a fingertip along a circle of 1 cm radius, one turn a second, and prints how far the fingertip is from
+   the circle. C89. */
 
 #include <math.h>
 #include <stdio.h>
@@ -10,19 +10,19 @@
 #define FINGER 1
 #define RADIUS 1.0                      /* cm */
 #define TURNS 3.0                       /* one turn a second */
-#define RAMP 0.5                        /* s in which the speed rises and falls */
+#define RAMP 0.5                        /* time in which the speed rises at the start, and falls at the end, s */
 #define POSES 70
 #define PI 3.14159265358979323846
 
 static const double Start[3] = {0.2, 0.6, 1.1};                                    /* rad */
 
-/* How many turns the finger has made after some seconds of a ramp. */
+/* Returns how many turns the finger has made after some seconds of the first ramp. */
 static double ramp(double seconds)
 {
     return 0.5 * (seconds - sin(PI * seconds / RAMP) * RAMP / PI);
 }
 
-/* How many turns the finger has made, from rest to rest. */
+/* Returns how many turns the finger has made after some seconds of the whole motion, from rest to rest. */
 static double turns(double seconds)
 {
     double length = TURNS + RAMP;

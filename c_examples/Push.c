@@ -1,7 +1,7 @@
-/* Push.c - measures the spring. It pushes a fingertip of the simulated hand to and fro along each axis, and prints
-   the measured stiffness beside the commanded one. Friction in the joints makes a finger that is pushed from rest
-   feel a little stiffer than it is. The program works with the simulated hand only: a real hand is pushed by hand.
-   C89. */
+/* Push.c - measures the stiffness of a fingertip. It pushes a fingertip of the simulated hand to and fro along each
+   axis, and prints the measured stiffness beside the commanded one. Friction in the joints makes a finger that is
+   pushed from rest feel a little stiffer than it is. The program works with the simulated hand only, because
+   sun2xp_push simulates the push. C89. */
 
 #include <math.h>
 #include <stdio.h>
@@ -9,14 +9,14 @@
 #include "sun2xp.h"
 
 #define FINGER 1
-#define FORCE 0.6                       /* N: 2 mm at 3 N/cm */
+#define FORCE 0.6                       /* N; moves the tip by 2 mm at 3 N/cm */
 
 static sun2xp_hand *hand;
 static const double Links[3] = {3.556, 5.080, 4.000};                              /* cm */
 static const double Pos[3] = {0.1, 0.5, 0.9};                                      /* rad */
 static const double Kx[3][3] = {{3.0, 0.0, 0.0}, {0.0, 3.0, 0.0}, {0.0, 0.0, 3.0}};  /* N/cm */
 
-/* Waits for the finger to rest and computes where its tip is, cm, in the finger's frame. */
+/* Waits for the finger to come to rest, and computes where its tip is, cm, in the finger's frame. */
 static int rest(double *tip)
 {
     double before[3], now[3], reach, moved;
@@ -42,7 +42,7 @@ static int rest(double *tip)
     return 0;
 }
 
-/* Pushes with the given force along one axis and reports where the tip comes to rest. */
+/* Pushes with the given force along one axis, N, and computes where the tip comes to rest. */
 static int push(int axis, double newton, double *tip)
 {
     double force[3] = {0.0, 0.0, 0.0};

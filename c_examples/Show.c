@@ -1,8 +1,8 @@
-/* Show.c - three fingers take a ball and move it about, for people who watch: run sun2xp monitor beside it.
+/* Show.c - three fingers take a ball and move it about, for people who watch them with sun2xp monitor.
 
    The hand is that of grasp.toml, as in Grasp.c. The fingers lift the ball, move it along a circle while they change
    their stiffness, and put it down. The argument is the time for which the ball moves along the circle, s; 10 by
-   default. The exit status is 0 if the fingers still have the ball at the end. C99. */
+   default. The exit status is 0 if the fingers still hold the ball at the end of the circle. C99. */
 
 #include <math.h>
 #include <stdio.h>
@@ -11,13 +11,13 @@
 #include "sun2xp.h"
 
 #define RADIUS 1.5                      /* of the ball, cm */
-#define CLEAR 0.4                       /* between the open fingertips and the ball, cm */
-#define SQUEEZE 0.8                     /* depth of the anchors below the surface of the ball, cm */
-#define LIFT 0.9                        /* cm */
+#define CLEAR 0.4                       /* gap between the open fingertips and the ball, cm */
+#define SQUEEZE 0.8                     /* depth of the anchors (rest positions) below the surface of the ball, cm */
+#define LIFT 0.9                        /* height to which the ball is lifted, cm */
 #define CIRCLE 0.6                      /* radius of the circle, cm */
-#define PERIOD 3.0                      /* of the circle, s */
-#define SOFT 2.5                        /* stiffnesses, N/cm */
-#define STIFF 4.5
+#define PERIOD 3.0                      /* time for one turn of the circle, s */
+#define SOFT 2.5                        /* smallest stiffness, N/cm */
+#define STIFF 4.5                       /* largest stiffness, N/cm */
 #define HALF 0.5
 #define SINE 0.8660254                  /* of 60 degrees */
 #define TURN 6.2831853                  /* rad */
@@ -28,8 +28,8 @@ static const double Contact[3][2] = {{SINE, HALF}, {-SINE, HALF}, {0.0, -1.0}};
 static const double Base[3][2] = {{3.0, 3.5}, {-3.0, 3.5}, {0.0, -3.5}};
 static const double Turned[3] = {1.0, 1.0, -1.0};
 
-/* What the fingers do: the place of the ball relative to its start, the distance of the anchors from its axis, cm, and
-   the stiffness, N/cm. */
+/* What the fingers do: the place of the ball relative to Start, cm, the distance of the anchors from the axis of the
+   ball, cm, and the stiffness, N/cm. */
 struct Grip {
     double X, Y, Up, Distance, Stiffness;
 };
@@ -73,7 +73,8 @@ static void grip(struct Grip To)
     check(sun2xp_send_group(hand, 3, Group));
 }
 
-/* Interpolates between two values, for a part from 0 to 1. The speed is zero at the beginning and at the end. */
+/* Interpolates between two values. part is the completed part of the motion, 0 to 1. The speed is zero at the beginning
+   and at the end. */
 static double between(double from, double to, double part)
 {
     return from + (to - from) * (HALF - HALF * cos(HALF * TURN * part));

@@ -1,5 +1,5 @@
-// Spring.cpp - two hands in one program: one finger of each moves and comes to rest, and a refused call is caught.
-// C++17.
+// Spring.cpp - two hands in one program: one finger of each hand moves and comes to rest. Then the program catches the
+// exception of a refused call. C++17.
 
 #include <chrono>
 #include <cstdio>

@@ -1,5 +1,5 @@
-/* can_bus.h - CAN frames over SocketCAN, or over Unix datagram sockets where the machine has no CAN interface. Both
-   ends of the example use it. GNU C99, Linux. */
+/* can_bus.h - CAN frames over SocketCAN, or over Unix datagram sockets where the machine has no CAN interface. Can.c
+   and CanDrives.c use this file. GNU C99, Linux. */
 
 #ifndef CAN_BUS_H
 #define CAN_BUS_H
@@ -16,10 +16,10 @@
 #include <unistd.h>
 
 /* Identifiers: these numbers plus the number of the finger, 1 to 3. Numbers of 16 bits are little-endian. */
-#define CAN_CONTROL 0x100               /* to the drives: what (1 start, 2 stop), watchdog time, ms (16 bits) */
-#define CAN_TORQUES 0x200               /* to the drives: four torques, TORQUE_UNIT (16 bits, signed) */
+#define CAN_CONTROL 0x100               /* to the drives: action (1 start, 2 stop); watchdog time, ms (16 bits each) */
+#define CAN_TORQUES 0x200               /* to the drives: four torques in TORQUE_UNIT (16 bits each, signed) */
 #define CAN_ENCODERS 0x180              /* from the drives: low 16 bits of four encoder counts */
-#define CAN_TENSIONS 0x280              /* from the drives: four tensions, TENSION_UNIT (16 bits) */
+#define CAN_TENSIONS 0x280              /* from the drives: four tensions in TENSION_UNIT (16 bits each) */
 #define CAN_EMERGENCY 0x080             /* from the drives: the watchdog has tripped */
 
 #define TORQUE_UNIT 0.0002              /* N cm */
@@ -27,7 +27,7 @@
 
 struct can_bus {
     int socket;
-    const char *folder;                 /* of the Unix sockets; null: SocketCAN */
+    const char *folder;                 /* folder of the Unix sockets; null for SocketCAN */
 };
 
 static double can_seconds(void)
@@ -42,7 +42,7 @@ static struct sockaddr_un can_address(const char *folder, int finger)
 {
     struct sockaddr_un address = {.sun_family = AF_UNIX};
 
-    /* Address 0 is that of the drives. */
+    /* The drives have address 0. */
     snprintf(address.sun_path, sizeof address.sun_path, "%.80s/%d", folder, finger);
     return address;
 }
@@ -93,8 +93,8 @@ static int can_send(const struct can_bus *bus, int to, unsigned identifier, cons
     return send(bus->socket, &frame, sizeof frame, MSG_DONTWAIT) < 0 ? -1 : 0;
 }
 
-/* Receives a frame with four numbers. Returns its identifier, or -1 if none arrives until the deadline, s of
-   CLOCK_MONOTONIC. */
+/* Receives a frame with four numbers. Returns its identifier, or -1 if no frame arrives before the deadline, a time of
+   CLOCK_MONOTONIC, s. */
 static int can_receive(const struct can_bus *bus, int numbers[4], double deadline)
 {
     struct pollfd poll = {.fd = bus->socket, .events = POLLIN};

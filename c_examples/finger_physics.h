@@ -1,6 +1,6 @@
 /* finger_physics.h - the physics of a finger, for examples whose hardware is a simulation: three joints, four tendons
-   that only pull, four motors. Values: docs/sun2xp.toml, [finger.simulation]. Gravity and Coriolis torques are
-   omitted. C89, SI units. */
+   that only pull, four motors. The values are the defaults of docs/sun2xp.toml. Gravity and Coriolis torques are
+   omitted. C89. SI units, except in the arguments of step_physics. */
 
 #ifndef FINGER_PHYSICS_H
 #define FINGER_PHYSICS_H
@@ -19,7 +19,7 @@ struct finger_physics {
     int braked;
 };
 
-/* R of eq. 14, m. */
+/* R of eq. 14 of the report: the moment arms of the tendons at the joints, m. */
 static const double Arms[3][4] = {
     {-0.0109, 0.0062, 0.0062, -0.0109}, {0.0109, 0.0062, -0.0062, -0.0109}, {0, 0.0062, -0.0062, 0}};
 
@@ -39,7 +39,8 @@ static int count_of(const struct finger_physics *finger, int motor)
     return (int)floor(finger->motor[motor] * COUNTS);
 }
 
-/* The pose of the built-in simulated hand: 0, 30 and 60 degrees, braked, with the pretension of the homing. */
+/* Sets the initial state of the built-in simulated hand: joint angles of 0, 30 and 60 degrees, the tendons at the
+   homing pretension, and the motors braked. */
 static void begin_physics(struct finger_physics *finger)
 {
     static const double Pose[3] = {0, 0.5235987755982988, 1.0471975511965976};
@@ -59,14 +60,15 @@ static void begin_physics(struct finger_physics *finger)
     finger->braked = 1;
 }
 
-/* A speed after dry friction, which can stop a motion but not reverse it. */
+/* Returns the speed that remains after dry friction has reduced it by loss. Dry friction can stop a motion but not
+   reverse it. */
 static double rubbed(double speed, double loss)
 {
     return fabs(speed) <= loss ? 0 : speed - (speed > 0 ? loss : -loss);
 }
 
-/* Inverts the inertia matrix of the joints. Joint 0 is decoupled. inverse gets the diagonal entries of joints 0, 1 and
-   2 of the inverse matrix, and then the entry that couples joints 1 and 2. */
+/* Inverts the inertia matrix of the joints. Joint 0 is not coupled with the others. inverse gets the diagonal entries
+   of the inverse matrix for joints 0, 1 and 2, and then its entry for the coupling of joints 1 and 2. */
 static void invert_inertia(const struct finger_physics *finger, double inverse[4])
 {
     double c1 = cos(finger->theta[1]), c12 = cos(finger->theta[1] + finger->theta[2]);
@@ -85,7 +87,7 @@ static void invert_inertia(const struct finger_physics *finger, double inverse[4
     inverse[3] = -(distal + coupled) / determinant;
 }
 
-/* Advances by PHYSICS_STEP. torques are in N cm. */
+/* Advances the simulation by PHYSICS_STEP. torques are the torques of the motors, N cm. */
 static void step_physics(struct finger_physics *finger, const double torques[4])
 {
     double tension[4], torque[3], inverse[4], rate;
