@@ -4,7 +4,7 @@ use std::time::Duration;
 use sun2xp::{Configuration, Hand};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // The simulated hand. `Hand::open_configured` opens the hand of the configuration file.
+    // The default configuration is a simulated hand. `Hand::open_configured` opens the hand of the configuration file.
     let hand = Hand::open(Configuration::default())?;
     // A fingertip that is stiff along x and soft along y and z, N/cm.
     hand.send_stiffness(1, [[3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])?;

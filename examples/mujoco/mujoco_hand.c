@@ -1,9 +1,9 @@
 /* mujoco_hand.c - a hand whose fingers are simulated in another process, in step with the servo (C11).
 
-       mujoco_hand MEMORY      the fingers that simulation.py simulates over this file
-       mujoco_hand             the built-in simulated fingers
+       mujoco_hand MEMORY      uses the fingers of simulation.py. Both programs map the file MEMORY
+       mujoco_hand             uses the built-in simulated fingers
 
-   Moves the fingers to some poses, waits until they have settled, and prints where they rest. */
+   The program moves the fingers to some poses, waits until they have settled, and prints where they rest. */
 
 #ifndef _DEFAULT_SOURCE
 #define _DEFAULT_SOURCE
@@ -24,10 +24,11 @@
 #define CONFIGURATION \
     "[hand]\nreal_time = \"ignore\"\nend_state = \"release\"\n[finger]\nport = \"simulated\"\nthread = 1\n"
 
-/* Longest wait for the simulation in one exchange, s. Then the exchange fails, and the library repeats it. */
+/* Longest wait for the simulation in one exchange, s. After this time the exchange fails, and the library calls it
+   again in the next cycle. */
 #define PATIENCE 0.08
 
-/* The layout of simulation.py: numbers of 8 bytes. */
+/* The memory that both programs share: numbers of 8 bytes. simulation.py has the same layout. */
 struct finger_memory {
     double torques[4], tensions[4], encoders[4], joints[3];
 };
@@ -87,7 +88,7 @@ static int start(void *user, const struct sun2xp_io_terms *terms, struct sun2xp_
     return 0;
 }
 
-/* Advances the simulation by one period. After a time-out it waits for the same step again. */
+/* Advances the simulation by one period. If it times out, the next call waits for the same step. */
 static int advance(struct step *step, struct memory *memory)
 {
     double deadline = seconds() + PATIENCE;
@@ -104,9 +105,10 @@ static int advance(struct step *step, struct memory *memory)
     return 0;
 }
 
-/* The first exchange of a cycle advances the simulation by one period, with the torques of the previous cycle. The new
-   deadline shows that it is the first. It need not be that of finger 1, because a faulted finger gets no exchange. All
-   fingers are sampled at the end of this period. The torques of the present cycle act in the next period. */
+/* The first exchange of a cycle advances the simulation by one period, with the torques of the previous cycle. A new
+   deadline marks the first exchange. This need not be the exchange of finger 1, because a faulted finger gets no
+   exchange. All fingers are sampled at the end of this period. The torques of the present cycle act in the next
+   period. */
 static int exchange(void *user, const struct sun2xp_io_command *command, struct sun2xp_io_sample *sample)
 {
     struct finger *finger = user;
@@ -137,7 +139,7 @@ static struct memory *map(const char *path)
     double deadline = seconds() + 60;
     int file;
 
-    /* The simulation makes the file. */
+    /* The simulation makes the file, so it may not exist yet. */
     while ((file = open(path, O_RDWR)) < 0 || lseek(file, 0, SEEK_END) < (off_t)sizeof *memory) {
         if (file >= 0)
             close(file);

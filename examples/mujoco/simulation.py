@@ -4,8 +4,8 @@
     python simulation.py hand.xml /dev/shm/hand [picture.png]
 
 Both processes map the second file. The servo writes torques and requests steps of one period. This program advances
-the simulation by one period for each request, and writes encoder counts and tensions. It ends when the servo's program
-says so, and then draws the picture.
+the simulation by one period for each request, and writes encoder counts and tensions. This program ends when
+mujoco_hand ends, and then draws the picture if a file for it was named.
 """
 
 import mmap
@@ -28,7 +28,7 @@ COUNTS = 2000 / (2 * numpy.pi)  # encoder counts per rad
 PERIOD = 0.001  # s, 1 / hand.rate
 STEP = 0.0001  # s, as in the built-in simulation
 
-# The memory: numbers of 8 bytes. mujoco_hand.c has the same layout.
+# The memory that both processes share: numbers of 8 bytes. mujoco_hand.c has the same layout.
 READY, REQUESTED, DONE, ENDED, TIME, FIRST_FINGER = range(6)
 TORQUES, TENSIONS, ENCODERS, JOINTS, SIZE = 0, 4, 8, 12, 15
 
@@ -37,10 +37,9 @@ STIFF_FRICTION = {"solreffriction": "0.0004 1", "solimpfriction": "0.999 0.9999 
 
 
 def with_elastic_tendons(text):
-    """Returns the model with elastic tendons that only pull. A rotor for each tendon winds the tendon in.
-
+    """Returns the model with elastic tendons that only pull, its initial joint angles, rad, and its pretensions, N.
     In the model of `sun2xp model` the tendons are rigid, and the rotors add their inertia and friction to the tendons.
-    Here each rotor is a body that slides by the length that it winds in, m.
+    Here a rotor for each tendon winds the tendon in. The rotor is a body that slides by the wound length, m.
     """
     root = ElementTree.fromstring(text)
     root.find("option").set("timestep", str(STEP))
@@ -84,7 +83,7 @@ class Hand:
         self.dry = self.model.dof_frictionloss[self.rotors].copy()
         self.data.qpos[self.joints] = pose[:9]
         mujoco.mj_forward(self.model, self.data)
-        # The rotors have wound the tendons in so far that every tendon has its pretension in this pose.
+        # In this pose the rotors have wound in as much of each tendon as gives the tendon its pretension.
         self.data.qpos[self.places] = -self.data.ten_length
         mujoco.mj_forward(self.model, self.data)
 
@@ -102,7 +101,7 @@ class Hand:
         for _ in range(round(PERIOD / STEP)):
             self.model.dof_frictionloss[self.rotors] = self.dry + SHAFT_FRICTION * self.tensions()
             mujoco.mj_step(self.model, self.data)
-        # The lengths of the tendons are those of the last step until the kinematics are computed again.
+        # After mj_step, the lengths of the tendons are those before the last step. This call computes the present ones.
         mujoco.mj_fwdPosition(self.model, self.data)
 
 
