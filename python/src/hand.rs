@@ -46,9 +46,9 @@ impl Shared {
     }
 }
 
-/// An open hand: up to three fingers, with the numbers in `fingers`, whose servo threads run without Python.
+/// An open hand of up to three fingers, whose numbers are in `fingers`. The servo threads run without Python.
 ///
-/// Open one with `sun2xp.open()` or `sun2xp.simulated()`. All methods may be called from several threads.
+/// `sun2xp.open()` and `sun2xp.simulated()` open a hand. All methods may be called from several threads.
 #[pyclass(frozen, subclass, module = "sun2xp")]
 pub struct Hand(pub Arc<Shared>);
 

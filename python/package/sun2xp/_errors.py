@@ -30,7 +30,7 @@ class ErrorNumber(enum.IntEnum):
     REAL_TIME = 18
 
 
-#: The errno for errors of this package. The library gives the errno of its own errors.
+#: The errnos of errors that this package raises by itself. Errors of the library come with their errno.
 _ERRNOS = {
     ErrorNumber.DEFECT: system.EIO,
     ErrorNumber.FORKED: system.EPERM,
@@ -86,8 +86,8 @@ class Closed(Error):
 
 
 class Refused(Error, ValueError):
-    """An argument that the hand cannot take: a finger that it does not have, a set point outside the limits, an array
-    with a wrong shape, or a call that does not suit the finger's stage."""
+    """The hand does not accept the call: there is no such finger, a set point is outside the limits, an array has a
+    wrong shape, or the finger's stage does not permit the call."""
 
 
 class ConfigurationError(Error):

@@ -11,7 +11,7 @@ from ._types import Event
 
 class Events(_sun2xp.Queue):
     """A queue of all events of a hand, from `Hand.events`. Iteration waits for each event, and ends when the hand is
-    closed or being closed. `take` returns the events that come while it is being closed.
+    closed or being closed. `take` returns the events that come while the hand is being closed.
 
     Every queue gets all events. A queue that is not read keeps the newest 4096 of each finger, and counts in `lost` how
     many it has lost.
@@ -25,8 +25,8 @@ class Events(_sun2xp.Queue):
         return self._follow()
 
     async def next(self, timeout: Optional[float] = None) -> Optional[Event]:
-        """Waits for an event in asyncio for at most `timeout` s, or without a limit, and takes it. Returns None after
-        this time, and if the hand is closed."""
+        """Waits for an event in asyncio, and takes it. Returns None if no event comes within `timeout` s, or if the
+        hand is closed. Without a timeout, waits without a limit."""
         loop = asyncio.get_running_loop()
         deadline = None if timeout is None else loop.time() + timeout
         while (event := self.take()) is None and not self.closed:
@@ -49,7 +49,7 @@ class Events(_sun2xp.Queue):
         ready = asyncio.Event()
         tasks.add(ready)
         try:
-            # The loop watches the descriptor only during a wait, because it is readable as long as there are events.
+            # The descriptor is readable as long as there are events, so the loop watches it only during a wait.
             loop.add_reader(descriptor, _wake, tasks)
             await asyncio.wait_for(ready.wait(), timeout)
         except asyncio.TimeoutError:

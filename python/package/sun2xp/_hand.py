@@ -12,16 +12,16 @@ from ._events import Events
 from ._recording import Recording, black_box
 from ._types import Event, Identified, Signs, Zeros
 
-#: Called during a calibration with the part that is done, 0 to 1, and the current activity.
+#: Called during a calibration with its completed part, 0 to 1, and its current activity.
 Progress = Callable[[float, str], None]
 
 
 class Hand(_sun2xp.Hand):
-    """An open hand: up to three fingers, with the numbers in `fingers`, whose servo threads run without Python.
+    """An open hand of up to three fingers, whose numbers are in `fingers`. The servo threads run without Python.
 
-    Open one with `sun2xp.open()` or `sun2xp.simulated()`. A process can have several. All methods may be called from
-    several threads. Methods that wait release the interpreter lock, and Ctrl-C ends them. Leaving a `with` block closes
-    the hand.
+    `sun2xp.open()` and `sun2xp.simulated()` open a hand. A process can open several hands. All methods may be called
+    from several threads. Methods that wait release the interpreter lock, and Ctrl-C ends them. Leaving a `with` block
+    closes the hand.
 
     All methods except `close` raise Closed if the hand is closed, Refused if there is no such finger or if an argument
     is wrong, and Fault if the finger is faulted and the method needs it to run. They raise TypeError if an argument
@@ -50,9 +50,9 @@ class Hand(_sun2xp.Hand):
 
         Args:
             fingers: a finger, or several. The default is all fingers of the hand.
-            condition: "arrived": every joint has been at the set point since. "settled": the joints have come to rest
-                since. The finger may have been pushed away meanwhile.
-            timeout: time limit, s.
+            condition: "arrived": since the set point was sent, every joint has been at the set point. "settled": since
+                the set point was sent, the joints have come to rest. The finger may have been pushed away again.
+            timeout: time limit, s. Without it, the wait has no limit.
 
         Raises:
             TimedOut: the time limit has expired.
@@ -60,7 +60,7 @@ class Hand(_sun2xp.Hand):
         """
         if fingers is None:
             fingers = self.fingers
-        # The integers of numpy are no int.
+        # An integer of numpy is not an int, so anything that is not iterable counts as one finger.
         self._wait(list(fingers) if isinstance(fingers, Iterable) else [fingers], condition, timeout)
 
     def configuration(self, finger: int) -> Dict[str, Any]:
@@ -79,13 +79,13 @@ class Hand(_sun2xp.Hand):
         It is then faulted, and `recover` makes it a spring with the previous calibration.
 
         Args:
-            progress: called with the part that is done and the current activity.
+            progress: called with the completed part, 0 to 1, and the current activity.
             store: whether to store the zeros in the configuration file with which the hand was opened.
 
         Raises:
             ConfigurationError: the zeros could not be stored. They are in force until the hand is closed, and
-                `store_calibration` can store them later. Or the finger cannot be zeroed with its configuration, or
-                cannot use it with the zeros. Then nothing has changed.
+                `store_calibration` can store them later. This error is also raised if the configuration does not permit
+                zeroing, or cannot be used with the new zeros. In these two cases nothing has changed.
             Error: the calibration failed, and the previous one is in force. If the finger faulted after its zeros had
                 been found, the new zeros are in force.
         """
@@ -113,8 +113,8 @@ def open(path: Union[str, os.PathLike[str], None] = None, *, text: Optional[str]
     """Opens a hand, and returns when every finger holds its pose at its initial stiffness.
 
     Args:
-        path: the configuration file. Without path and text, the library looks for it: the file that SUN2XP_CONFIG
-            names, or sun2xp.toml in the working directory or in the configuration folders. Without a file the hand is
+        path: the configuration file. Without path and text, the library takes the file that SUN2XP_CONFIG names, or
+            sun2xp.toml in the working directory or in the configuration folders. If there is no file, the hand is
             simulated.
         text: the text of a configuration, instead of a file.
 
@@ -150,7 +150,7 @@ def _opened(function: Callable[..., _sun2xp.Opened], *arguments: Any) -> Hand:
     try:
         hand = Hand(function(*arguments))
     except Error:
-        # The log has the messages of an opening that failed. Ctrl-C does not wait for the log.
+        # When this error is raised, the log contains the messages of the failed opening. Ctrl-C does not wait for them.
         _log.flush()
         raise
     _log.flush()

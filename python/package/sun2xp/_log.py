@@ -10,7 +10,8 @@ from typing import Optional
 
 from . import _sun2xp
 
-#: Warnings of the library, such as missing permissions for real time. Without a handler they go to standard error.
+#: Receives the messages of the library, such as warnings about missing permissions for real time. Without a handler,
+#: `logging` prints warnings on standard error.
 logger = logging.getLogger("sun2xp")
 
 _starting = threading.Lock()

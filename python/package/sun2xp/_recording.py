@@ -22,7 +22,7 @@ class Recording:
     """A recording, from `sun2xp.read_recording` or `Hand.black_box`.
 
     Attributes:
-        cycles: for each finger with cycles, 1 to 3, a structured array with one row for each cycle. docs/python.md
+        cycles: for each finger (1 to 3) that has cycles, a structured array with one row for each cycle. docs/python.md
             lists its fields. A number that a cycle does not have is NaN.
         marks: events, warnings, faults, gaps and changes of the stage, in the order of the file.
         description: the hand: its name, the time at which it was opened, and its configuration.
@@ -42,13 +42,13 @@ class Recording:
         self.marks = [Mark(*mark) for mark in marks]
 
     def seconds(self, finger: int) -> numpy.ndarray:
-        """The times of the cycles of a finger since the first cycle of the recording, s: shape (n,). This is the first
-        cycle of the whole file, even if its finger was not read."""
+        """The times of the cycles of a finger since the first cycle of the recording, s: shape (n,). The first cycle is
+        that of the whole file, even if its finger was not read."""
         return (self.cycles[finger]["time"] - self._begin) * 1e-9
 
     def to_pandas(self, finger: int) -> "pandas.DataFrame":
-        """The cycles of a finger as a table, with the seconds since the first cycle as its index. A vector has a column
-        for each entry: `joints_0`, `kx_0_1`. Needs pandas."""
+        """The cycles of a finger as a table, with the seconds since the first cycle as its index. Vectors and matrices
+        have a column for each entry, such as `joints_0` and `kx_0_1`. Needs pandas."""
         import pandas
 
         columns = {}

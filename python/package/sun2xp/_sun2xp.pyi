@@ -1,4 +1,4 @@
-"""The extension module. `sun2xp.Hand` and `sun2xp.Events` add to its classes."""
+"""The extension module. `sun2xp.Hand` and `sun2xp.Events` extend its classes."""
 
 import os
 from typing import Any, Dict, List, Optional, Sequence, Tuple, TypeVar, Union

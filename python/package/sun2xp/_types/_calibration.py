@@ -1,4 +1,4 @@
-"""What a calibration has found."""
+"""What a calibration has found. A name in backquotes is the key of `[finger]` to which the values belong."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from ._state import Array
 class Signs:
     """The directions in which motors, encoders and gauges 1 to 4 count: 1 or -1."""
 
-    #: `motor.sign`.
+    #: Signs of the motors, `motor.sign`.
     motor: Tuple[int, int, int, int]
-    #: `encoder.sign`.
+    #: Signs of the encoders, `encoder.sign`.
     encoder: Tuple[int, int, int, int]
-    #: 1 if the gauge's count rises with the tension.
+    #: 1 if the gauge's count rises with the tension, -1 if it falls.
     gauge: Tuple[int, int, int, int]
 
 
@@ -24,14 +24,14 @@ class Signs:
 class Zeros:
     """The zeros of the sensors."""
 
-    #: `encoder.zero`, counts.
+    #: Zeros of the encoders, `encoder.zero`, counts.
     encoder: Tuple[int, int, int, int]
-    #: `gauge.zero`, counts: shape (4,).
+    #: Zeros of the gauges, `gauge.zero`, counts: shape (4,).
     gauge: Array
     #: Error of the joint angles before zeroing, rad: shape (3,).
     joint_error: Array
-    #: Measured minus configured angle between the two stops of each joint, rad: shape (3,). None if the routine did not
-    #: move to the stops.
+    #: Measured minus configured angle between the two stops of each joint, rad: shape (3,). None if the joints were not
+    #: moved to their stops.
     range_error: Optional[Array]
 
 
@@ -39,23 +39,23 @@ class Zeros:
 class Identified:
     """Friction and elasticity of a finger."""
 
-    #: `tendon.stiffness`, N/cm: shape (4,).
+    #: Stiffness of each tendon, `tendon.stiffness`, N/cm: shape (4,).
     tendon_stiffness: Array
-    #: `tendon.stiffness_tolerance`, a fraction.
+    #: Relative uncertainty of these stiffnesses, `tendon.stiffness_tolerance`.
     stiffness_tolerance: float
     #: Part of the motors' travel that the identified elasticity does not explain: rms residual, cm.
     travel_residual: float
-    #: `friction.motor_coulomb`, N cm of commanded torque: shape (4,).
+    #: Coulomb friction of each motor, `friction.motor_coulomb`, N cm of commanded torque: shape (4,).
     motor_coulomb: Array
-    #: `friction.conduit`: shape (4,).
+    #: Conduit friction of each tendon, `friction.conduit`, as a part of the tension's torque at the motor: shape (4,).
     conduit: Array
-    #: `friction.pulley`: shape (4,).
+    #: Pulley friction of each tendon, `friction.pulley`, as a part of the smaller tension of its two sides: shape (4,).
     pulley: Array
     #: Factors for `gauge.newton_per_count`: shape (4,).
     gauge_gain: Array
     #: Ratio of each motor's true torque to its commanded torque: shape (4,).
     motor_ratio: Array
-    #: `friction.joint_coulomb`, N cm: shape (3,).
+    #: Coulomb friction of each joint, `friction.joint_coulomb`, N cm: shape (3,).
     joint_coulomb: Array
     #: Viscous friction of the joints, N cm s/rad: shape (3,).
     joint_viscous: Array

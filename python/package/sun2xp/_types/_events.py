@@ -31,8 +31,8 @@ class FingerFault:
 
     #: The fault that has stopped the finger; None if it has not stopped.
     stopped: Optional[FaultDescription]
-    #: The newest warning of the last second. If there is none and the system does not permit real time, the warning
-    #: about that, which `warnings` does not count.
+    #: The newest warning of the last second. If there is none and the system does not permit real time, this is the
+    #: warning about missing real time, which `warnings` does not count.
     warning: Optional[FaultDescription]
     #: Number of warnings since open. A warning that persists counts once.
     warnings: int
@@ -67,7 +67,7 @@ class Event:
 
     #: Number of the finger, 1 to 3.
     finger: int
-    #: Number of the cycle, from 1, separately for each finger.
+    #: Number of the cycle. Each finger counts its own cycles from 1.
     cycle: int
     #: Beginning of this cycle, ns of CLOCK_MONOTONIC, as `time.monotonic_ns` counts.
     time: int
@@ -75,7 +75,7 @@ class Event:
     kind: EventKind
     #: The part that the event concerns, such as "tendon 3", or "finger".
     part: str
-    #: Values, with the meanings and units of the kind (docs/events.md).
+    #: Values. Their meanings and units depend on the kind (docs/events.md).
     values: Tuple[float, ...]
     #: What happened, in words.
     text: str

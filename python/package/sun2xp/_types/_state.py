@@ -93,8 +93,8 @@ class ObjectState:
 class TouchReading:
     """The newest reading of a tactile element."""
 
-    #: Whether the board has reported this element since open and since its last reset, and could read it then.
-    #: Otherwise the other fields are 0.
+    #: Whether the board has reported this element since the hand was opened and the board was last reset, and its
+    #: newest report has a reading. Otherwise the other fields are 0.
     valid: bool
     #: Whether something presses the element.
     pressed: bool
