@@ -62,7 +62,7 @@ def open(
         tls: the files of mutual TLS. A server that listens on more than loopback needs them.
         read_only: do not acquire the hand. Then its state can be read, and it can be stopped.
         take_over: acquire the hand even if another client commands it.
-        recover: recover fingers that have stopped. When a hand is released, its fingers stop.
+        recover: recover fingers that have stopped. Fingers stop when their hand is released.
         stale: largest age of the state that `position`, `tip` and `state` return, s.
 
     Raises:
@@ -89,8 +89,8 @@ def connect(endpoint: str = LOOPBACK, *, client: Optional[str] = None, tls: Opti
 def discover(
     endpoint: str = LOOPBACK, *, client: Optional[str] = None, tls: Optional[Tls] = None, timeout: float = 2.0
 ) -> Dict[str, Status]:
-    """Returns the status of every hand that can be reached over this endpoint, by their names. Arguments and errors are
-    those of `open`; `timeout` is the time for the answers, s."""
+    """Returns the status of every hand that can be reached over this endpoint, by the name of the hand. Arguments and
+    errors are those of `open`; `timeout` is the time for the answers, s."""
     with Network(endpoint, client=client, tls=tls) as network:
         return network.hands(timeout)
 

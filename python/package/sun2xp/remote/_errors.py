@@ -1,4 +1,5 @@
-"""The exceptions of the remote client, and which of them an Answer raises."""
+"""The exceptions of the remote client, and which of them an Answer raises. Answer, Request and Target are messages of
+docs/remote-protocol.md."""
 
 from __future__ import annotations
 
@@ -8,13 +9,13 @@ from .._errors import Closed, Error, ErrorNumber, Fault, Refused, TimedOut
 from ._messages import Answer
 
 
-#: The code of an Answer: the hand refused an argument, or a recovery or calibration failed.
+#: The code of an Answer if the hand has refused an argument, or if a recovery or calibration has failed.
 _REFUSED = 6
 
-#: The code of an Answer: a finger has stopped.
+#: The code of an Answer if a finger has stopped.
 FAULTED = 7
 
-#: The numbers of the errors for the codes of an Answer.
+#: The error number for each code of an Answer.
 _NUMBERS = {
     3: ErrorNumber.ARGUMENT,
     4: ErrorNumber.BUSY,
@@ -25,7 +26,8 @@ _NUMBERS = {
     9: ErrorNumber.BUSY,
 }
 
-#: The numbers of the errors for Requests that have failed. The hand refuses no argument of them.
+#: The error number for each Request that fails with the code `_REFUSED`. The code then means a failure, because these
+#: Requests have no argument that the hand could refuse.
 _FAILURES = {
     "acquire": ErrorNumber.PORT,
     "recover": ErrorNumber.PORT,
@@ -44,7 +46,8 @@ class Stale(TimedOut):
 
 
 class NoAnswer(TimedOut):
-    """The server has not answered: no such hand, no connection, or this client may not ask for it."""
+    """The server has not answered: there is no such hand, there is no connection, or this client may not use the
+    hand."""
 
 
 def forked() -> Error:

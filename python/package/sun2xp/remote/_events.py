@@ -35,13 +35,13 @@ class RemoteEvents:
             return self._queue.popleft() if self._queue else None
 
     def wait(self, timeout: Optional[float] = None) -> Optional[Event]:
-        """Waits for the next event for at most `timeout` s, or without a limit, and takes it. Returns None after this
-        time, or if the hand or the queue is closed and no event is left."""
+        """Waits for the next event, and takes it. Returns None if no event comes within `timeout` s, or if the hand or
+        the queue is closed and no event is left. Without a timeout, waits without a limit."""
         self._receiver.wait_for(lambda: self._queue or self._closed, timeout)
         return self.take()
 
     def close(self) -> None:
-        """Closes the queue. It gets no further events, and threads that wait for one return."""
+        """Closes the queue: it gets no further events, and the waits of all threads for its events end."""
         self._receiver.forget(self._queue)
         self._closed = True
         self._receiver.notify()

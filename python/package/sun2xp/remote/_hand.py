@@ -1,4 +1,4 @@
-"""A hand on another machine."""
+"""A hand on another machine. Target, State, Request and Answer are messages of docs/remote-protocol.md."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ._network import ANSWER_TIME, Network
 from ._owner import Owner
 from ._reading import Reading
 
-#: A wait continues if no State arrives for at most this time, s.
+#: Longest time without a State, s, after which a wait still continues.
 _PAUSE = 1.0
 
 #: Longest time of a recovery, s.
@@ -26,7 +26,7 @@ _RECOVERY_TIME = 30.0
 #: Longest time of a calibration, s.
 _CALIBRATION_TIME = 600.0
 
-#: Bits of a record for the conditions of `wait`.
+#: The bits that a finger's record must have for each condition of `wait`.
 _CONDITIONS = {"applied": 0, "arrived": _messages.ARRIVED, "settled": _messages.SETTLED}
 
 
@@ -34,8 +34,9 @@ class RemoteHand(Reading):
     """A hand that `sun2xp serve` offers, from `sun2xp.remote.open` or `Network.open`.
 
     The calls have the names of `sun2xp.Hand`. Calls that send something do so without delay and return at once. A
-    thread repeats the newest target every 20 ms. If the server refuses a set point, the next call that sends to this
-    finger or waits for it raises Refused with the reason. The fingers keep the set points that they had.
+    thread repeats the newest target, the message with the set points, every 20 ms. If the server refuses a set point,
+    the next call that sends to this finger or waits for it raises Refused with the reason. The fingers then keep the
+    set points that they had before.
 
     If this process ends, is stopped or loses the line, the server holds the fingers after 0.1 s and brings them to
     their end states after 1 s, unless it is configured otherwise.
@@ -125,7 +126,7 @@ class RemoteHand(Reading):
         """Sends the joint angles at which the finger shall be, rad: shape (3,).
 
         Raises:
-            Refused: they are outside the limits, or an earlier command of this finger was refused.
+            Refused: the angles are outside the limits, or an earlier command of this finger was refused.
             NotOwner: this client does not command the hand.
         """
         self.send_group([SetPoint(finger, position=position)])
@@ -152,7 +153,7 @@ class RemoteHand(Reading):
         taken the path. Errors are those of `send_position`.
 
         Args:
-            times: from the moment at which the server takes the path, s: shape (n,).
+            times: times of the poses after the moment at which the server takes the path, s: shape (n,).
             joints: joint angles, rad: shape (n, 3).
         """
         self._check(finger)
@@ -177,10 +178,11 @@ class RemoteHand(Reading):
         """Waits until the condition holds for these fingers, for the set points that were sent last.
 
         Args:
-            fingers: a finger, or several. The default is all to which this client has sent something.
-            condition: "applied": the server has taken the set point. "arrived": every joint has been at the set point
-                since. "settled": the joints have come to rest since. The finger may have been pushed away meanwhile.
-            timeout: time limit, s.
+            fingers: a finger, or several. The default is all fingers to which this client has sent something.
+            condition: "applied": the server has taken the set point. "arrived": since the set point was sent, every
+                joint has been at the set point. "settled": since the set point was sent, the joints have come to rest.
+                The finger may have been pushed away again.
+            timeout: time limit, s. Without it, the wait has no limit.
 
         Raises:
             TimedOut: the time limit has expired.
@@ -232,7 +234,7 @@ class RemoteHand(Reading):
         """Zeros gauges and encoders of a finger. Its joints may move between their stops. Waits up to ten minutes.
 
         Raises:
-            Error: the calibration failed. The previous one is in force.
+            Error: the calibration failed. The previous calibration is in force.
         """
         self._check(finger)
         self._request("calibrate", finger, self._owner.epoch, timeout=_CALIBRATION_TIME)

@@ -20,7 +20,7 @@ VERSION = 1
 
 TARGET, STATE, EVENT, STATUS, REQUEST, ANSWER = 1, 2, 3, 4, 5, 6
 
-#: Actions of a Request, by the key that they are sent to.
+#: The number of each action of a Request. Its name is a part of the Zenoh key to which the Request is sent.
 ACTIONS = {"acquire": 1, "release": 2, "recover": 3, "calibrate": 4, "identify": 5, "stop": 6}
 
 #: The values of `place` in a part of a Target.
@@ -35,7 +35,7 @@ STAGES = ("opening", "limp", "calibrating", "running", "closing", "closed", "fau
 #: The highest code of an Answer.
 _LAST_CODE = 9
 
-#: The number of "faulted".
+#: The number of the stage "faulted".
 _FAULTED = 6
 
 #: Names that a client can have.
@@ -81,7 +81,7 @@ class Part:
     place: int = NO_PLACE
     #: Joint angles, rad, or the position of the tip, cm.
     values: Sequence[float] = (0.0, 0.0, 0.0)
-    #: Kx, rows, N/cm.
+    #: Kx, row by row, N/cm.
     stiffness: Optional[Sequence[float]] = None
     damping: Optional[float] = None
     #: Poses of a path: time, s, and three joint angles, rad.
@@ -90,7 +90,7 @@ class Part:
 
 @dataclasses.dataclass
 class Target:
-    """Set points of up to three fingers. Times are in ns."""
+    """Set points of up to three fingers. `validity` is in ms. The times `sent` and `seen` are in ns."""
 
     validity: int
     epoch: int
@@ -102,7 +102,7 @@ class Target:
 
 @dataclasses.dataclass
 class State:
-    """The cycles since the last State."""
+    """The cycles since the State before."""
 
     missing: int
     number: int
@@ -201,7 +201,7 @@ def read_state(data: bytes) -> Optional[State]:
 
 
 def _sound(records: numpy.typing.NDArray[numpy.void]) -> bool:
-    """Returns whether docs/remote-protocol.md allows every value."""
+    """Returns whether docs/remote-protocol.md allows every value of the records."""
     set_points = numpy.isnan(records["joint_set_point"])
     finite = [records[name] for name in ("joints", "tip", "tip_force", "tensions")]
     return bool(

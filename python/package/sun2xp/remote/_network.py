@@ -27,7 +27,7 @@ LOOPBACK = "tcp/127.0.0.1:7447"
 #: Longest time in which a server answers, s.
 ANSWER_TIME = 2.0
 
-#: Attempts of a get that reaches nobody, and the pause between them, s.
+#: Attempts of a get (a query of Zenoh) that reaches nobody, and the pause between them, s.
 ATTEMPTS = 3
 PAUSE = 0.2
 
@@ -140,7 +140,7 @@ class Network:
             text = json.dumps(configuration(endpoint, tls))
             self.session = self._zenoh.open(self._zenoh.Config.from_json5(text))
         except self._zenoh.ZError as error:
-            # The text ends with a place in the source of Zenoh.
+            # The text ends with a place in the source of Zenoh, which does not help the user.
             reason = str(error).split(" at /")[0].rstrip("!. ")
             remedy = "check the endpoint and the certificates, and whether sun2xp serve runs"
             raise NoAnswer(f"no connection to {endpoint} ({reason}): {remedy}", number=ErrorNumber.TIMED_OUT) from error
@@ -156,7 +156,7 @@ class Network:
         self.close()
 
     def hands(self, timeout: float = ANSWER_TIME) -> Dict[str, Status]:
-        """Returns the status of every hand that can be reached, by their names.
+        """Returns the status of every hand that can be reached, by the name of the hand.
 
         Args:
             timeout: time for the answers, s.
@@ -184,7 +184,7 @@ class Network:
 
         handler = self._zenoh.handlers.Callback(take, drop=ended.set)
         self.session.get(key, handler, payload=payload, timeout=timeout)
-        # The time limit of Zenoh ends the get. This one is for a session that was closed meanwhile.
+        # The time limit of Zenoh ends the get. This wait has a limit too, in case the session is closed meanwhile.
         ended.wait(timeout + 1)
         return list(answers)
 
@@ -224,7 +224,7 @@ class Network:
             if not read_only:
                 opened.acquire(take_over=take_over, recover=recover)
         except BaseException:
-            # Also Ctrl-C ends an acquire.
+            # Not only an Error but also Ctrl-C can end the acquire.
             opened.close()
             raise
         return opened

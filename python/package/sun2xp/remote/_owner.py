@@ -1,4 +1,5 @@
-"""The client's part of the ownership: what it has sent to each finger, and the Targets that repeat it."""
+"""The client's part of the ownership: what it has sent to each finger, and the Targets that repeat it. Target, State
+and Answer are messages of docs/remote-protocol.md."""
 
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ from ._slot import Slot
 #: Interval between two Targets, s. The protocol needs one every 25 ms.
 PERIOD = 0.02
 
-#: The largest command number. The next command has the number 1.
+#: The largest command number. The command after it has the number 1.
 _LAST_COMMAND = 2**32 - 1
 
 
@@ -40,7 +41,7 @@ class Owner:
         self._slots: Dict[int, Slot] = {}
         #: Bits of the newest record of each finger in this epoch.
         self._bits: Dict[int, int] = {}
-        #: What the server has refused of each finger, and no call has raised yet.
+        #: The refusals of each finger that no call has raised yet.
         self._refusals: Dict[int, Refused] = {}
 
     @property
@@ -50,7 +51,8 @@ class Owner:
         return self._epoch
 
     def begin(self, answer: Answer, end: float) -> None:
-        """Begins the epoch of an Answer to acquire. `end` is the age of a Target, s, at which the server ends it."""
+        """Begins the epoch of an Answer to acquire. If the newest Target has the age `end`, s, the server ends the
+        epoch."""
         self._epoch, self._validity, self._end = answer.epoch, answer.catch_ms, end
         self._number, self._since, self._sequence = answer.number, answer.time, 0
         self._restarts = self._receiver.restarts
@@ -61,7 +63,8 @@ class Owner:
         self._epoch = 0
 
     def _notice_silence(self) -> None:
-        """Ends the epoch if nothing was heard of the server for so long that all Targets are too old for it."""
+        """Ends the epoch if this client has heard nothing of the server for so long that the server must count all
+        Targets of this client as too old."""
         if self._receiver.silence() > self._end:
             self._epoch = 0
 
@@ -106,7 +109,7 @@ class Owner:
 
         Raises:
             NotOwner: this client is not the owner.
-            Refused: the server has refused what was sent before. This is raised once.
+            Refused: the server has refused what was sent before. Each refusal is raised once.
         """
         if self.epoch == 0:
             remedy = "hand.acquire() gets the hand, if no other client owns it"

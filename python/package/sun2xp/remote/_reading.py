@@ -1,4 +1,5 @@
-"""The reading part of a remote hand: everything that needs no ownership."""
+"""The reading part of a remote hand: everything that needs no ownership. State and Answer are messages of
+docs/remote-protocol.md."""
 
 from __future__ import annotations
 
@@ -43,8 +44,8 @@ class Reading:
 
     @property
     def missing(self) -> tuple:
-        """The number of cycles that the server has not sent, because it was late, and the number of States that have
-        not arrived."""
+        """The number of cycles that the server has not sent, because it was late, and the number of State messages that
+        have not arrived."""
         return tuple(self._receiver.missing)
 
     def state(self, finger: int) -> FingerState:
@@ -82,7 +83,7 @@ class Reading:
 
     def cycles(self) -> Records:
         """Returns the cycles that have arrived since the last call, in the order of their arrival: an array with the
-        fields of the record of State. It has at most the cycles of the last 1000 States."""
+        fields of a record of State (docs/remote-protocol.md). It has at most the cycles of the last 1000 States."""
         if self._network.forked:
             raise forked()
         taken = self._receiver.take()
@@ -115,7 +116,7 @@ class Reading:
         if self._closed:
             raise Closed("the hand is closed: open it again", number=ErrorNumber.NO_HAND)
         for finger in fingers:
-            # A float equals the number of a finger, but the messages need an integer.
+            # A float can equal the number of a finger, but the messages need an integer.
             if not hasattr(finger, "__index__") or finger not in self._status.fingers:
                 remedy = f"the hand {self.name} has the fingers {self.fingers}"
                 raise Refused(f"there is no finger {finger!r}: {remedy}", number=ErrorNumber.ARGUMENT)
@@ -135,7 +136,7 @@ class Reading:
         try:
             return self._ask_status().fingers[finger].fault_text
         except NoAnswer:
-            # The State has told of the fault already.
+            # The caller knows the fault from the State. Only its text is missing.
             return ""
 
     def _stopped(self, finger: int) -> Tuple[int, int]:

@@ -1,4 +1,5 @@
-"""What a hand publishes: the newest state of every finger, its events, and its status."""
+"""What a hand publishes: the newest state of every finger and the events of the hand. State, Event and Answer are
+messages of docs/remote-protocol.md."""
 
 from __future__ import annotations
 
@@ -22,14 +23,14 @@ _KEPT_STATES = 1000
 #: Number of events that a queue keeps.
 _KEPT_EVENTS = 4096
 
-#: Largest difference between the rates of two clocks.
+#: Largest relative difference between the rates of two clocks.
 _DRIFT = 1e-3
 
-#: If an Answer is earlier than the newest State by more than this, ns, the server's machine was started again. The
-#: Answer cannot have been on its way for so long.
+#: If the time of an Answer is earlier than that of the newest State by more than this, ns, the server's machine was
+#: started again. The Answer cannot have been on its way for so long.
 _RESTARTED = 10_000_000_000
 
-#: Number of values of an event of each kind (docs/events.md). An Event always has four.
+#: Number of values of an event of each kind (docs/events.md). The message Event always has four.
 VALUES = {
     EventKind.TOUCH_MADE: 2,
     EventKind.TOUCH_LOST: 2,
@@ -94,11 +95,11 @@ class Receiver:
         with self.changed:
             if state is None:
                 return None
-            # States arrive in their order.
+            # States arrive in the order of their times. If a time does not rise, the server's clock has started anew.
             if state.published <= self._published:
                 self._restart()
             self._note_time(state.published)
-            # A server that was started again counts from 1.
+            # A server that was started again counts its States from 1, so a lower number is not a gap.
             if 0 < self._number < state.number:
                 self.missing[1] += state.number - self._number - 1
             self.missing[0] += state.missing

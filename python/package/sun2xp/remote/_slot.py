@@ -1,4 +1,4 @@
-"""What the owner sends to one finger."""
+"""What the owner sends to one finger. Target and State are messages of docs/remote-protocol.md."""
 
 from __future__ import annotations
 

@@ -39,16 +39,16 @@ class FingerState:
     stage: str
     #: Number of the fault, as in docs/faults.md; 0 if there is none.
     fault: int
-    #: Number of the command that the server has applied last; 0 if none.
+    #: Number of the command that the server has applied last; 0 if it has applied none.
     command: int
-    #: Whether the server holds the finger because the owner's targets have become too old.
+    #: Whether the server holds the finger because the targets of the hand's owner have become too old.
     caught: bool
     #: Whether the finger touches something.
     touching: bool
     #: Joint angles, rad: shape (3,).
     position: Array
-    #: Joint angles of the set point, rad: shape (3,). None if the finger is not controlled as a
-    #: spring, for example during calibration or after a fault.
+    #: Joint angles of the set point, rad: shape (3,). None if the finger is not controlled as a spring, for example
+    #: during calibration or after a fault.
     set_point: Optional[Array]
     #: Position of the tip in the finger's frame, cm: shape (3,).
     tip: Array
@@ -74,7 +74,8 @@ class Tip:
 
 @dataclasses.dataclass(frozen=True)
 class Counts:
-    """What the server has done with Targets since its start. docs/remote-protocol.md describes each reason."""
+    """What the server has done with Targets (messages with set points) since its start. docs/remote-protocol.md
+    describes each count."""
 
     #: Targets whose set points the server has taken.
     taken: int
@@ -98,9 +99,9 @@ class Counts:
 class FingerStatus:
     """The status of one finger."""
 
-    #: Stage, as in FingerState.
+    #: The stage, one of those of FingerState.
     stage: str
-    #: Number of the fault, and the beginning of its text; 0 and "" if there is none.
+    #: Number of the fault, and the beginning of the fault's text; 0 and "" if there is no fault.
     fault: int
     fault_text: str
     #: Warnings since the hand was opened; a warning that persists counts once.
@@ -137,7 +138,7 @@ class Status:
     lead_force: float
     #: Stiffness with which the server holds a finger, N/cm.
     soft_stiffness: float
-    #: Number of clients that have sent a permitted Request since the start.
+    #: Number of clients that have sent a permitted request, such as acquire, since the start of the server.
     clients: int
     counts: Counts
 
