@@ -1,5 +1,5 @@
 """Reactions of reflexes, for `Hand.install_reflex`. The set point of a reaction is in force until the planner sends
-another one."""
+another one. It expires when the set point that the planner sent last would have expired."""
 
 from __future__ import annotations
 

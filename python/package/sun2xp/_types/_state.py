@@ -23,7 +23,8 @@ class Tip:
     force_directions: int
     #: Measured tensions of tendons 1 to 4, N: shape (4,).
     tensions: Array
-    #: Stiffness that is in effect, N/cm: shape (3, 3).
+    #: Stiffness of the tip in its present pose, N/cm: shape (3, 3). After a change of Kx, this field has its new value
+    #: in the next cycle, although the stiffness of the finger changes over 50 ms.
     stiffness: Array
     #: Force on the touched object without friction, weight and acceleration of the finger, N: shape (3,).
     contact_force: Array
