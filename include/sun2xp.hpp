@@ -94,8 +94,8 @@ inline double limit(seconds longest) noexcept { return longest.count() > 0 ? lon
 /// A function that gets events.
 using event_callback = std::function<void(const struct sun2xp_event &)>;
 
-/// The functions that get the events of all hands. Each has a number that is never used again. The library gets this
-/// number and not the address of the function, because it may still call a function that was removed: if the callback
+/// The event callbacks of all hands. Each callback has a number that is never used again. The library gets this number
+/// and not the address of the callback, because the library may still call a callback that was removed: if the callback
 /// of one hand removes the callback of another hand, sun2xp_on_event does not wait.
 #if defined(__GNUC__)
 // One table for all shared objects of the process, because one shared object can move a `hand` to another.
@@ -304,7 +304,8 @@ class hand {
 public:
     /// A function that is called with each event of a hand, in a thread of the library. It must not throw. It may
     /// replace or remove itself with on_event, and may destroy the hand. The function object stays alive until the call
-    /// returns. If the function removes the function of another hand, that one may still be running afterwards.
+    /// returns. If the function removes the function of another hand, the removed function may still be running
+    /// afterwards.
     using event_callback = detail::event_callback;
 
     /// Opens the hand of a configuration file.

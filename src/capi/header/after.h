@@ -15,9 +15,9 @@
 
 #elif defined(__cplusplus)
 
-/* These are templates, because NULL and 0 would match two overloads for pointers. NULL and 0 match no template, so the
-   compiler calls the plain function, which refuses them. The block is extern "C++", because a planner may include this
-   header inside its own extern "C". */
+/* SendPos, SendKx and GetPos are templates, because NULL and 0 would match two overloads for pointers. NULL and 0 match
+   no template, so the compiler calls the plain function, which refuses them. The block is extern "C++", because a
+   planner may include this header inside its own extern "C". */
 extern "C++" {
 
 inline int Sun2XpSendPos(int Sun2XpFinger, const float *Sun2XpArray) { return ::SendPos(Sun2XpFinger, Sun2XpArray); }
