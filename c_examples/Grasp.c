@@ -65,8 +65,8 @@ static void pass(double seconds)
         nanosleep(&tick, 0);
 }
 
-/* Sets the anchors of all fingertips in one cycle. up is the height of the anchors above the place that the centre of
-   the ball has on the table, cm. distance is their distance from the vertical axis of the ball, cm. */
+/* Sets the anchors of all fingertips in one cycle. up is the height of the anchors above Start, the centre of the ball
+   on the table, cm. distance is their distance from the vertical axis of the ball, cm. */
 static void anchor(double up, double distance)
 {
     struct sun2xp_set_point Group[3] = {{0}};
@@ -120,7 +120,8 @@ static void glide(double up, double distance, double to_up, double to_distance)
     pass(0.5);
 }
 
-/* Prints where the ball is and how hard each finger presses. Returns the sum of the forces toward its axis, N. */
+/* Prints where the ball is and how hard each finger presses. Returns the sum of the forces toward the axis of the
+   ball, N. */
 static double show(const char *doing)
 {
     struct sun2xp_object Object = object();

@@ -24,8 +24,8 @@ static int checked(int result)
     return result;
 }
 
-/* Waits for an event of this kind of the finger. Returns 1 if it has occurred, and 0 if no event of any kind occurs for
-   the time PATIENCE. */
+/* Waits until the finger has an event of this kind. Returns 1 if the event has occurred, and 0 if no event of any kind
+   occurs for the time PATIENCE. */
 static int wait_for(int kind)
 {
     struct sun2xp_event Event;

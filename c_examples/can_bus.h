@@ -47,7 +47,8 @@ static struct sockaddr_un can_address(const char *folder, int finger)
     return address;
 }
 
-/* Opens the end of a finger, or that of the drives if finger is 0. place is a CAN interface, or a folder. */
+/* Opens the socket of Can.c for a finger, or the socket of CanDrives.c if finger is 0. place is the name of a CAN
+   interface, or the path of a folder for Unix sockets. Only a path contains a slash. */
 static int can_open(struct can_bus *bus, const char *place, int finger)
 {
     struct sockaddr_can can = {.can_family = AF_CAN};
@@ -64,7 +65,7 @@ static int can_open(struct can_bus *bus, const char *place, int finger)
     if (bus->socket < 0)
         return -1;
     if (finger != 0) {
-        /* The socket of a finger receives only the frames of its drives. */
+        /* The socket of a finger receives only the frames of this finger's drive. */
         struct can_filter filter[3] = {{CAN_ENCODERS + finger, CAN_SFF_MASK}, {CAN_TENSIONS + finger, CAN_SFF_MASK},
             {CAN_EMERGENCY + finger, CAN_SFF_MASK}};
 
@@ -73,8 +74,8 @@ static int can_open(struct can_bus *bus, const char *place, int finger)
     return bind(bus->socket, (struct sockaddr *)&can, sizeof can);
 }
 
-/* Sends four numbers of 16 bits without waiting. to: the finger whose end receives the frame, or 0 for the
-   drives. */
+/* Sends four numbers of 16 bits without waiting. to is the finger for which Can.c receives the
+   frame, or 0 if CanDrives.c receives it. */
 static int can_send(const struct can_bus *bus, int to, unsigned identifier, const int numbers[4])
 {
     struct can_frame frame = {.can_id = identifier, .can_dlc = 8};

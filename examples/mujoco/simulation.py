@@ -4,8 +4,8 @@
     python simulation.py hand.xml /dev/shm/hand [picture.png]
 
 Both processes map the second file. The servo writes torques and requests steps of one period. This program advances
-the simulation by one period for each request, and writes encoder counts and tensions. This program ends when
-mujoco_hand ends, and then draws the picture if a file for it was named.
+the simulation by one period for each request, and writes encoder counts and tensions. When mujoco_hand ends, this
+program draws the picture, if a file for it was named, and ends.
 """
 
 import mmap
@@ -67,7 +67,7 @@ def with_elastic_tendons(text):
 
 
 class Hand:
-    """The simulated hand. Arrays of the tendons have 12 entries: tendons 1 to 4 of finger 1, then of 2 and 3."""
+    """The simulated hand. Arrays of the tendons have 12 entries: tendons 1 to 4 of each finger, finger by finger."""
 
     def __init__(self, text):
         text, pose, pretension = with_elastic_tendons(text)
@@ -83,7 +83,7 @@ class Hand:
         self.dry = self.model.dof_frictionloss[self.rotors].copy()
         self.data.qpos[self.joints] = pose[:9]
         mujoco.mj_forward(self.model, self.data)
-        # In this pose the rotors have wound in as much of each tendon as gives the tendon its pretension.
+        # Sets the rotors so that each tendon has its pretension in this pose.
         self.data.qpos[self.places] = -self.data.ten_length
         mujoco.mj_forward(self.model, self.data)
 
