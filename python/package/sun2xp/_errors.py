@@ -96,7 +96,7 @@ class ConfigurationError(Error):
 
 # OSError has an attribute errno too, whose value may be None.
 class TimedOut(Error, TimeoutError):  # type: ignore[misc]
-    """A finger has not arrived or settled within the time limit."""
+    """A time limit has expired, for example before a finger arrived or settled."""
 
     def __reduce__(self) -> Tuple[Any, ...]:
         # OSError keeps its errno outside the dictionary, so a copy from another process would not have it.

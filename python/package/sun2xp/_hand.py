@@ -98,8 +98,8 @@ class Hand(_sun2xp.Hand):
         return self._calibrated(finger, "identify", progress, store)
 
     def find_signs(self, finger: int, progress: Optional[Progress] = None, *, store: bool = True) -> Signs:
-        """Finds the directions in which motors, encoders and gauges of a finger count. Afterwards the finger
-        is limp: its motors are off. Arguments and errors are those of `zero`."""
+        """Finds the signs of motors, encoders and gauges of a finger. Afterwards the finger is limp: its motors are
+        off. Arguments and errors are those of `zero`."""
         return self._calibrated(finger, "signs", progress, store)
 
     def _calibrated(self, finger: int, task: str, progress: Optional[Progress], store: bool) -> Any:

@@ -10,11 +10,11 @@ from ._state import Array
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Signs:
-    """The directions in which motors, encoders and gauges 1 to 4 count: 1 or -1."""
+    """The signs of motors, encoders and gauges 1 to 4: 1 or -1."""
 
-    #: Signs of the motors, `motor.sign`.
+    #: 1 if a positive command pulls the tendon, else -1: `motor.sign`.
     motor: Tuple[int, int, int, int]
-    #: Signs of the encoders, `encoder.sign`.
+    #: 1 if the encoder's count rises as the tendon is pulled in, else -1: `encoder.sign`.
     encoder: Tuple[int, int, int, int]
     #: 1 if the gauge's count rises with the tension, -1 if it falls.
     gauge: Tuple[int, int, int, int]
@@ -49,7 +49,8 @@ class Identified:
     motor_coulomb: Array
     #: Conduit friction of each tendon, `friction.conduit`, as a part of the tension's torque at the motor: shape (4,).
     conduit: Array
-    #: Pulley friction of each tendon, `friction.pulley`, as a part of the smaller tension of its two sides: shape (4,).
+    #: Pulley friction of each tendon, `friction.pulley`: the largest difference of the tensions on the two sides of the
+    #: pulleys, as a part of the smaller tension: shape (4,).
     pulley: Array
     #: Factors for `gauge.newton_per_count`: shape (4,).
     gauge_gain: Array

@@ -17,7 +17,7 @@ from ._network import ANSWER_TIME, Network
 from ._owner import Owner
 from ._reading import Reading
 
-#: Longest time without a State, s, after which a wait still continues.
+#: If no State arrives for this time, s, or for `stale` if that is longer, a wait raises Stale.
 _PAUSE = 1.0
 
 #: Longest time of a recovery, s.
