@@ -219,4 +219,8 @@ class Sender:
         try:
             owner.publish(sent)
         except Exception as error:  # The Targets of the other hands must go on.
-            warnings.warn(f"a Target cannot be sent, so its hand stops: {error}", RuntimeWarning, stacklevel=2)
+            warnings.warn(
+                f"a Target cannot be sent ({error}), so its hand stops: check the connection, and open the hand again",
+                RuntimeWarning,
+                stacklevel=2,
+            )

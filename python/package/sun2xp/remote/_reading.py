@@ -161,7 +161,7 @@ class Reading:
         return self._network.get(key, payload, timeout)
 
     def _no_answer(self, asked: str) -> NoAnswer:
-        where = f"{self._network.endpoint} as {self._network.client}"
+        where = f"{self._network.endpoint} (client {self._network.client})"
         remedy = "check the names of the hand and of the client, [serve.clients] of the server, and the line"
         text = f"the hand {self.name} has not answered to {asked} at {where}: {remedy}"
         return NoAnswer(text, number=ErrorNumber.TIMED_OUT)
