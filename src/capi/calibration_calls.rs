@@ -15,10 +15,10 @@ use std::ffi::c_int;
 ///
 /// Slackens the tendons and reads the gauges. Then finds the zero of the encoders by finger.zeroing.method:
 ///
-///   "pose"   The finger stands in finger.zeroing.pose_degrees. It must stand still from the start of
-///            the call until its encoders have been read. This takes 0.3 s for a finger that is a
-///            spring, and some seconds for a limp finger. A jig or a person must hold a limp finger.
-///            A finger that moves is refused, and so is a limp finger that nothing holds.
+///   "pose"   The finger must be in the pose finger.zeroing.pose_degrees, and must stand still there from
+///            the start of the call until its encoders have been read. This takes 0.3 s for a finger
+///            that is a spring, and some seconds for a limp finger. A jig or a person must hold a limp
+///            finger. A finger that moves is refused, and so is a limp finger that nothing holds.
 ///   "stops"  Each joint moves slowly against both of its stops. The finger needs room for that.
 ///   "kept"   The configured zero stays, if the board reports that its counts are still valid.
 ///

@@ -22,7 +22,8 @@ pub const SUN2XP_WHEN_EVENT: c_int = 1;
 /// the number of that finger.
 pub const SUN2XP_WHEN_OTHER_FINGER: c_int = 2;
 
-/// The force of the surroundings on the tip is above the value in the member bound, N.
+/// The force of the surroundings on the tip (the magnitude of contact_force of sun2xp_tip) is above the value in the
+/// member bound, N.
 pub const SUN2XP_WHEN_FORCE_ABOVE: c_int = 3;
 
 /// The tension of any tendon is above the value in the member bound, N.
@@ -114,11 +115,11 @@ pub struct sun2xp_reflex {
 /// hardware with in_step, waits for every reply, so SUN2XP_WHEN_LINK_LOST never becomes true for it.
 ///
 /// A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
-/// later calls that change a part of a set point start from the new one. The next sun2xp_send_position
-/// moves the finger again. The set point of the reaction expires when the one that was sent last would have
-/// expired. The finger ignores a set point that is sent within the time in the member inhibition. This is no
-/// error, and the ignored set point still restarts the time after which set points expire. A rule stays until
-/// sun2xp_remove_reflex or sun2xp_close.
+/// later calls that change a part of a set point start from the set point of the reaction. The next
+/// sun2xp_send_position moves the finger again. The set point of the reaction expires when the one that was
+/// sent last would have expired. The finger ignores a set point that is sent within the time in the member
+/// inhibition. The call that sends it is not refused, and the ignored set point still restarts the time
+/// after which set points expire. A rule stays until sun2xp_remove_reflex or sun2xp_close.
 ///
 /// Returns the number of the rule, above 0, or a negative number with
 ///   EPERM    forked child
