@@ -60,7 +60,7 @@ pub struct sun2xp_io_command {
     /// Number of the command, counted from the last call of start. An exchange that is repeated after an error (only
     /// with in_step) has the same number again.
     pub number: c_ulong,
-    /// 0: the motors are off, and the torques are zero.
+    /// 0: the motors must be off, and the torques are zero.
     pub enable: c_int,
     /// Torques of motors 1 to 4, N cm.
     pub torques: [f64; 4],

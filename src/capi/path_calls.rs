@@ -30,7 +30,7 @@ pub struct sun2xp_path_pose {
     pub is_tip: c_int,
     /// Time since the beginning of the path, s.
     pub time: f64,
-    /// Joint angles, rad, or x, y, z of the tip, finger's frame, cm.
+    /// Joint angles, rad, or x, y, z of the tip in the finger's frame, cm.
     pub place: [f64; 3],
     /// Matrix Kx of sun2xp_send_stiffness. Null: the pose has no Kx.
     pub stiffness: *const f64,
