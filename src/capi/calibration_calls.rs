@@ -50,7 +50,7 @@ use std::ffi::c_int;
 ///              has ended. (2) Another thread has recovered the finger from a fault during the calibration:
 ///              the finger then holds its pose. If its new zeros had been found before the fault, they are in
 ///              force
-///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
+///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
 ///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
 ///              sun2xp_close, and the next calibration of the finger that can be stored stores them
 ///

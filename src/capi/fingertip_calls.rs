@@ -21,10 +21,10 @@ use std::ffi::c_int;
 ///   tip      tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm
 ///
 /// From the next cycle on, the anchor of the fingertip's spring moves to tip, along a straight line in joint
-/// angles and at a bounded speed. The stiffness is the one sent last. When the anchor is at tip and p is
-/// the position of the fingertip, the force is Kx (tip - p) at any distance, whatever the configured
-/// controller.law. If several joint solutions are within the joint limits, the call takes the one nearest
-/// to the present pose.
+/// angles and at a bounded speed. The stiffness Kx is the one sent last (sun2xp_send_stiffness). When the
+/// anchor is at tip and p is the position of the fingertip, the force is Kx (tip - p) at any distance,
+/// whatever the configured controller.law. If several joint solutions are within the joint limits, the call
+/// takes the one nearest to the present pose.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

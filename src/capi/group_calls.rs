@@ -46,7 +46,7 @@ pub struct sun2xp_set_point {
 ///
 ///   count        number of commands, 0 to 3
 ///   set_points   set_points[count]: one command for each finger of the group, in any order; set size of
-///                every command, and set members that are not used to 0
+///                every command, and set unused members to 0
 ///
 /// Each command has the effect of sun2xp_send_position or sun2xp_send_tip, sun2xp_send_stiffness and
 /// sun2xp_send_damping. All fingers of the group follow their commands from the same cycle on, even if

@@ -8,7 +8,7 @@ use std::ffi::{c_int, c_uint, c_ulong, c_void};
 /// The watchdog of the hardware has tripped since the last call of start.
 pub const SUN2XP_IO_WATCHDOG: c_uint = 1;
 
-/// The hardware has entered the end state for another reason.
+/// The hardware has entered the end state for a reason other than its watchdog.
 pub const SUN2XP_IO_ENDED: c_uint = 2;
 
 /// The emergency stop is active.
@@ -68,7 +68,7 @@ pub struct sun2xp_io_command {
     pub deadline: f64,
 }
 
-/// What the sensors of a finger measured. Before it calls start or exchange, the library sets size, and sets all other
+/// What the sensors of a finger measured. Before the library calls start or exchange, it sets size, and sets all other
 /// members to 0.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -87,7 +87,7 @@ pub struct sun2xp_io_sample {
     pub faults: c_uint,
 }
 
-/// The hardware of one finger (sun2xp_open_io). Set members that are not used to 0.
+/// The hardware of one finger (sun2xp_open_io). Set unused members to 0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_io {
