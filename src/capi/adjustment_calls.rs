@@ -25,10 +25,11 @@ use std::ffi::{CStr, c_char, c_int};
 /// default bound applies. If the bound is lowered while a path changes Kx, the Kx of the end of the path
 /// takes effect at once.
 ///
-/// The whole path that was sent last is checked against the new limits until it has ended, except those of
-/// finger.motion, which apply to later paths. With hand.out_of_range = "clamp" a path outside the new
-/// joint limits ends, and the finger moves to the end of the path at once. A pose beyond a joint limit, in
-/// which the finger was found, is compared only with a limit that becomes narrower.
+/// Until the path that was sent last has ended, the whole path is checked against all new limits, except
+/// those of finger.motion, which apply to later paths. With hand.out_of_range = "clamp" a path outside the
+/// new joint limits ends, and the finger moves to the end of the path at once. If the finger holds a pose
+/// beyond a joint limit, because it was there when it became a spring, this pose is compared only with
+/// limits that become narrower.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

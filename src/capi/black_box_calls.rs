@@ -37,13 +37,13 @@ pub struct sun2xp_record {
     pub newest: c_ulong,
     /// Start of the cycle on CLOCK_MONOTONIC, s.
     pub time: f64,
-    /// 1: the board's reply arrived. 0: none came in this cycle.
+    /// 1: the board's reply arrived in this cycle. 0: no reply arrived.
     pub answered: c_int,
     /// Status bits of the newest reply (docs/board-protocol.md).
     pub status_bits: c_int,
     /// 1: the controller ran and computed the members below.
     pub computed: c_int,
-    /// 1: position_sent is the set point in force. 0: none is in force.
+    /// 1: position_sent is the set point in force. 0: no set point is in force.
     pub follows: c_int,
     /// Measured joint angles, rad.
     pub position: [f64; 3],

@@ -15,10 +15,10 @@ use std::ffi::c_int;
 ///
 /// Slackens the tendons and reads the gauges. Then finds the zero of the encoders by finger.zeroing.method:
 ///
-///   "pose"   The finger stands in finger.zeroing.pose_degrees. It must stand still from the start of
-///            the call until its encoders have been read. This takes 0.3 s for a finger that is a
-///            spring, and some seconds for a limp finger. A jig or a person must hold a limp finger.
-///            A finger that moves is refused, and so is a limp finger that nothing holds.
+///   "pose"   The finger must be in the pose finger.zeroing.pose_degrees, and must stand still there from
+///            the start of the call until its encoders have been read. This takes 0.3 s for a finger
+///            that is a spring, and some seconds for a limp finger. A jig or a person must hold a limp
+///            finger. A finger that moves is refused, and so is a limp finger that nothing holds.
 ///   "stops"  Each joint moves slowly against both of its stops. The finger needs room for that.
 ///   "kept"   The configured zero stays, if the board reports that its counts are still valid.
 ///
@@ -50,7 +50,7 @@ use std::ffi::c_int;
 ///              has ended. (2) Another thread has recovered the finger from a fault during the calibration:
 ///              the finger then holds its pose. If its new zeros had been found before the fault, they are in
 ///              force
-///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
+///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
 ///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
 ///              sun2xp_close, and the next calibration of the finger that can be stored stores them
 ///

@@ -37,8 +37,8 @@ pub struct sun2xp_error {
 ///
 /// Every thread has its own refusals. A thread remembers the last refusal of each of the four hands that
 /// have refused its calls most recently. Calls without a handle, such as sun2xp_open, and calls with a null
-/// handle together count as one hand. Only hand = null returns their refusal. A call that succeeds does not
-/// change the refusals.
+/// handle together count as one hand. sun2xp_error returns their refusal only if hand is null. A call that
+/// succeeds does not change the refusals.
 ///
 /// Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
 ///

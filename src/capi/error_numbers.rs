@@ -16,8 +16,8 @@ pub const SUN2XP_ERROR_EXITING: c_int = 3;
 /// The handle does not belong to an open hand.
 pub const SUN2XP_ERROR_NO_HAND: c_int = 4;
 
-/// Hand or finger is busy: it is being opened, closed, calibrated or recovered, or 16 groups wait for the finger. Call
-/// again later. If the motors of a finger are off, first zero it.
+/// Hand or finger is busy: it is being opened, closed, calibrated or recovered, or 16 groups of sun2xp_send_group have
+/// not taken effect yet. Call again later. If a finger is limp (SUN2XP_STATE_LIMP), zero it first.
 pub const SUN2XP_ERROR_BUSY: c_int = 5;
 
 /// Too many hands or reflexes.

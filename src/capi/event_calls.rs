@@ -123,7 +123,7 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
 ///   ENODEV   no such hand
 ///   EAGAIN   the system refuses to start a thread
 ///
-/// Threads: any, and callback. Waits until the previous callback has returned.
+/// Threads: any. Waits until the previous callback has returned, except in a callback.
 ///
 /// Example:
 ///
@@ -168,9 +168,9 @@ pub extern "C" fn sun2xp_on_event(
 /// sun2xp_event_descriptor - a descriptor for poll and select
 ///
 /// The descriptor is readable while sun2xp_next_event would return an event, and from the beginning of
-/// sun2xp_close on. sun2xp_next_event makes it unreadable when it returns 0. So after each poll, call
-/// sun2xp_next_event until it returns 0. Do not read, write or close the descriptor. sun2xp_close closes it
-/// at its end.
+/// sun2xp_close on. A call of sun2xp_next_event that returns 0 makes the descriptor unreadable. So after each
+/// poll, call sun2xp_next_event until it returns 0. Do not read, write or close the descriptor. At its end,
+/// sun2xp_close closes the descriptor.
 ///
 /// Returns the descriptor, the same one until sun2xp_close, or a negative number with
 ///   EPERM    forked child

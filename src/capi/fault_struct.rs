@@ -7,8 +7,8 @@ use std::ffi::{c_int, c_ulong};
 
 /// Result of sun2xp_fault.
 ///
-/// The text of sun2xp_fault_text says which kind of part a fault concerns, for example a tendon. A part is 0
-/// if the fault concerns the whole finger.
+/// The text of sun2xp_fault_text says which kind of part a fault concerns, for example a tendon. The member
+/// part or warning_part is 0 if the fault or the warning concerns the whole finger.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_fault {

@@ -21,10 +21,10 @@ use std::ffi::c_int;
 ///   tip      tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm
 ///
 /// From the next cycle on, the anchor of the fingertip's spring moves to tip, along a straight line in joint
-/// angles and at a bounded speed. The stiffness is the one sent last. When the anchor is at tip and p is
-/// the position of the fingertip, the force is Kx (tip - p) at any distance, whatever the configured
-/// controller.law. If several joint solutions are within the joint limits, the call takes the one nearest
-/// to the present pose.
+/// angles and at a bounded speed. The stiffness Kx is the one sent last (sun2xp_send_stiffness). When the
+/// anchor is at tip and p is the position of the fingertip, the force is Kx (tip - p) at any distance,
+/// whatever the configured controller.law. If several joint solutions are within the joint limits, the call
+/// takes the one nearest to the present pose.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -168,13 +168,14 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 /// sun2xp_send_damping - set the damping of a fingertip
 ///
 ///   finger   1 to 3
-///   ratio    damping relative to what the controller chooses from the stiffness; 1 after sun2xp_open
+///   ratio    damping relative to the damping that the controller chooses for the stiffness; 1 after sun2xp_open
 ///
 /// The ratio changes without a jump in torque and stays until another ratio is sent. It becomes 1 again when
 /// the finger becomes a spring after a fault or a calibration, when a set point expires, and when a reflex
-/// with the reaction SUN2XP_THEN_SOFTEN fires. A reflex with SUN2XP_THEN_DAMP replaces it. A finger whose
-/// ratio is much below or much above 1 does not come to rest. The permitted range depends on the controller
-/// (finger.controller.scheme), the rate and the largest eigenvalue k of the stiffness, N/cm:
+/// with the reaction SUN2XP_THEN_SOFTEN fires. A reflex with SUN2XP_THEN_DAMP replaces the ratio. A finger
+/// whose ratio is much below or much above 1 does not come to rest. The permitted range depends on the
+/// controller (finger.controller.scheme: state feedback, or figure 9, 10 or 11 of the report), the rate and
+/// the largest eigenvalue k of the stiffness, N/cm:
 ///
 ///                                     1000 Hz and above    below 1000 Hz
 ///   state feedback         smallest   0.40 + 0.09 k        0.70 + 0.07 k

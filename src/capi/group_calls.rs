@@ -16,7 +16,8 @@ use crate::model::configuration::FINGERS;
 use std::ffi::c_int;
 use std::time::Duration;
 
-/// Every joint has been within finger.events.arrived_degrees of the set point sent last.
+/// Since the set point sent last took effect, there was a cycle in which every joint was within
+/// finger.events.arrived_degrees of this set point.
 pub const SUN2XP_WAIT_ARRIVED: c_int = 1;
 
 /// Since the set point sent last took effect, there was a time of finger.events.settled_ms in which no joint
@@ -45,7 +46,7 @@ pub struct sun2xp_set_point {
 ///
 ///   count        number of commands, 0 to 3
 ///   set_points   set_points[count]: one command for each finger of the group, in any order; set size of
-///                every command, and set members that are not used to 0
+///                every command, and set unused members to 0
 ///
 /// Each command has the effect of sun2xp_send_position or sun2xp_send_tip, sun2xp_send_stiffness and
 /// sun2xp_send_damping. All fingers of the group follow their commands from the same cycle on, even if
@@ -67,8 +68,8 @@ pub struct sun2xp_set_point {
 ///   EIO      a finger of the group is faulted
 ///   ERANGE   a ratio is outside the range of sun2xp_send_damping, or a stiffness is too stiff for the ratio
 ///            (hand.out_of_range = "clamp" clamps the ratio)
-///   EBUSY    16 groups of a finger have not taken effect yet, because they are sent faster than one in
-///            a period, or the servo does not run
+///   EBUSY    16 groups of a finger have not taken effect yet, because the program sends more
+///            than one in each period, or because the servo does not run
 ///
 /// Threads: any. Never waits for a servo. Takes a few us.
 ///
@@ -115,15 +116,15 @@ pub unsafe extern "C" fn sun2xp_send_group(
 ///   until     SUN2XP_WAIT_ARRIVED or SUN2XP_WAIT_SETTLED
 ///   seconds   longest time to wait
 ///
-/// Returns at once if the condition holds already. For all fingers it must hold at the same time. A finger
-/// that an object blocks settles without arriving. If the set point is a position of the tip, the finger
-/// arrives at the joint angles that were computed for it. If a reflex has replaced the set point that was
-/// sent last, the condition must hold for the set point of the reflex. The same applies if the finger
-/// ignored the set point because a reflex inhibits set points for some time. The wait then returns only
-/// after this time. If the set point that was sent last has expired, the condition must hold for the pose
-/// that the finger holds since then. The events SUN2XP_EVENT_REFLEX_FIRED and SUN2XP_EVENT_EXPIRED say that
-/// this has happened. Other calls work during the wait. sun2xp_close works too, and then the wait is
-/// refused.
+/// If the condition holds already, the call returns at once. With SUN2XP_ALL_FINGERS the condition must hold
+/// for all fingers at the same time. A finger that an object blocks settles without arriving. If the set
+/// point is a position of the tip, the finger arrives at the joint angles that were computed for it. If a
+/// reflex has replaced the set point that was sent last, the condition must hold for the set point of the
+/// reflex. The same applies if the finger ignored the set point because a reflex inhibits set points for
+/// some time. The wait then returns only after this time. If the set point that was sent last has expired,
+/// the condition must hold for the pose that the finger holds since then. The events
+/// SUN2XP_EVENT_REFLEX_FIRED and SUN2XP_EVENT_EXPIRED say that this has happened. Other calls work during
+/// the wait. sun2xp_close works too, and then the wait is refused.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -17,18 +17,19 @@ use std::ffi::{c_char, c_int};
 ///   io      io[count]: the hardware of each of these fingers; copied
 ///   hand    result: the handle of the hand
 ///
-/// Opens a hand as sun2xp_open does. A finger with an entry in io has no serial port: the library calls
-/// start, then exchange in every cycle, then stop, all with user as first argument. Each returns 0, or an
-/// errno. Timing, faults and recovery are those of a board (docs/other-hardware.md):
+/// Opens a hand as sun2xp_open does. A finger with an element in io has no serial port: the library calls
+/// start, then exchange in every cycle, then stop, all with user as first argument. Each must return 0, or an
+/// errno if it fails. Timing, faults and recovery are as with a board (docs/other-hardware.md). The library
+/// calls these functions as follows:
 ///
-///   start     in a thread of the library that is not real-time, at opening and at every recovery; may take
-///             seconds. An error refuses the call.
-///   exchange  in the servo thread of the finger. An error counts as a lost reply. If exchange returns
-///             after the deadline, the cycle is late. If the next period has begun by then, the cycle
-///             also counts as an overrun.
-///   stop      in the servo thread, at a recovery, or when opening is refused. After an error, the library
-///             calls it again, at least twice if the errors persist. Every start that has succeeded is
-///             followed by a stop.
+///   start     in a thread of the library that is not real-time, at opening and at every recovery. start
+///             may take seconds. If it fails, the opening or the recovery is refused.
+///   exchange  in the servo thread of the finger. A failure counts as a lost reply. If exchange returns 0
+///             after the deadline, the sample is used nevertheless. If the next period has begun by then,
+///             the cycle counts as an overrun.
+///   stop      in the servo thread. At a recovery, or when opening is refused, it may be called in a thread
+///             that is not real-time. After a failure, the library calls stop again, at least twice if the
+///             failures persist. Every start that has succeeded is followed by a stop.
 ///
 /// Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a
 /// servo thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery,
@@ -37,21 +38,21 @@ use std::ffi::{c_char, c_int};
 /// cycle. A finger that is faulted or stopped gets no exchange.
 ///
 /// exchange and stop must not allocate memory, wait for locks, write files or call the library. The behaviour
-/// is undefined if one of the functions does not return: longjmp, pthread_exit, exceptions.
+/// is undefined if one of the functions does not return, because of longjmp, pthread_exit or an exception.
 ///
 /// The program must provide a watchdog outside this process, such as that of its drives: if no exchange
 /// comes for terms->watchdog, the hardware must enter the end state by itself, even if this process hangs
 /// or has died.
 ///
 /// A tension may be from -8191 to 57342 times io->tension_unit. A tension that is NaN or outside this range
-/// faults the finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by more than 32767 counts
-/// between two exchanges.
+/// faults the finger, as SUN2XP_IO_SENSOR does. An encoder that moves by more than 32767
+/// counts between two exchanges faults the finger in the same way.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
 ///   ENOMEM   there is not enough memory
 ///   EFAULT   hand is null, or io is null and count is not 0
-///   EINVAL   size is too small; count is not 0 to 3; no such finger, or two entries for one finger;
+///   EINVAL   size is too small; count is not 0 to 3; no such finger, or two elements for one finger;
 ///            shortest_watchdog is negative or NaN
 ///   EFAULT   a function of io is null
 ///   EMFILE   16 hands are open

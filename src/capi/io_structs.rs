@@ -5,10 +5,10 @@
 
 use std::ffi::{c_int, c_uint, c_ulong, c_void};
 
-/// The watchdog of the hardware has tripped since the start.
+/// The watchdog of the hardware has tripped since the last call of start.
 pub const SUN2XP_IO_WATCHDOG: c_uint = 1;
 
-/// The hardware has entered the end state for another reason.
+/// The hardware has entered the end state for a reason other than its watchdog.
 pub const SUN2XP_IO_ENDED: c_uint = 2;
 
 /// The emergency stop is active.
@@ -23,8 +23,8 @@ pub const SUN2XP_IO_DRIVER: c_uint = 16;
 /// An encoder or a gauge cannot be read.
 pub const SUN2XP_IO_SENSOR: c_uint = 32;
 
-/// The encoder counts have lost their reference to the zero. In the first sample it does not fault the finger: a
-/// message says so, and the finger must be zeroed (sun2xp_zero).
+/// The encoder counts have lost their reference to the zero. In the first sample this bit does not fault the finger: a
+/// message reports it, and the finger must be zeroed (sun2xp_zero).
 pub const SUN2XP_IO_ZERO_LOST: c_uint = 64;
 
 /// The terms under which the motors of a finger may move. The library sets all members.
@@ -57,10 +57,10 @@ pub struct sun2xp_io_terms {
 pub struct sun2xp_io_command {
     /// sizeof (struct sun2xp_io_command) in the library.
     pub size: usize,
-    /// Number of the command, counted from the start. An exchange that is repeated after an error (in_step) has the
-    /// same number again.
+    /// Number of the command, counted from the last call of start. An exchange that is repeated after an error (only
+    /// with in_step) has the same number again.
     pub number: c_ulong,
-    /// 0: the motors are off, and the torques are zero.
+    /// 0: the motors must be off, and the torques are zero.
     pub enable: c_int,
     /// Torques of motors 1 to 4, N cm.
     pub torques: [f64; 4],
@@ -68,7 +68,8 @@ pub struct sun2xp_io_command {
     pub deadline: f64,
 }
 
-/// What the sensors of a finger measured. Before the call the library sets size, and all other members to 0.
+/// What the sensors of a finger measured. Before the library calls start or exchange, it sets size, and sets all other
+/// members to 0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_io_sample {
@@ -81,12 +82,12 @@ pub struct sun2xp_io_sample {
     pub tensions: [f64; 4],
     /// Counts of the motor encoders.
     pub encoders: [c_int; 4],
-    /// Sum of SUN2XP_IO_... for faults that are present. Each faults the finger, except
+    /// Sum of the SUN2XP_IO_... bits of all present faults. Each bit stops the finger with a fault, except
     /// SUN2XP_IO_ZERO_LOST in the first sample.
     pub faults: c_uint,
 }
 
-/// The hardware of one finger (sun2xp_open_io). Set members that are not used to 0.
+/// The hardware of one finger (sun2xp_open_io). Set unused members to 0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_io {
@@ -96,9 +97,10 @@ pub struct sun2xp_io {
     pub finger: c_int,
     /// 1: the hardware supports the end state "hold".
     pub holds: c_int,
-    /// 1: a simulation that advances by one period in each exchange. The servo waits for it.
+    /// 1: the hardware is a simulation that advances by one period in each exchange. The servo waits for the
+    /// simulation.
     pub in_step: c_int,
-    /// Shortest watchdog time of the hardware, s.
+    /// Shortest watchdog time that the hardware supports, s.
     pub shortest_watchdog: f64,
     /// Step in which the library stores tensions, N. 0 selects 0.005 N.
     pub tension_unit: f64,

@@ -19,7 +19,7 @@ use std::ffi::c_int;
 pub struct sun2xp_joint_torques {
     /// sizeof (struct sun2xp_joint_torques), set before the call.
     pub size: usize,
-    /// From the measured tensions: joints 0, 1, 2, N cm.
+    /// Torques from the measured tensions: joints 0, 1, 2, N cm.
     pub measured: [f64; 3],
     /// Torques that the servo commands, N cm, within the tension limits.
     pub commanded: [f64; 3],
@@ -46,7 +46,7 @@ pub struct sun2xp_palm_pose {
 ///   finger     1 to 3
 ///   position   position[3]: angles of joints 0, 1, 2, rad. Null: the measured angles
 ///   jacobian   result: jacobian[9], row by row: entry [row][column] is the motion of the tip
-///              along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8 of the report)
+///              along axis row (x, y, z of the finger's frame) when joint column turns, cm/rad (eq. 8 of the report)
 ///
 /// A force f on the tip, N, exerts this torque on joint k, N cm: entry [0][k] times f[0], plus entry [1][k]
 /// times f[1], plus entry [2][k] times f[2].
@@ -190,8 +190,8 @@ pub unsafe extern "C" fn sun2xp_joint_torques(
 ///   finger   1 to 3
 ///   pose     result, from the last cycle of the servo; set pose->size before the call
 ///
-/// base and rotation follow from the configuration, finger.base and finger.turn_degrees. By default two
-/// fingers are side by side, and the thumb is opposite to them.
+/// The members base and rotation follow from finger.base and finger.turn_degrees of the configuration. By
+/// default two fingers are side by side, and the thumb is opposite to them.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -19,6 +19,6 @@ pub struct sun2xp_limits {
     pub tension_maximum: f64,
     /// Largest torques of the motors, N cm.
     pub motor_torque: [f64; 4],
-    /// Largest eigenvalue of a stiffness, N/cm.
+    /// Largest permitted eigenvalue of a stiffness, N/cm.
     pub stiffness: f64,
 }

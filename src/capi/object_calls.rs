@@ -73,14 +73,14 @@ pub unsafe extern "C" fn sun2xp_object(hand: *mut sun2xp_hand, object: *mut sun2
 ///
 ///   finger   1 to 3
 ///   force    force[3]: force on the fingertip along x, y, z of the finger's frame, N. It
-///            acts until the next call; zero ends it
+///            acts until the next sun2xp_push for this finger; zero ends it
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
 ///   EFAULT   force is null
 ///   ENODEV   no such hand
 ///   EINVAL   no such finger; an entry is NaN or infinite
-///   ENOTSUP  the finger is on a real port
+///   ENOTSUP  the finger is not simulated by the library
 ///   ERANGE   a component is beyond 1000 N
 ///
 /// Threads: any.

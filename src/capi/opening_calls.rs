@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// sun2xp_open - open the hand of a configuration file
 ///
-///   path   the file; null: the file that OpenHand finds, or the simulated hand if there is none
+///   path   the file; null: the file that OpenHand finds, or the simulated hand if OpenHand finds none
 ///   hand   result: the handle of the hand
 ///
 /// Opens the ports, starts the servos and brings the tendons under tension. Returns when every finger has
@@ -30,8 +30,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
 ///   EINVAL   the configuration is unusable; sun2xp_error_text names file, line and reason
 ///   ENOENT, EACCES, EBUSY ...  a port cannot be opened; errno of the system
-///   ETIMEDOUT and other errnos of a link: a board does not answer, or the device is not a board
-///   EIO      a finger does not come under tension in time, or faults before it does
+///   ETIMEDOUT ...  a board does not answer, or the device is not a board
+///   EIO      the tendons of a finger do not come under tension in time, or the finger faults before that
 ///   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
 ///            configured core is not available
 ///
@@ -119,9 +119,9 @@ pub unsafe extern "C" fn sun2xp_open_named(name: *const c_char, hand: *mut *mut 
 
 /// sun2xp_close - stop a hand
 ///
-/// Brings every finger to the configured end state and stops the servos, as CloseHand does. Afterwards the
-/// handle does not belong to an open hand, and no later hand has the same handle. At exit the library closes
-/// all hands that are still open.
+/// Brings every finger to the configured end state (hand.end_state) and stops the servos, as CloseHand does.
+/// Afterwards the handle does not belong to an open hand, and no later hand has the same handle. At exit the
+/// library closes all hands that are still open.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -30,9 +30,9 @@ pub struct sun2xp_path_pose {
     pub is_tip: c_int,
     /// Time since the beginning of the path, s.
     pub time: f64,
-    /// Joint angles, rad, or x, y, z of the tip, finger's frame, cm.
+    /// Joint angles, rad, or x, y, z of the tip in the finger's frame, cm.
     pub place: [f64; 3],
-    /// Matrix of sun2xp_send_stiffness. Null: no effect on stiffness.
+    /// Matrix Kx of sun2xp_send_stiffness. Null: the pose has no Kx.
     pub stiffness: *const f64,
 }
 
@@ -44,13 +44,13 @@ pub struct sun2xp_path_pose {
 ///   seconds   how long the path stays valid after its end, s; 0 for finger.motion.valid_ms
 ///
 /// The path begins at once. Its first point is the present place of the anchor of the fingertip's spring,
-/// and it continues the anchor's motion. It passes every pose at its time and rests at the last one.
-/// Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only
-/// pose is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
+/// and the path continues the anchor's motion. It passes every pose at its time and rests at the last one.
+/// Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only pose
+/// is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
 /// continuous, with one exception: if a path that continues the motion would be refused, the finger first
 /// brakes for 0.15 s. The braking begins with the present speed, but without acceleration and jerk. State
-/// feedback smooths this step. Speed, acceleration and jerk are fed forward, so the finger follows without
-/// the lag of sun2xp_send_position.
+/// feedback smooths this step in acceleration and jerk. State feedback also feeds speed, acceleration and
+/// jerk forward, so the finger follows without the lag of sun2xp_send_position.
 ///
 /// Between two poses that have a Kx, Kx changes linearly. Until the first pose that has a Kx, Kx changes
 /// linearly from its value at the beginning of the path. After sun2xp_send_joint_stiffness this value is 0,
@@ -71,7 +71,7 @@ pub struct sun2xp_path_pose {
 ///   ENOMEM   there is not enough memory for the computation
 ///   ENODEV   no such hand
 ///   EINVAL   size is too small; count is not 1 to 128; seconds is NaN, negative or more than 3600; no such
-///            finger; a time is more than 3600, or less than 1 ms later than the one before; joint angles and
+///            finger; a time is more than 3600 s, or less than 1 ms later than the one before; joint angles and
 ///            tip positions are mixed; an entry is NaN or infinite
 ///   EDOM     a Kx is not symmetric, or has a negative eigenvalue
 ///   ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is too
@@ -125,10 +125,9 @@ pub unsafe extern "C" fn sun2xp_send_path(
 ///   position   position[3]: desired angles of joints 0, 1, 2, rad, as for sun2xp_send_position
 ///   seconds    how long the angles are valid, s; 0 for finger.motion.valid_ms
 ///
-/// Has the effect of sun2xp_send_position. If the time given by seconds passes without another command of
-/// the planner, the finger no longer follows the angles. By default it then holds its present pose, with
-/// the soft stiffness finger.motion.expired_stiffness. With finger.motion.on_expiry = "end state" it
-/// faults.
+/// Has the effect of sun2xp_send_position. If the time given by seconds passes without another command to
+/// the finger, the finger no longer follows the angles. By default it then holds its present pose, with the
+/// soft stiffness finger.motion.expired_stiffness. With finger.motion.on_expiry = "end state" it faults.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

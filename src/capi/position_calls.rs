@@ -12,10 +12,11 @@ use std::ffi::c_int;
 ///   finger     1 to 3
 ///   position   position[3]: desired angles of joints 0, 1, 2, rad
 ///
-/// All three angles take effect together. From the next cycle on, the anchor of the fingertip's spring moves
-/// to the angles in position, along a straight line in joint angles and at a bounded speed. The stiffness is
-/// the one sent last. When the anchor has arrived, the force of the fingertip is Kx (tip - p) at any
-/// distance: tip is the place of the fingertip at the angles in position, and p is its present place. With
+/// All three angles take effect together. From the next cycle on, the anchor of the fingertip's spring (the
+/// point toward which the spring pulls) moves to the angles in position, along a straight line in joint
+/// angles and at a bounded speed. The stiffness Kx is the one sent last (sun2xp_send_stiffness). When the
+/// anchor has arrived, the force of the fingertip is Kx (tip - p) at any distance: tip is the place of the
+/// fingertip at the angles in position, and p is the present place of the fingertip. With
 /// controller.law = "report" the finger follows the law of the report, which holds for small distances. The
 /// call does not wait until the finger arrives. sun2xp_limits reads the joint limits.
 ///

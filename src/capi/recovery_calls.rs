@@ -49,14 +49,14 @@ pub extern "C" fn sun2xp_stop_all() -> c_int {
     0
 }
 
-/// sun2xp_stop - stop a finger, or all
+/// sun2xp_stop - stop a finger, or all fingers of a hand
 ///
 ///   finger   1 to 3, or SUN2XP_ALL_FINGERS
 ///
 /// The finger faults (SUN2XP_FAULT_STOP_CALL) at the start of its next cycle, and its board enters the
 /// configured end state, as with sun2xp_stop_all. The other fingers continue, unless hand.on_fault is
 /// "hand". The finger stays stopped until sun2xp_recover, or sun2xp_close and sun2xp_open. A finger that
-/// has faulted already stays as it is. Like sun2xp_stop_all, this is not a safety function. Unlike
+/// has faulted already stays as it is. Like sun2xp_stop_all, sun2xp_stop is not a safety function. Unlike
 /// sun2xp_stop_all, it must not be called in a signal handler.
 ///
 /// Returns 0, or a negative number with
@@ -96,8 +96,8 @@ pub extern "C" fn sun2xp_stop(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
 ///   EIO      the finger faults again; or its board is not the one found by sun2xp_open, or has lost its
 ///            zero; or its servo thread has failed (SUN2XP_FAULT_SERVO_PANIC), which only sun2xp_close and
 ///            sun2xp_open remedy. sun2xp_error_text gives the reason
-///   ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: the port is not there yet, the board
-///            does not answer, or the servo does not run. Call again
+///   ENOENT, EACCES, ETIMEDOUT ...  the port is not there yet, the board does not answer, or the servo
+///            does not run. Call again
 ///
 /// Threads: any.
 ///

@@ -22,7 +22,8 @@ pub const SUN2XP_WHEN_EVENT: c_int = 1;
 /// the number of that finger.
 pub const SUN2XP_WHEN_OTHER_FINGER: c_int = 2;
 
-/// The force of the surroundings on the tip is above the value in the member bound, N.
+/// The force of the surroundings on the tip (the magnitude of contact_force of sun2xp_tip) is above the value in the
+/// member bound, N.
 pub const SUN2XP_WHEN_FORCE_ABOVE: c_int = 3;
 
 /// The tension of any tendon is above the value in the member bound, N.
@@ -59,16 +60,17 @@ pub const SUN2XP_THEN_RETRACT: c_int = 4;
 /// member largest, both in N. This needs a Kx without an eigenvalue of 0.
 pub const SUN2XP_THEN_GRIP: c_int = 5;
 
-/// The tip gets the damping ratio in the member value.
+/// The tip gets the damping ratio in the member value, or the nearest ratio that its stiffness permits.
 pub const SUN2XP_THEN_DAMP: c_int = 6;
 
 /// A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.
 ///
-/// If the member refractory is 0, the rule fires again only after its condition was false. After a reaction,
-/// the finger ignores set points of the planner for the time in the member inhibition. For SUN2XP_THEN_GRIP,
-/// the member position is the direction in the finger's frame in which the tip presses harder; 0, 0, 0 is the
-/// direction in which its spring presses. If the spring presses with less than 0.05 N in this direction, the
-/// reaction changes no set point, but a path still ends.
+/// If the member refractory is 0, the rule fires again only after its condition has been false. If the
+/// member refractory is above 0, the rule also fires again after this time while its condition stays true.
+/// After a reaction, the finger ignores set points of the planner for the time in the member inhibition. For
+/// SUN2XP_THEN_GRIP, the member position is the direction in the finger's frame in which the tip presses
+/// harder; 0, 0, 0 is the direction in which its spring presses. If the spring presses with less than 0.05 N
+/// in this direction, the reaction changes no set point, but a path still ends.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_reflex {
@@ -76,17 +78,17 @@ pub struct sun2xp_reflex {
     pub size: usize,
     /// SUN2XP_WHEN_EVENT to SUN2XP_WHEN_PLANNER_SILENT.
     pub condition: c_int,
-    /// SUN2XP_EVENT_... for the conditions EVENT and OTHER_FINGER.
+    /// SUN2XP_EVENT_... for SUN2XP_WHEN_EVENT and SUN2XP_WHEN_OTHER_FINGER.
     pub event: c_int,
     /// The other finger for SUN2XP_WHEN_OTHER_FINGER.
     pub finger: c_int,
-    /// Joint, 0 to 2, for the conditions JOINT_ABOVE and JOINT_BELOW.
+    /// Joint, 0 to 2, for SUN2XP_WHEN_JOINT_ABOVE and SUN2XP_WHEN_JOINT_BELOW.
     pub joint: c_int,
     /// SUN2XP_THEN_STOP to SUN2XP_THEN_DAMP.
     pub reaction: c_int,
-    /// 0 to 255. In a cycle, the rule with the highest priority reacts first.
+    /// 0 to 255. If several rules have fired, the one with the highest priority reacts first.
     pub priority: c_int,
-    /// N, rad or s, as the condition says.
+    /// Bound of the condition, N, rad or s.
     pub bound: c_double,
     /// SUN2XP_THEN_GRIP: increase of the force, N. SUN2XP_THEN_DAMP: ratio.
     pub value: c_double,
@@ -96,7 +98,7 @@ pub struct sun2xp_reflex {
     pub refractory: c_double,
     /// Time after a reaction in which set points are ignored, s, 0 to 3600.
     pub inhibition: c_double,
-    /// RETRACT: joint angles, rad. GRIP: direction of the force.
+    /// SUN2XP_THEN_RETRACT: joint angles, rad. SUN2XP_THEN_GRIP: direction of the force.
     pub position: [c_double; 3],
     /// SUN2XP_THEN_SOFTEN: stiffness, N/cm, row by row.
     pub stiffness: [[c_double; 3]; 3],
@@ -113,12 +115,12 @@ pub struct sun2xp_reflex {
 /// SUN2XP_EVENT_REFLEX_FIRED with the number of the rule. The servo of a built-in simulated finger, or of
 /// hardware with in_step, waits for every reply, so SUN2XP_WHEN_LINK_LOST never becomes true for it.
 ///
-/// A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
-/// later calls that change a part of a set point start from the new one. The next sun2xp_send_position
-/// moves the finger again. The set point of the reaction expires when the one that was sent last would have
-/// expired. The finger ignores a set point that is sent within the time in the member inhibition. This is no
-/// error, and the ignored set point still restarts the time after which set points expire. A rule stays until
-/// sun2xp_remove_reflex or sun2xp_close.
+/// A reaction replaces the set point and ends a path. Set points that were sent before are discarded, and
+/// later calls that change a part of a set point start from the set point of the reaction. The next
+/// sun2xp_send_position moves the finger again. The set point of the reaction expires when the one that was
+/// sent last would have expired. The finger ignores a set point that is sent within the time in the member
+/// inhibition. The call that sends it is not refused, and the ignored set point still restarts the time
+/// after which set points expire. A rule stays until sun2xp_remove_reflex or sun2xp_close.
 ///
 /// Returns the number of the rule, above 0, or a negative number with
 ///   EPERM    forked child

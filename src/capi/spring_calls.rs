@@ -64,10 +64,10 @@ pub unsafe extern "C" fn sun2xp_send_joint_stiffness(
 ///   torque   torque[3]: torque of joints 0, 1, 2, N cm; positive torques increase the angles
 ///
 /// The torque acts in addition to the spring of Kx, of a contact or of sun2xp_send_joint_stiffness, until
-/// the next call replaces it; zero ends it. It takes effect like Kx, without a jump. If the stiffness is
-/// zero, the finger is controlled by torque alone: a free finger then moves to its joint limits, at a speed
-/// that only damping and friction limit. The torque also ends at a fault, at a calibration, when a set point
-/// expires, and when a reflex holds, retracts or softens the finger.
+/// the next sun2xp_send_joint_torque replaces it; zero ends it. The torque takes effect like Kx, without a
+/// jump. If the stiffness is zero, the finger is controlled by torque alone: a free finger then moves to its
+/// joint limits, at a speed that only damping and friction limit. The torque also ends at a fault, at a
+/// calibration, when a set point expires, and when a reflex holds, retracts or softens the finger.
 ///
 /// A torque is refused if it needs more tension than a tendon and its motor permit. If the spring, the
 /// compensation of gravity and the torque together need more, the servo scales their sum down.

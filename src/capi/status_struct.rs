@@ -22,18 +22,19 @@ pub const SUN2XP_STATE_CALIBRATING: c_int = 4;
 /// sun2xp_recover or the end of a calibration brings the tendons under tension. Set points have no effect.
 pub const SUN2XP_STATE_TENSIONING: c_int = 5;
 
-/// The process exits without sun2xp_close, and the finger goes to its configured end state or is in it.
-/// Only exit handlers and remaining threads see this state.
+/// The process exits without sun2xp_close, and the finger goes to its configured end state or is already there. Only
+/// exit handlers and remaining threads see this state.
 pub const SUN2XP_STATE_CLOSED: c_int = 6;
 
 /// Result of sun2xp_status.
 ///
-/// The member measured_rate is the number of cycles divided by the time up to this call: it falls while the
-/// servo does not run. The delays cover the cycles since sun2xp_open or sun2xp_reset_timing. The member
-/// torque_scale applies to all joints alike, so the torque keeps its direction. The member
-/// stiffness_scale is below 1 in poses in which the tendons cannot provide the whole Kx, for example near
-/// the straight pose. A joint beyond its limit can reduce it too, because the spring that pushes the joint
-/// back needs a part of what the tendons provide. sun2xp_tip gives the stiffness that results.
+/// The member measured_rate is the number of cycles divided by the time from sun2xp_open to this call: the
+/// rate falls while the servo does not run. The members wake_up_median, wake_up_p99 and wake_up_maximum
+/// cover the cycles since sun2xp_open or the last sun2xp_reset_timing. The member torque_scale applies to
+/// all joints alike, so the torque keeps its direction. The member stiffness_scale is below 1 in poses in
+/// which the tendons cannot provide the whole Kx, for example near the straight pose. A joint beyond its
+/// limit can reduce it too, because the spring that pushes the joint back needs a part of what the tendons
+/// provide. sun2xp_tip gives the stiffness that results.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_status {
@@ -53,7 +54,7 @@ pub struct sun2xp_status {
     pub wake_up_p99: f64,
     /// Maximum delay, us.
     pub wake_up_maximum: f64,
-    /// Fraction of the joint torque that the tension limits permit, 0 to 1.
+    /// Fraction of the desired joint torque that the tension limits permitted in the last cycle, 0 to 1.
     pub torque_scale: f64,
     /// Cycles since sun2xp_open.
     pub cycles: c_ulong,
@@ -69,9 +70,10 @@ pub struct sun2xp_status {
     pub calibration: f64,
     /// 1: sun2xp_open has locked the memory of every servo thread, so that no servo thread waits for a page. 0: the
     /// memory of at least one servo thread is not locked. If the planner calls munlockall later, this memory is
-    /// unlocked too, and this member stays 1. sun2xp_close and sun2xp_open lock the memory again.
+    /// unlocked too, and this member stays 1. If the hand is closed and opened again, sun2xp_open locks the memory
+    /// again.
     pub memory_locked: c_int,
-    /// 1: each servo thread with a configured core runs on it.
+    /// 1: each servo thread with a configured core runs on this core.
     pub on_core: c_int,
     /// Fraction of Kx in force in the last cycle, 0 to 1.
     pub stiffness_scale: f64,

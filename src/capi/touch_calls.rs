@@ -14,16 +14,16 @@ use std::ffi::{c_double, c_int, c_uint, c_ulong};
 
 /// Result of sun2xp_touch.
 ///
-/// If the member valid is 0, the members pressed, count and force are 0 too. The member force is the count
-/// minus its zero, times newton_per_count of the configuration. Events are lost if they do not fit into the queue of
-/// the board, or if their element is not configured.
+/// If the member valid is 0, the members pressed, count and force are 0 too. The member force is the member count minus
+/// the zero of the element, times newton_per_count of the configuration. Tactile events are lost if they do not fit
+/// into the queue of the board, or if their element is not configured.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_touch {
     /// sizeof (struct sun2xp_touch), set before the call.
     pub size: usize,
-    /// 1: since sun2xp_open and the last reset of the board, the board has reported this element, and its newest report
-    /// has a reading.
+    /// 1: since sun2xp_open and the last reset of the board, the board has reported this element, and the newest report
+    /// of the element has a reading.
     pub valid: c_int,
     /// 1 if something presses the element, otherwise 0.
     pub pressed: c_int,

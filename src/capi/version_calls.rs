@@ -32,8 +32,8 @@ pub extern "C" fn sun2xp_version_number() -> c_uint {
 
 /// sun2xp_abi_version - the number of the binary interface
 ///
-/// A program must not run if this differs from its SUN2XP_ABI_VERSION. The number is part of the name of the shared
-/// library, so only a program that loads the library by dlopen needs this comparison.
+/// A program must not use the library if this number differs from the program's SUN2XP_ABI_VERSION. The number is part
+/// of the name of the shared library, so only a program that loads the library by dlopen needs this comparison.
 ///
 /// Threads: any. Works in a forked child too.
 #[unsafe(no_mangle)]

@@ -18,5 +18,5 @@
 extern "C" {
 #endif
 
-/* An open hand. A handle is never dereferenced: a null, foreign or closed handle is refused. */
+/* An open hand. The library never dereferences a handle, and refuses one that belongs to no open hand. */
 typedef struct sun2xp_hand sun2xp_hand;
