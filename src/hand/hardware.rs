@@ -82,7 +82,9 @@ impl Hardware {
 /// kept.
 fn fit(gauge: &mut ConfiguredGauge, unit: f64) -> Result<(), Unusable> {
     if TensionScale::new(unit).is_none() {
-        let reason = format!("the tension_unit of its hardware is {unit} N: set it to a finite number above 0");
+        let reason = format!(
+            "the tension_unit of the hardware that the program provides is {unit} N: set it to a finite number above 0"
+        );
         return Err(Unusable { key: "gauge.newton_per_count", reason });
     }
     let default = ConfiguredGauge::default();

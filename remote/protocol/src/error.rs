@@ -27,7 +27,7 @@ pub enum DecodeError {
         found: u8,
     },
     /// The length does not agree with the fields.
-    #[error("{found} bytes, but {kind} has {expected} bytes by its fields")]
+    #[error("{found} bytes, but the fields of {kind} require {expected} bytes")]
     Length {
         /// The message.
         kind: MessageKind,
