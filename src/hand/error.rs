@@ -253,7 +253,7 @@ pub enum HandError {
         strongest: f64,
     },
     /// Only a simulated finger can be pushed.
-    #[error("finger {0} has a real port: only a simulated finger (`port = \"simulated\"`) can be pushed")]
+    #[error("finger {0} is not simulated: only a simulated finger (`port = \"simulated\"`) can be pushed")]
     NotSimulated(FingerNumber),
     /// The hand has no simulated object.
     #[error(

@@ -170,10 +170,10 @@ impl SetBound {
         let (plant, place) = (least.plant, place(least.walls));
         match &least.limit {
             LimitFound::Unstable(sample) => {
-                format!("{plant}, {place}; above it the finger is unstable at {}", sample.text())
+                format!("{plant}, {place}; above the bound the finger is unstable at {}", sample.text())
             }
             LimitFound::ScaledBelowHalf { joints_degrees } => format!(
-                "{plant}, {place}; above it the servo would scale Kx down by more than half at {}",
+                "{plant}, {place}; above the bound the servo would scale Kx down by more than half at {}",
                 pose(joints_degrees)
             ),
         }
