@@ -80,7 +80,7 @@ pub unsafe extern "C" fn sun2xp_object(hand: *mut sun2xp_hand, object: *mut sun2
 ///   EFAULT   force is null
 ///   ENODEV   no such hand
 ///   EINVAL   no such finger; an entry is NaN or infinite
-///   ENOTSUP  the finger is on a real port
+///   ENOTSUP  the finger is not simulated
 ///   ERANGE   a component is beyond 1000 N
 ///
 /// Threads: any.

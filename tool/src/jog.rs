@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let source = Source::start(own)?;
     let worker = Worker::start(hand.clone(), configuration.clone())?;
-    let mut view = View::new("the hand is open, but its first cycles have not arrived yet".into());
+    let mut view = View::new("the hand is open, and its first cycles have not arrived yet".into());
     view.jog = Some(JogPanel::new(real));
     let stopper = worker.stopper().clone();
     let controls = Controls {
