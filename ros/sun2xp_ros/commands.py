@@ -136,5 +136,6 @@ class Commands:
         numbers = list(message.data)[message.layout.data_offset :]
         sizes = [dimension.size for dimension in message.layout.dim]
         if len(numbers) != 9 or sizes not in ([], [9], [3, 3]):
-            raise Unusable(f"{len(numbers)} numbers, dimensions {sizes}: send a 3 x 3 matrix in N/m, row by row")
+            found = f"the message has {len(numbers)} numbers and the dimensions {sizes}"
+            raise Unusable(f"{found}: send a 3 x 3 matrix in N/m, row by row")
         self._hand.send_stiffness(finger, numpy.reshape(numbers, (3, 3)) / CM_PER_M)

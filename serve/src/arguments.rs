@@ -45,8 +45,8 @@ pub struct Arguments {
     /// a new one does.
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["config", "listen", "name", "router"])]
     make_certificates: Option<PathBuf>,
-    /// Make the certificate of the server of a hand, or of a router. Clients reach it by this name, by an --address, or
-    /// at loopback. Can be repeated.
+    /// Make the certificate of the server of a hand, or of a router. Clients reach the server or router by this name,
+    /// by an --address, or at loopback. Can be repeated.
     #[arg(long, value_name = "NAME", requires = "make_certificates")]
     server: Vec<String>,
     /// Another name or address by which clients reach the servers. Can be repeated.

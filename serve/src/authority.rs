@@ -31,8 +31,8 @@ pub fn check_folder(folder: &Path, user: u32) -> Result<(), ServeError> {
     if found.mode() & 0o022 != 0 {
         return Err(ServeError::certificate(
             folder,
-            "other users can write in this folder, and so replace the authority: run `chmod go-w` on it, or choose \
-             another folder",
+            "other users can write in this folder, and can therefore replace the authority: run `chmod go-w` on it, or \
+             choose another folder",
         ));
     }
     Ok(())

@@ -20,7 +20,10 @@ impl Endpoint {
     pub fn check(&self, tls: bool) -> Result<(), Option<String>> {
         match (self.tls, tls) {
             (true, true) => Ok(()),
-            (true, false) => Err(Some(format!("{self} needs the files of [serve.tls], which are missing"))),
+            (true, false) => Err(Some(format!(
+                "{self} needs the table [serve.tls], which is missing: make certificates with `sun2xp serve \
+                 --make-certificates FOLDER --server NAME --client NAME`, and name them in [serve.tls]"
+            ))),
             (false, true) => Err(Some(format!(
                 "{self} would let in programs without a certificate, and [serve.tls] is set: use tls/{}",
                 self.address

@@ -35,7 +35,7 @@ pub enum ServeError {
     #[error(transparent)]
     Hand(#[from] HandError),
     /// The network cannot be used.
-    #[error("{doing}: {reason}")]
+    #[error("cannot {doing}: {reason}")]
     Network {
         /// What the server was doing, with the endpoint.
         doing: String,

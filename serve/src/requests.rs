@@ -158,7 +158,10 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
                 desk.answer(code_of(&error), error.to_string(), 0, time)
             }
             _ => {
-                let text = "another client has taken the hand over meanwhile".into();
+                let text =
+                    "another client has taken the hand over meanwhile: wait until it releases the hand, or take \
+                            the hand over"
+                        .into();
                 desk.answer(Code::Owned, text, 0, time)
             }
         }

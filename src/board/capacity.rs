@@ -15,10 +15,10 @@ pub const USABLE_SHARE: f64 = 0.8;
 /// A rate that the line cannot carry.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error(
-    "{who} at {rate} Hz {verb} not fit on a port at {baud} baud: a command of {command} bytes takes \
-     {command_us:.0} us, the turnaround of the board {turnaround} us, and {replies} of {reply} bytes \
-     {replies_us:.0} us (10 bits a byte), {needed_us:.0} us in all, but only {share:.0} % of a period, {usable_us:.0} \
-     us, are usable. {remedy}",
+    "{who} at {rate} Hz {verb} not fit on a port at {baud} baud: each period needs {command_us:.0} us for a command of \
+     {command} bytes, {turnaround} us for the turnaround of the board, and {replies_us:.0} us for {replies} of {reply} \
+     bytes (10 bits a byte). This is {needed_us:.0} us in all, but only {share:.0} % of a period, {usable_us:.0} us, \
+     are usable. {remedy}",
     who = Counted(*.fingers as u64, "finger", "fingers"), verb = if *.fingers == 1 { "does" } else { "do" },
     replies = Counted(*.fingers as u64, "reply", "replies"),
     command = Kind::Command.wire_length(), reply = Kind::Reply.wire_length(), turnaround = TURNAROUND_MICROSECONDS,

@@ -78,8 +78,8 @@ pub enum LinkError {
     },
     /// The board confirmed terms that differ from the terms that the host sent.
     #[error(
-        "finger address {address} confirms terms that differ from the terms that the host sent: update its faulty \
-        firmware"
+        "the board does not confirm the configuration that the host sent for finger address {address}, but a \
+         different one: update its faulty firmware"
     )]
     OtherTerms {
         /// The finger's address.

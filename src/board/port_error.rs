@@ -68,7 +68,10 @@ pub enum PortError {
     #[error("another part of this program has closed the descriptor of the port. Close the hand and open it again")]
     Closed,
     /// Hardware that the program provides does not start or stop.
-    #[error("the program's hardware failed to {doing}: {source}")]
+    #[error(
+        "the hardware that the program provides failed to {doing}: {source}. Follow the documentation of the program \
+         or of its hardware"
+    )]
     Hardware {
         /// "start" or "stop".
         doing: &'static str,

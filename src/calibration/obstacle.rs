@@ -152,8 +152,8 @@ pub enum Obstacle {
     /// The pull of a motor appears first on the gauge of another tendon.
     #[error(
         "the pull of motor {motor} appears first on gauge {gauge}: gauges {motor} and {gauge} are swapped, motors \
-         {motor} and {gauge} are swapped with their encoders, or a tendon is routed to the wrong motor. Check the \
-         cables and the tendons"
+         {motor} and {gauge} are swapped together with their encoders, or a tendon is routed to the wrong motor. Check \
+         the cables and the tendons"
     )]
     Swapped {
         /// The motor's number, 1 to 4.
@@ -191,7 +191,7 @@ pub enum Obstacle {
     /// A motor pulls another tendon.
     #[error(
         "tendons {first} and {second} are swapped: motor {first} pulls tendon {second}, and motor {second} pulls \
-         tendon {first}. Route each tendon to its motor, or swap both motors with their encoders"
+         tendon {first}. Route each tendon to its motor, or swap both motors together with their encoders"
     )]
     SwappedTendons {
         /// The tendon's number, 1 to 4.

@@ -29,7 +29,7 @@ pub(super) enum Refusal {
     AlreadyOpen,
     #[error("{} hands are open: close one of them before another is opened", MOST_HANDS)]
     TooManyHands,
-    #[error("count is not 0, 1, 2 or 3: pass one struct sun2xp_io for each finger with hardware of the program")]
+    #[error("count is not 0, 1, 2 or 3: pass one struct sun2xp_io for each finger whose hardware the program provides")]
     IoCount,
     #[error("two elements of io are for finger {0}: pass one for each finger")]
     IoTwice(FingerNumber),

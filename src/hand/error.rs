@@ -191,8 +191,9 @@ pub enum HandError {
     Busy(FingerNumber),
     /// The motors of the finger are off, and no call is in progress that switches them on.
     #[error(
-        "the motors of finger {0} are off, because its last calibration failed, or because a program opened or tested \
-         it that way: zero or identify the finger, or close the hand and open it again"
+        "the motors of finger {0} are off, because its last calibration failed, because its signs were found or its \
+         wiring was tested, or because a program opened the hand with the motors off: zero or identify the finger, or \
+         close the hand and open it again"
     )]
     Limp(FingerNumber),
     /// A wait has reached its time limit.
@@ -252,7 +253,7 @@ pub enum HandError {
         strongest: f64,
     },
     /// Only a simulated finger can be pushed.
-    #[error("finger {0} has a real port: only a simulated finger (`port = \"simulated\"`) can be pushed")]
+    #[error("finger {0} is not simulated: only a simulated finger (`port = \"simulated\"`) can be pushed")]
     NotSimulated(FingerNumber),
     /// The hand has no simulated object.
     #[error(

@@ -82,7 +82,9 @@ impl Hardware {
 /// kept.
 fn fit(gauge: &mut ConfiguredGauge, unit: f64) -> Result<(), Unusable> {
     if TensionScale::new(unit).is_none() {
-        let reason = format!("the step of the tensions of its hardware is {unit} N: give a number above 0");
+        let reason = format!(
+            "the tension_unit of the hardware that the program provides is {unit} N: set it to a finite number above 0"
+        );
         return Err(Unusable { key: "gauge.newton_per_count", reason });
     }
     let default = ConfiguredGauge::default();
@@ -95,16 +97,17 @@ fn fit(gauge: &mut ConfiguredGauge, unit: f64) -> Result<(), Unusable> {
     let foreign = |scale: f64| !(unit / LARGEST_RATIO..=unit * LARGEST_RATIO).contains(&scale.abs());
     if let Some(scale) = gauge.newton_per_count.into_iter().find(|&scale| foreign(scale)) {
         let reason = format!(
-            "{scale} N is configured for a count, but the hardware of the program gives tensions in steps of {unit} N: \
-             remove the key, which was set for another board, and calibrate the finger with this hardware"
+            "{scale} N per count is configured, but the hardware that the program provides gives tensions in steps of \
+             {unit} N: remove the key, which was set for another board, and calibrate the finger with this hardware"
         );
         return Err(Unusable { key: "gauge.newton_per_count", reason });
     }
     let away = |zero: f64| (zero - f64::from(ZERO_COUNT)).abs() > LARGEST_ZERO;
     if let Some(zero) = gauge.zero.into_iter().find(|&zero| away(zero)) {
         let reason = format!(
-            "count {zero} is configured for zero tension, but with the hardware of the program it is near \
-             {ZERO_COUNT}: remove the key, which was set for another board, and zero the finger with this hardware"
+            "count {zero} is configured for zero tension, but the hardware that the program provides has zero tension \
+             near count {ZERO_COUNT}: remove the key, which was set for another board, and zero the finger with this \
+             hardware"
         );
         return Err(Unusable { key: "gauge.zero", reason });
     }

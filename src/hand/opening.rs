@@ -182,7 +182,8 @@ fn longer_watchdog(finger: FingerNumber, configured_ms: u16, agreed_ms: u16) -> 
     (agreed_ms > configured_ms).then(|| {
         format!(
             "the shortest watchdog time of the board of finger {finger} is {agreed_ms} ms, but hand.watchdog_ms is \
-             {configured_ms}. After the last command its motors may continue for {agreed_ms} ms, plus 1 % and 1 ms"
+             {configured_ms}. After the last command the motors of this finger may continue for {agreed_ms} ms, plus \
+             1 % and 1 ms for the tolerance of the board's timer"
         )
     })
 }

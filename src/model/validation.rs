@@ -171,7 +171,7 @@ impl ConfiguredFinger {
         if self.tendon.maximum <= largest {
             let reason = format!(
                 "{} N is too low: with tendon.minimum = {} N one tendon needs {largest:.3} N for its pretension alone. \
-                 Raise it, or lower tendon.minimum",
+                 Raise tendon.maximum, or lower tendon.minimum",
                 self.tendon.maximum, self.tendon.minimum
             );
             return unusable("tendon.maximum", reason);

@@ -72,6 +72,6 @@ pub enum AttachError {
 fn listed(open: &[String]) -> String {
     match open {
         [] => "no hand is open".into(),
-        names => format!("open are {}", names.join(", ")),
+        names => format!("the open hands are {}", names.join(", ")),
     }
 }

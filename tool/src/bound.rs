@@ -26,10 +26,10 @@ use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RAT
 /// friction, with exact measurements and one cycle of delay. At a wall, the configured Coulomb friction of the joints
 /// acts as a damper. The search covers a set of plants that differ from the configuration: rotors, links, tendons and
 /// motors, amplifier lag, an extra cycle of delay, held masses, lost replies. The samples are random: poses within the
-/// joint limits, axes of Kx, contact types, both laws, damping and loads. Each plant is searched without walls, and
-/// with walls of 30 to 1000 N/cm. Every motion must decay to 1/e within 10 s. In a pose whose tendons support less than
-/// the bound, the servo scales Kx down, and so does the search. The bound is low enough that no pose needs a scale
-/// below one half.
+/// joint limits, axes of Kx, contact types, both stiffness laws (`finger.controller.law`), damping and loads. Each
+/// plant is searched without walls, and with walls of 30 to 1000 N/cm. Every motion must decay to 1/e within 10 s. In a
+/// pose whose tendons support less than the bound, the servo scales Kx down, and so does the search. The bound is low
+/// enough that no pose needs a scale below one half.
 ///
 /// The bound of the finger is the least bound of all plants. The number in brackets counts the samples that are
 /// unstable even with a spring of 1 N/cm. A plant with such samples is reported, but does not limit the bound, because

@@ -24,10 +24,10 @@ use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
 ///
 /// Signs: every motor turns a little in both directions.
 ///
-/// Zero: the tendons are slackened and the gauges read. Then the encoders are zeroed by the method
-/// `finger.zeroing.method`. Without that key, they are zeroed against the stops of the finger if the finger is
-/// simulated or `finger.zeroing` gives the angles of its stops, or else at a pose in which you hold the finger. A
-/// finger that is not held in the pose is refused.
+/// Zero: the tool slackens the tendons and reads the gauges. Then it zeros the encoders by the method
+/// `finger.zeroing.method`. Without that key, it zeros them against the stops of the finger if the finger is simulated
+/// or `finger.zeroing` gives the angles of its stops, and otherwise at a pose in which you hold the finger. A finger
+/// that is not held in the pose is refused.
 ///
 /// Identify: the finger moves its joints in both directions and between their stops, and presses against its lower
 /// stops. The whole range of its joints must be free of objects.

@@ -25,7 +25,7 @@ use view::View;
 /// Shows an open hand in the terminal or on a web page, as it runs: joints, tensions, stiffness, forces, faults with
 /// their remedies, events and timing. It only reads, and costs the servos nothing.
 ///
-/// Keys: q quit, space freeze, 1 2 3 or tab a finger in detail, s snapshot, ? help.
+/// Keys: q quits, space freezes the picture, 1 2 3 or tab shows a finger in detail, s writes a snapshot, ? shows help.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Name of the hand (`telemetry.name` of its configuration). Not necessary if only one hand is open.

@@ -52,10 +52,10 @@ pub struct Arguments {
     /// the whole machine.
     #[arg(long)]
     p999: bool,
-    /// Another sensor: additional bytes in each reply.
+    /// Bytes that an additional sensor adds to each reply. The deadlines are also computed with this sensor.
     #[arg(long, value_name = "N", default_value_t = 16)]
     sensor_bytes: usize,
-    /// Another sensor: additional computing time per finger, us.
+    /// Computing time that the additional sensor adds per finger, us.
     #[arg(long, value_name = "US", default_value_t = 20.0, value_parser = not_negative)]
     sensor_compute: f64,
     /// Print one JSON object, for other programs. Times are in us, rates in Hz.

@@ -22,7 +22,7 @@ const WIDTH: usize = 100;
 /// Prints the state of an open hand, or of all open hands: stages, joints, tips, forces, tensions and timing, and
 /// faults with their remedies.
 ///
-/// Exit status: 0 if no finger is faulted, 1 if a finger is faulted or no hand is open, 2 for wrong usage.
+/// Exit status: 0 if every hand answers and no finger is faulted, 1 if not or if no hand is open, 2 for wrong usage.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Name of the hand (`telemetry.name` of its configuration). Without it, all open hands.

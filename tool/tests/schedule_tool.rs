@@ -35,9 +35,9 @@ fn a_hand_that_meets_its_deadlines() {
         "thread  fingers  core  priority  computing  line busy  replies by  done by  deadlines\n",
         "\n3       3        2           80      3.0 %       55 %      660 us   680 us  met\n",
         "\n3       3        2           80      8.0 %       65 %      760 us   830 us  met\n",
-        "met up to 1454 Hz: above that, the line is too busy, thread 1",
+        "met up to 1454 Hz: above that, the line is too busy (thread 1)",
         // 100 + 10 + 650 + 70 us.
-        "With the sensor, every deadline is met up to 1204 Hz: above that, a cycle may end too late, thread 1",
+        "With the sensor, every deadline is met up to 1204 Hz: above that, a cycle may end too late (thread 1)",
     ] {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");
     }
@@ -51,7 +51,7 @@ fn no_rate_below_the_lowest_is_named() {
     let text = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(1));
     let parts = [
-        "\nNo rate that can be configured meets every deadline: at 500 Hz, a cycle may end too late, thread 1.\n",
+        "\nNo rate that can be configured meets every deadline: at 500 Hz, a cycle may end too late (thread 1).\n",
         "\nWith the sensor, no rate that can be configured meets every deadline: at 500 Hz, ",
     ];
     assert!(parts.iter().all(|part| text.contains(part)), "{text}");

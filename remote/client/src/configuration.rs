@@ -120,7 +120,7 @@ impl RemoteConfiguration {
             return Err(("endpoint", reason.into()));
         }
         if self.tls.is_none() && self.client.is_none() {
-            return Err(("", "remote.client is missing: without TLS, it names this client".into()));
+            return Err(("", "remote.client is missing: without TLS, set it to a name for this client".into()));
         }
         Ok(())
     }

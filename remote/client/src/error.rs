@@ -102,7 +102,7 @@ pub enum RemoteError {
         loss: Loss,
     },
     /// The server has refused an earlier set point.
-    #[error("the hand has refused an earlier set point, and keeps the one before: {0}")]
+    #[error("the hand has refused an earlier set point, and keeps the set point before it: {0}")]
     Refused(String),
     /// The server has refused a request.
     #[error("{text}")]

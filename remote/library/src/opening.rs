@@ -19,7 +19,9 @@ pub(crate) fn open(source: RemoteSource, configuration: &Configuration) -> Resul
         RemoteSource::Text(text) => client::RemoteConfiguration::from_text(text, Path::new(".")),
     };
     // The caller has found the table already. The file may have been replaced since then.
-    let remote = read.map_err(refusal)?.ok_or_else(|| system("the table [remote] is no longer there: open again"))?;
+    let remote = read
+        .map_err(refusal)?
+        .ok_or_else(|| system("the table [remote] was removed from the file during this call: open the hand again"))?;
     let hand = client::RemoteHand::open(&remote).map_err(|error| match error.kind() {
         // A client that may only read gets the same answer as a client that does not own the hand.
         client::RemoteErrorKind::NotOwner => forbidden(&remote.hand),

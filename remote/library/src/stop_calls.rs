@@ -42,7 +42,9 @@ impl StopCalls {
                 thread::sleep(INTERVAL);
             }
         });
-        started.map(|_| Self(ended)).map_err(|error| system(&format!("cannot start a thread: {error}")))
+        started
+            .map(|_| Self(ended))
+            .map_err(|error| system(&format!("cannot start a thread: {error}. Raise the limit of threads (ulimit -u)")))
     }
 }
 

@@ -10,7 +10,7 @@ pub enum DecodeError {
     #[error("{0} bytes are too few for a message: every message begins with its type and its version")]
     Short(usize),
     /// The payload is a message of another type.
-    #[error("the type is {found}, and not {} of {expected}", *expected as u8)]
+    #[error("the type is {found}, and not {} ({expected})", *expected as u8)]
     Kind {
         /// The message that the receiver expects.
         expected: MessageKind,
@@ -27,7 +27,7 @@ pub enum DecodeError {
         found: u8,
     },
     /// The length does not agree with the fields.
-    #[error("{found} bytes, but {kind} has {expected} bytes by its fields")]
+    #[error("{found} bytes, but the fields of {kind} require {expected} bytes")]
     Length {
         /// The message.
         kind: MessageKind,

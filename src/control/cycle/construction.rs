@@ -77,7 +77,10 @@ impl Controller {
         let dither_period = state_feedback.as_ref().map_or(0.0, StateFeedback::dither_period);
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
         positive("motor.thermal_time", &[finger.motor.thermal_time])?;
-        let soft = || Unusable { key: "tendon.stiffness", reason: "cannot hold every joint: check geometry.r".into() };
+        let soft = || Unusable {
+            key: "tendon.stiffness",
+            reason: "gives at least one joint no stiffness: check that geometry.r has rank 3".into(),
+        };
         check_continuous_torque(finger, &motor_torque, &tendons, state_feedback.as_ref())?;
         let admissible = AdmissibleStiffness::new(finger, &tendons, rate).ok_or_else(soft)?;
         Ok(Self {

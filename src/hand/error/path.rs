@@ -106,7 +106,7 @@ pub enum PathError {
     /// A tip path cannot be followed exactly.
     #[error(
         "on the way to pose {pose}, the tip of finger {finger} would leave the path by {deviation:.3} cm, because the \
-         path is too long for a table of {pieces} pieces: send it in two parts"
+         library divides a path into at most {pieces} pieces: send the path in two parts"
     )]
     Coarse {
         /// The finger.

@@ -37,8 +37,8 @@ pub enum ReflexError {
     },
     /// The other finger of the rule is the finger itself.
     #[error(
-        "the reflex for finger {0} is refused: it names finger {0} as the other finger: use a condition on its own \
-         event"
+        "the reflex for finger {0} is refused: its condition is an event of another finger, but names finger {0} \
+         itself: name another finger, or use the condition for an event of the same finger"
     )]
     OwnFinger(FingerNumber),
     /// The finger already has as many rules as it can have.

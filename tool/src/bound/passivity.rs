@@ -89,7 +89,7 @@ impl Passivity {
             let Some((frequency, least)) = numbered.min_by(|(_, one), (_, other)| one.total_cmp(other)) else {
                 continue;
             };
-            writeln!(out, "    {letter}: {}, least {least:.4} of |Y| at {frequency:.1} Hz", pose(joints))?;
+            writeln!(out, "    {letter}: {}, least passivity {least:.4} at {frequency:.1} Hz", pose(joints))?;
         }
         for unsettled in self.poses.iter().filter(|pose| pose.passivity.is_none()) {
             let pose = pose(&unsettled.joints_degrees);

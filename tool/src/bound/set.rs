@@ -170,10 +170,10 @@ impl SetBound {
         let (plant, place) = (least.plant, place(least.walls));
         match &least.limit {
             LimitFound::Unstable(sample) => {
-                format!("{plant}, {place}; above it the finger is unstable at {}", sample.text())
+                format!("{plant}, {place}; above the bound the finger is unstable at {}", sample.text())
             }
             LimitFound::ScaledBelowHalf { joints_degrees } => format!(
-                "{plant}, {place}; above it the servo would scale Kx down by more than half at {}",
+                "{plant}, {place}; above the bound the servo would scale Kx down by more than half at {}",
                 pose(joints_degrees)
             ),
         }
@@ -234,7 +234,7 @@ impl SetBound {
             let walls = member.uncovered_from_wall.map_or(String::new(), |wall| format!(" of {wall:.0} N/cm and more"));
             writeln!(
                 out,
-                "    not covered: {}, {}{walls}: {} of {}, for example {}",
+                "    not covered by the bound: {}, {}{walls}: {} of {} samples, for example {}",
                 member.plant,
                 place(member.walls),
                 member.uncovered,
@@ -247,6 +247,9 @@ impl SetBound {
             0 => "all stable".to_owned(),
             unstable => format!("{unstable} unstable, up to {distance:.1} cm from the axis"),
         };
-        writeln!(out, "    not covered: {samples} samples with the tip within 3 cm of the axis of joint 0, {found}")
+        writeln!(
+            out,
+            "    not covered by the bound: {samples} samples with the tip within 3 cm of the axis of joint 0, {found}"
+        )
     }
 }

@@ -103,7 +103,7 @@ fn with(text: &str, finger: i32, changed: &[Changed], comment: &dyn Fn(&str) -> 
     // A hand would refuse to open with values with which no controller can be constructed.
     let found = configuration.fingers.get(finger as usize - 1).ok_or("a finger has vanished")?;
     Controller::new(found, configuration.hand.rate).map_err(|Unusable { key, reason }| {
-        format!("with the results, no hand opens: finger.{finger}.{key} {reason}")
+        format!("a hand would not open with the results: finger.{finger}.{key}: {reason}")
     })?;
     Ok(text)
 }

@@ -33,8 +33,7 @@ fn adopt(desk: &mut Desk, outcome: &mut Outcome, found: &Findings) {
         let by_weight: i8 = if desk.finger.gauge.newton_per_count[motor] < 0.0 { -1 } else { 1 };
         if signs.gauge[motor] != by_weight {
             outcome.wrong(Wrong::Refused(format!(
-                "gauge {} rises with the tension now, and fell when the weight hung on it, or the reverse. Do the step \
-                 gauges again",
+                "the sign of gauge {} is now opposite to the sign that the step gauges found. Do the step gauges again",
                 motor + 1
             )));
         }

@@ -104,7 +104,7 @@ pub enum NoAnswer {
 impl Display for NoAnswer {
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
-            Self::Left => "left at your request",
+            Self::Left => "ended at your request, before the measurements were complete",
             Self::InputEnded => {
                 "standard input ended at a question: run the tool in a terminal, or with --yes if everything is done \
                  by a jig"

@@ -54,7 +54,8 @@ pub fn search(patterns: &[String], baud: u32, finger: FingerNumber, taken: &[Tak
         let found = port.answer.iter().flatten().cloned();
         found.map(|found| Answer { port: port.path.clone(), found })
     });
-    choose(answers.collect(), finger, taken).map_err(|reason| format!("{reason} ({})", Shown(&patterns.join(", "))))
+    choose(answers.collect(), finger, taken)
+        .map_err(|reason| format!("{reason} (ports searched: {})", Shown(&patterns.join(", "))))
 }
 
 fn choose(answers: Vec<Answer>, finger: FingerNumber, taken: &[Taken]) -> Result<Chosen, String> {

@@ -73,8 +73,8 @@ impl Step {
             Self::Zeros => "Zeros gauges and encoders, then makes the finger a soft spring. Takes up to a minute.",
             Self::Tendons => {
                 "Moves every joint between its stops and presses against the lower ones, with up to 0.6 of the largest \
-                 tension. This measures the stretch of the tendons. Then zeros again with this stretch. Takes two \
-                 minutes."
+                 tension. This measures the stretch of the tendons. Then zeros gauges and encoders again, with this \
+                 stretch. Takes two minutes."
             }
             Self::Bound => "Computes the largest stiffness at which the finger is stable. Takes one to two minutes.",
             Self::Computer => "Checks whether this computer runs the finger in time. The motors are off.",

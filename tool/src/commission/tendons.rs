@@ -53,12 +53,12 @@ fn report(outcome: &mut Outcome, found: &Identified) {
         values.iter().map(|value| format!("{value:.digits$}")).collect::<Vec<_>>().join(" ")
     };
     outcome.found(format!(
-        "tendon stiffness {} N/cm, residual of the travel {:.1} um rms",
+        "tendon stiffness {} N/cm, residual of the motor travel {:.1} um rms",
         list(found.tendon_stiffness.as_slice(), 0),
         found.travel_residual * 1e4
     ));
     let residual = found.travel_residual * 1e4;
-    outcome.about("tendon.stiffness", format!("by identification, residual of the travel {residual:.1} um rms"));
+    outcome.about("tendon.stiffness", format!("by identification, residual of the motor travel {residual:.1} um rms"));
     outcome.about(
         "gauge.newton_per_count",
         format!("gains relative to the weights {}", list(found.gauge_gain.as_slice(), 3)),

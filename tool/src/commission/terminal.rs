@@ -49,7 +49,10 @@ impl Terminal {
             self.paragraph(Look::Warning, "  open   ", &format!("{step}, {when}: {}", found.join("; ")));
         }
         if self.steps.is_empty() {
-            self.line(Look::Plain, "  Every step has passed. --step STEP does one of them again, --again all of them.");
+            self.line(
+                Look::Plain,
+                "  Every step has passed. --step STEP does one step again, and --again does all steps again.",
+            );
         }
         Ok(())
     }

@@ -95,8 +95,8 @@ fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
         return Finding::good(subject, format!("{found}; does not apply to a real-time thread"));
     }
     if wake_up.timer_slack.is_err() {
-        let advice = "The kernel may delay each wake-up of this thread by up to this time. Permit prctl if a sandbox \
-                      forbids it, or make the thread real-time (finger.priority)";
+        let advice = "The kernel may delay each wake-up of this thread by up to its timer slack. Permit prctl if a \
+                      sandbox forbids it, or make the thread real-time (finger.priority)";
         return Finding::new(Rating::Warning, subject, found, advice);
     }
     let advice = "The kernel may delay each wake-up of this thread by up to this time, and the system refused to \

@@ -168,7 +168,8 @@ fn zeros(all: &mut Vec<Complaint>, before: &Vitals, configured: &ConfiguredFinge
         for gauge in 0..4 {
             let newton = (today[gauge] - before[gauge]) * configured.gauge.newton_per_count[gauge];
             if newton.abs() > ZERO {
-                let advice = "Overloaded, loose or drifting: zero it again, and replace it if it keeps drifting";
+                let advice =
+                    "The gauge was overloaded, is loose or drifts: zero it again, and replace it if it keeps drifting";
                 let part = format!("zero of gauge {}", gauge + 1);
                 let (before, today) = ("0 N".into(), format!("{newton:+.1} N"));
                 all.push(Complaint { kind: "gauge_zero", part, before, today, advice });
@@ -187,7 +188,8 @@ fn zeros(all: &mut Vec<Complaint>, before: &Vitals, configured: &ConfiguredFinge
         let (kind, advice) = match travel > 0.0 {
             true => (
                 "longer_tendon",
-                "The tendon is longer (knot, creep), or its encoder slipped: tighten its clamp, and zero again",
+                "The tendon is longer (knot, creep), or the encoder slipped: tighten the clamp of the tendon, and zero \
+                 again",
             ),
             false => {
                 ("encoder_slip", "The encoder slipped or lost counts: check its coupling and cable, and zero again")

@@ -90,8 +90,9 @@ impl Display for Refused {
             ),
             Self::BeyondLimits { finger, joint, angle } => write!(
                 formatter,
-                "joint {joint} of finger {finger} is at {angle:.1} degrees, too far beyond its limits for one step of \
-                 a real finger: stop the hand, move the finger into its limits by hand, and recover it"
+                "the set point of joint {joint} of finger {finger} is {angle:.1} degrees, too far beyond the limits of \
+                 the joint for one step of a real finger: stop the hand, move the finger into its limits by hand, and \
+                 recover it"
             ),
             Self::NoneRuns => formatter.write_str("no finger runs: recover the fingers first"),
             Self::Stopped { finger } => {

@@ -104,7 +104,7 @@ fn take_snapshot(view: &mut View, screen: &mut Screen, palette: &Palette, folder
     let notice = match snapshot::write(folder, hand, picture) {
         Ok([json, ..]) => format!("wrote {}, and the screen beside it as .txt and .svg", absolute(json)),
         Err(error) => format!(
-            "cannot write a snapshot into {}: {error}. Start the monitor in a folder that is writable",
+            "cannot write a snapshot into {}: {error}. Start the command again with --snapshots and a writable folder",
             absolute(folder.into())
         ),
     };

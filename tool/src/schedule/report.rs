@@ -70,7 +70,7 @@ impl Schedule {
         let Some(Limit { missed: limit, thread }) = self.fastest.limit else {
             return format!("{condition}every deadline is met up to the highest rate that can be configured.");
         };
-        let reason = format!("{}, thread {thread}", missed(limit));
+        let reason = format!("{} (thread {thread})", missed(limit));
         match self.fastest.rate {
             Some(rate) => format!("{condition}every deadline is met up to {rate} Hz: above that, {reason}."),
             None => {

@@ -111,7 +111,7 @@ impl Finger<'_> {
                 "motors with more torque, a smaller motor radius, or a lower finger.tendon.maximum",
             ),
             Figure::choose(
-                "tension of the tendons at that force",
+                "tension of the tendons at the required force",
                 self.mechanics.tensions(wanted)?.max(),
                 "N",
                 "tendons that break at ten times this tension",
@@ -129,7 +129,7 @@ impl Finger<'_> {
                 "speed of a motor",
                 speed.max() * 60.0 / TAU,
                 "rpm",
-                "motors with this speed at the torque of the lowest tension",
+                "motors that reach this speed with the torque that finger.tendon.minimum needs",
             ),
             Figure::choose(
                 "voltage that turns a motor at that speed",

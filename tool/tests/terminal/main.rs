@@ -152,7 +152,7 @@ fn jog_asks_before_a_real_hand_moves_and_limits_its_steps() {
     terminal.keys(&["]", "]", "]", "]", "Right"]);
     terminal.until(&["[j joints 3°]", "finger 1: joints to 3.0, 30.0, 60.0 degrees"]);
     terminal.keys(&["f", "Right"]);
-    terminal.until_words("finger 1 has a real port: only a simulated finger");
+    terminal.until_words("finger 1 is not simulated: only a simulated finger");
     terminal.keys(&["q"]);
     terminal.until(&["status 0"]);
 }

@@ -31,7 +31,7 @@ def common_name(path: Union[str, os.PathLike[str]]) -> str:
         reason = str(error)
     except (ValueError, IndexError, StopIteration):
         reason = "its certificate has no common name"
-    text = f"{path} is not the certificate of a client ({reason}): name the .pem file of this client in tls"
+    text = f"{path} is not the certificate of a client ({reason}): name this client's .pem file in the argument `tls`"
     raise ConfigurationError(text, number=ErrorNumber.CONFIGURATION)
 
 

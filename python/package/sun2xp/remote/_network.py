@@ -88,7 +88,8 @@ def check_files(tls: Tls) -> None:
             with open(path, "rb"):
                 pass
         except OSError as error:
-            text = f"{os.fspath(path)} cannot be read ({error.strerror}): name the files of this client in tls"
+            remedy = "name the files of this client in the argument `tls`"
+            text = f"{os.fspath(path)} cannot be read ({error.strerror}): {remedy}"
             raise ConfigurationError(text, number=ErrorNumber.CONFIGURATION) from error
 
 

@@ -64,7 +64,8 @@ def path(
     if not 1 <= count <= MOST_POSES:
         raise _refused(f"the path has {count} poses: send 1 to {MOST_POSES} poses, and further ones as another path")
     if instants[0] <= 0 or (numpy.diff(instants) <= 0).any():
-        raise _refused(f"the times of the path are {instants.tolist()} s: send times above 0, each later than the last")
+        text = f"the times of the path are {instants.tolist()} s"
+        raise _refused(f"{text}: send times above 0, each later than the time before it")
     poses = _joints(finger, joints, (count, 3), status)
     return Part(finger, 0, PATH, poses=[(instant, *pose) for instant, pose in zip(instants, poses)])
 

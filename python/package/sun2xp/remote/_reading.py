@@ -130,7 +130,7 @@ class Reading:
             message = _messages.read_status(payload)
             if message is not None:
                 return status(message)
-        raise self._no_answer("the status")
+        raise self._no_answer("status")
 
     def _fault_text(self, finger: int) -> str:
         try:
@@ -161,7 +161,7 @@ class Reading:
         return self._network.get(key, payload, timeout)
 
     def _no_answer(self, asked: str) -> NoAnswer:
-        where = f"{self._network.endpoint} (client {self._network.client})"
+        where = f"the client {self._network.client} over {self._network.endpoint}"
         remedy = "check the names of the hand and of the client, [serve.clients] of the server, and the line"
-        text = f"the hand {self.name} has not answered to {asked} at {where}: {remedy}"
+        text = f"the hand {self.name} has not answered the request `{asked}` of {where}: {remedy}"
         return NoAnswer(text, number=ErrorNumber.TIMED_OUT)

@@ -214,7 +214,7 @@ class Receiver:
             known = f"the state of finger {finger} is {age * 1e3:.0f} ms old"
             if record is None:
                 known = f"no state of finger {finger} has arrived"
-            remedy = "check the line and sun2xp serve, or allow older data with stale"
+            remedy = "check the line and sun2xp serve, or allow older data with the argument `stale`"
             text = f"{known}, and {stale * 1e3:.0f} ms are allowed: {remedy}"
             raise Stale(text, number=ErrorNumber.TIMED_OUT)
         return record

@@ -57,7 +57,10 @@ fn with_certificate<T>(
 
 fn common_name(certificate: &X509Certificate<'_>) -> Result<ClientName, String> {
     let name = certificate.subject().iter_common_name().next().and_then(|name| name.as_str().ok());
-    let name = name.ok_or("the certificate of remote.tls.certificate has no common name, which names the client")?;
+    let name = name.ok_or(
+        "the certificate of remote.tls.certificate has no common name, and the client needs one as its name: make a \
+         certificate with `sun2xp serve --make-certificates`",
+    )?;
     name.parse().map_err(|error| format!("the common name of remote.tls.certificate cannot be used: {error}"))
 }
 

@@ -222,7 +222,7 @@ fn a_refusal_is_reported_once() {
     exchange.take_refusal(&Answer { code: Code::Argument, number: sequence, text, ..answer() });
     let (kind, text) = refused(send(&mut exchange, good(2), 10 * MS));
     assert_eq!(kind, RemoteErrorKind::Refused);
-    assert!(text.ends_with("keeps the one before: out of reach: send a nearer tip"), "{text}");
+    assert!(text.ends_with("keeps the set point before it: out of reach: send a nearer tip"), "{text}");
     send(&mut exchange, good(2), 10 * MS).expect("sent");
     let target = exchange.outbox.next(30 * MS).expect("a Target");
     assert_eq!(target.parts.iter().map(|part| part.finger.number()).collect::<Vec<_>>(), [2]);

@@ -11,8 +11,8 @@ impl Wrong {
         match self {
             Self::EmergencyStop => "Release it, and reset the safety relay".into(),
             Self::EmergencyStopUnseen => {
-                "The contact of the stop is not wired to the board, or its input is inverted. Without this signal \
-                 the library does not know that the motors have no power"
+                "The contact of the stop is not wired to the board, or the input for it is inverted: check both. \
+                 Without this signal the library does not know that the motors have no power"
                     .into()
             }
             Self::Supply => "Switch the supply on, and check the wire of its DC-OK output".into(),
