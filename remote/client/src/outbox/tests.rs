@@ -1,4 +1,4 @@
-//! The outbox in simulated time.
+//! Tests of the outbox in simulated time.
 
 mod losses;
 
@@ -55,7 +55,7 @@ fn without_ownership_nothing_is_sent() {
     assert_eq!((outbox.due(), outbox.next(u64::MAX), outbox.ownership()), (None, None, Err(Loss::Ended)));
 }
 
-/// During an emergency stop the owner falls silent, and what it sends meanwhile waits.
+/// During an emergency stop no Targets are sent. Set points that are put into the outbox meanwhile wait.
 #[test]
 fn targets_can_be_held_back() {
     let mut outbox = owner();
@@ -100,7 +100,7 @@ fn a_change_is_sent_at_once_and_repeated_with_its_number() {
 fn a_planner_that_sends_without_a_pause_sends_the_newest() {
     let mut outbox = owner();
     let mut sent = Vec::new();
-    // A call each microsecond for 10 ms.
+    // The planner sends a set point each microsecond for 10 ms.
     for now in (0..10 * MS).step_by(1000) {
         outbox.put(joints(now as f64), None);
         sent.extend(outbox.next(now).map(|target| (now, target)));
@@ -122,7 +122,7 @@ fn what_is_not_confirmed_is_sent_with_the_next_change() {
     outbox.put(changes(Change::of(&FingerCommand::new(1).damping(0.5))), None);
     let all = part(&mut outbox, 2 * MS);
     assert_eq!((&all.place, all.stiffness, all.damping), (&Place::Joints([0.5; 3]), Some(KX), Some(0.5)));
-    // A confirmation of the first part does not confirm what came later.
+    // A confirmation of the first part does not confirm later changes.
     outbox.confirm(ONE, 1);
     assert!(!outbox.is_applied(ONE));
     outbox.put(changes(Change::of(&FingerCommand::new(1).damping(0.75))), None);
@@ -203,7 +203,7 @@ fn later_set_points_do_not_contain_a_refused_value_for_ever() {
     for number in 1..=20 {
         outbox.put(joints(f64::from(number)), None);
         let sent = part(&mut outbox, u64::from(number as u32) * MS);
-        // The refusal of a Target arrives after the next two.
+        // The refusal of a Target arrives after the next two Targets were sent.
         assert_eq!(sent.stiffness.is_some(), number <= 2, "set point {number}");
         match number {
             1 => {}
@@ -214,7 +214,7 @@ fn later_set_points_do_not_contain_a_refused_value_for_ever() {
     assert_eq!(part(&mut outbox, 40 * MS).place, Place::Joints([20.0; 3]));
 }
 
-/// On a long line, a Target is repeated before its refusal arrives.
+/// On a line with a long delay, a Target is repeated before its refusal arrives.
 #[test]
 fn the_refusals_of_repeated_targets_are_reported_once() {
     let mut outbox = owner();
