@@ -1,4 +1,4 @@
-//! The table of docs/architecture.md with the way of a set point from a call to the wire.
+//! Reads the table of docs/architecture.md that shows the way of a set point from a call to the wire.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ pub struct Station {
     pub shape: String,
 }
 
-/// Reads the section with the table: its text, and the rows of the table.
+/// Returns the text of the section that contains the table, and the rows of the table.
 pub fn read(root: &Path) -> (String, Vec<Station>) {
     let page = fs::read_to_string(root.join("docs/architecture.md")).expect("the page");
     let (_, section) = page.split_once("## The way of a set point").expect("the section");

@@ -1,4 +1,4 @@
-/* sun2xp_object: its result for a ball on a table, and every refusal. With the argument "none" no object is
+/* Tests the result of sun2xp_object for a ball on a table, and every refusal. With the argument "none", no object is
    configured. */
 #include <string.h>
 #include "Sun2Xp.h"
