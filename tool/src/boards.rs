@@ -51,7 +51,7 @@ struct Port {
 #[derive(Serialize)]
 struct Finger {
     address: u8,
-    /// In the form that `finger.board` takes.
+    /// The number in the form that `finger.board` takes.
     unique_number: BoardNumber,
     firmware: String,
     board_kind: u16,
