@@ -110,7 +110,7 @@ static const struct job {
     {"sun2xp_fault_text", fault_text},
     {"sun2xp_write_black_box", write_black_box},
     {"sun2xp_zero", zero_finger},
-    {"sun2xp_identify without finger", identify_refused},
+    {"sun2xp_identify, no such finger", identify_refused},
     {"sun2xp_stop_all, sun2xp_recover", recover_hand},
     {"CloseHand", CloseHand},
 };
