@@ -1,5 +1,5 @@
-//! Tests of the reported reference while the anchor moves toward a set point at a limited speed, and of paths that begin
-//! during this motion.
+//! Tests of the reported reference while the anchor moves toward a set point at a limited speed, and of paths that
+//! begin during this motion.
 
 use crate::motion::{Track, joints, send};
 use crate::rig::{Bench, TARGET};
