@@ -90,7 +90,8 @@ fn a_certificate_of_another_authority_does_not_connect() {
     certificates(folder.path(), &["alice"]);
     certificates(other.path(), &["alice"]);
     let rig = rig(folder.path());
-    // This client trusts the server. Its certificate has alice's name, but another authority has signed it.
+    // The client with the certificate "foreign" trusts the server. The certificate has alice's name, but another
+    // authority has signed it.
     for file in ["alice.pem", "alice.key"] {
         let own = other.path().join(file);
         std::fs::copy(own, folder.path().join(format!("foreign{}", &file[5..]))).expect("copied");

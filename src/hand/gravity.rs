@@ -4,9 +4,9 @@ use crate::hand::{Hand, HandError, SetPointError};
 use crate::model::configuration::LARGEST_GRAVITY as LARGEST;
 
 impl Hand {
-    /// Sets gravity in the palm's frame, m/s^2. It replaces `hand.gravity` until the hand is closed. Every finger
-    /// compensates the new gravity within a cycle. The compensated gravity changes by at most 2 m/s^2 per millisecond,
-    /// so that the torque does not jump. A larger change therefore takes several cycles. The new gravity also acts on
+    /// Sets gravity in the palm's frame, m/s^2. It replaces `hand.gravity` until the hand is closed. Every finger takes
+    /// the new gravity within a cycle. The compensated gravity changes by at most 2 m/s^2 per millisecond, so that the
+    /// torque does not jump. A large change therefore takes several cycles to compensate. The new gravity also acts on
     /// simulated fingers and on a simulated object. Every record of the black box and of telemetry contains the gravity
     /// of its cycle.
     ///

@@ -102,7 +102,8 @@ impl PseudoTerminal {
         ready > 0
     }
 
-    /// Sends bytes without waiting, as a UART does. Bytes that the host does not read are lost.
+    /// Sends bytes without waiting, as a UART does. Bytes are lost if the buffer of the terminal is full, because the
+    /// host does not read.
     pub fn write(&self, bytes: &[u8]) {
         if self.board_end.is_own() {
             // SAFETY: `bytes` is readable for its length.

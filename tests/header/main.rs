@@ -169,7 +169,7 @@ fn code(declarations: &str) -> String {
     code.concat()
 }
 
-/// Checks that do not compile if a 64-bit compiler lays out a struct differently than the library.
+/// Returns C code that does not compile if a 64-bit compiler lays out a struct differently than the library.
 fn sizes(code: &str) -> String {
     let mut lines = String::new();
     for declaration in code.split("\nstruct ").skip(1) {

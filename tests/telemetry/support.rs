@@ -81,7 +81,7 @@ impl OtherProcess {
         Self::start("hand", name)
     }
 
-    /// Starts a process whose hand has a forked child that keeps copies of its descriptors.
+    /// Starts a process with a hand of this name, and with a forked child that keeps copies of the hand's descriptors.
     pub fn with_forked_hand(name: &str) -> Self {
         Self::start("forked", name)
     }
