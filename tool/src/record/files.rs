@@ -248,7 +248,7 @@ fn create_new(path: &Path) -> io::Result<File> {
 }
 
 fn uncreated(path: &Path, error: &io::Error) -> Failure {
-    format!("cannot create {}: {error}", ShownPath(path)).into()
+    format!("cannot create {}: {error}: name another file with --output", ShownPath(path)).into()
 }
 
 /// Returns the name of a further file: `hand.mcap` becomes `hand-2.mcap`.
