@@ -1,5 +1,5 @@
-/* Path.c - moves a fingertip along a circle of 1 cm radius, one turn a second, and prints how far the fingertip is from
-   the circle. C89. */
+/* Path.c - moves a fingertip along a circle of 1 cm radius, one turn a second, and prints the distance of the tip from
+   the circle. The program is C89 with functions of POSIX. */
 
 #include <math.h>
 #include <stdio.h>
@@ -9,20 +9,20 @@
 
 #define FINGER 1
 #define RADIUS 1.0                      /* cm */
-#define TURNS 3.0                       /* one turn a second */
-#define RAMP 0.5                        /* time in which the speed rises at the start, and falls at the end, s */
+#define TURNS 3.0                       /* full speed is one turn a second */
+#define RAMP 0.5                        /* time in which the speed rises, and time in which it falls, s */
 #define POSES 70
 #define PI 3.14159265358979323846
 
 static const double Start[3] = {0.2, 0.6, 1.1};                                    /* rad */
 
-/* Returns how many turns the finger has made after some seconds of the first ramp. */
+/* Returns the number of turns that the tip makes in the given time, s, while its speed rises from 0. */
 static double ramp(double seconds)
 {
     return 0.5 * (seconds - sin(PI * seconds / RAMP) * RAMP / PI);
 }
 
-/* Returns how many turns the finger has made after some seconds of the whole motion, from rest to rest. */
+/* Returns the number of turns that the tip has made at the given time, s. The motion begins and ends at rest. */
 static double turns(double seconds)
 {
     double length = TURNS + RAMP;

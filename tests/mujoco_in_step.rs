@@ -8,13 +8,13 @@ mod c;
 use c::{Bench, STRICT, c_compiler, python, root, said, tool};
 use std::process::{Command, Stdio};
 
-/// Largest distance of a joint from where it rests on the built-in hand, rad.
+/// Largest difference between a joint angle and the angle at which the built-in simulated joint rests, rad.
 const TOLERANCE: f64 = 0.01;
 
 /// Where a finger rests at a pose: the numbers of pose and finger, and joint angles, rad.
 type Rest = (Vec<u32>, Vec<f64>);
 
-/// Reads the lines of mujoco_hand.
+/// Reads the lines that the program mujoco_hand prints.
 fn rests(output: &[u8]) -> Vec<Rest> {
     let lines = str::from_utf8(output).expect("numbers").lines();
     let rest = |line: &str| {

@@ -15,10 +15,10 @@ from sun2xp.remote._owner import Sender
 #: The server's clock at the beginning, ns.
 BEGIN = 1_000_000_000_000
 
-#: A set point.
+#: A set point, rad.
 HOME = [0.0, 0.6, 0.9]
 
-#: ns.
+#: A millisecond and a second, ns.
 MS, S = 1_000_000, 1_000_000_000
 
 
@@ -32,7 +32,7 @@ def holds(hand, finger=1, condition="applied"):
 
 
 class _Timeless(Sender):
-    """Repeats nothing by itself."""
+    """A Sender without the thread that repeats the Targets."""
 
     def add(self, owner):
         self._owners.append(owner)
@@ -45,13 +45,14 @@ class Scripted:
 
     def __init__(self):
         self.client, self.endpoint, self.sender = "planner", "nowhere", _Timeless()
-        #: The server's clock, the number of the newest State, and the number of the epoch in force.
+        #: The server's clock, ns; the number of the newest State; and the number of the epoch in force.
         self.now, self.states, self.number = BEGIN, 0, 0
-        #: What the Status says: the arguments of `status`.
+        #: The content of the Status, as arguments of `status`.
         self.status = {}
-        #: The code of every Answer.
+        #: The code of every Answer to a Request.
         self.code = 0
-        #: The action of every Request, and None for every get of the Status; and the number of gets without a reply.
+        #: `gets` has the action of every Request, and None for every get of the Status. The next `unanswered` gets
+        #: receive no reply.
         self.gets, self.unanswered = [], 0
         #: The sequence number and the parts of every Target.
         self.targets = []
@@ -60,7 +61,7 @@ class Scripted:
         self.records["stage"] = _messages.STAGES.index("running")
         self._subscribers = {}
         self.hand = sun2xp.remote.RemoteHand(self, "hand", stale=10.0)
-        #: The time since the newest message, s. The tests take no time.
+        #: The time since the newest message, s. A test sets it instead of waiting.
         self.silence = 0.0
         self.hand._receiver.silence = lambda: self.silence
         self.hand.acquire()
@@ -95,7 +96,7 @@ class Scripted:
         return struct.pack("<BBHIQQQH", 6, 1, code, 100, 1000 + self.number, self.now, number, len(data)) + data
 
     def state(self, after=5 * MS, owner=None, fingers=(1, 2, 3)):
-        """Publishes a State `after` ns, with a new cycle of these fingers."""
+        """Publishes a State `after` ns later, with a new cycle of these fingers."""
         self.now += after
         self.states += 1
         owner = self.number if owner is None else owner

@@ -16,7 +16,7 @@ def test_zeros_are_found_and_stored(tmp_path):
         assert abs(zeros.joint_error).max() < 0.05
         assert hand.configuration(1)["encoder"]["zero"] == list(zeros.encoder)
         assert hand.status(1).stage == "running"
-        # The zeros are in the file already.
+        # `zero` has stored the zeros in the file, so nothing is left to store.
         assert not hand.store_calibration(1)
         with pytest.raises(sun2xp.Refused):
             hand.zero(4)

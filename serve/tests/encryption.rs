@@ -39,8 +39,7 @@ fn a_client_uses_only_the_keys_of_its_certificate() {
     let in_force = || (rig.set_point() == goal).then_some(());
     alice.repeat_until(&[part(1, goal)], "set point", |_| in_force());
 
-    // Bob connects with his own certificate, and uses alice's name and epoch. None of his messages reaches the server,
-    // so it does not count them.
+    // Bob connects with his own certificate, and uses alice's name and epoch. None of his messages reaches the server.
     let bob = connected("alice", "bob");
     let key = bob.keys.request(Action::Stop, &alice.name);
     assert!(bob.ask(&key, request(Action::Stop).encode().expect("a Request")).is_none());
@@ -49,7 +48,7 @@ fn a_client_uses_only_the_keys_of_its_certificate() {
     for key in [bob.keys.target(&alice.name), "sun2xp/hand/target/*".into()] {
         bob.publish_under(&key, forged.encode().expect("a Target"));
     }
-    // Mallory has a certificate of the same authority, but is not listed.
+    // Mallory has a certificate of the same authority, but the server's configuration does not list mallory.
     let mallory = connected("mallory", "mallory");
     let stop = mallory.keys.request(Action::Stop, &mallory.name);
     assert!(mallory.ask(&stop, request(Action::Stop).encode().expect("a Request")).is_none());
@@ -60,7 +59,7 @@ fn a_client_uses_only_the_keys_of_its_certificate() {
     assert!(carol.ask(&acquire, request(Action::Acquire).encode().expect("a Request")).is_none());
     wait_for("a State", || carol.state());
     assert!(mallory.state().is_none(), "mallory reads nothing, although carol does");
-    // All of that has moved nothing, and alice still commands.
+    // None of these messages has changed a set point, and alice still commands.
     let next = [0.15, 0.5, 0.9];
     alice.repeat_until(&[part(2, next)], "set point", |_| (rig.set_point() == next).then_some(()));
     assert_eq!(carol.request(request(Action::Stop)).code, Code::Done);
@@ -91,7 +90,8 @@ fn a_certificate_of_another_authority_does_not_connect() {
     certificates(folder.path(), &["alice"]);
     certificates(other.path(), &["alice"]);
     let rig = rig(folder.path());
-    // This client trusts the server. Its certificate has alice's name, but another authority has signed it.
+    // The client with the certificate "foreign" trusts the server. The certificate has alice's name, but another
+    // authority has signed it.
     for file in ["alice.pem", "alice.key"] {
         let own = other.path().join(file);
         std::fs::copy(own, folder.path().join(format!("foreign{}", &file[5..]))).expect("copied");

@@ -1,9 +1,9 @@
-//! The results of the routines, and their place in a finger's configuration.
+//! The results of the calibration routines, and the configuration keys of a finger that store them.
 
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 
-/// Results of one routine.
+/// The results of one calibration routine.
 // The servo does not use the heap, so all results have the size of the largest ones.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,9 +32,9 @@ pub struct Signs {
 /// Zeros of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zeros {
-    /// `encoder.zero`, m_0 of eq. 28 of COINS TR 90-48.
+    /// `encoder.zero`, counts: m_0 of eq. 28 of COINS TR 90-48.
     pub encoder: [i32; 4],
-    /// `gauge.zero`.
+    /// `gauge.zero`, counts.
     pub gauge: [f64; 4],
     /// Error of the joint angles before zeroing, rad.
     pub joint_error: Vector3<f64>,
@@ -48,8 +48,8 @@ pub struct Zeros {
 pub struct Identified {
     /// `tendon.stiffness`, N/cm.
     pub tendon_stiffness: Vector4<f64>,
-    /// `tendon.stiffness_tolerance`. The stretch per newton depends on the tension. The tolerance is the largest
-    /// relative difference between this stretch and the constant one that `tendon_stiffness` gives. It includes the
+    /// `tendon.stiffness_tolerance`. The true stretch per newton depends on the tension, but `tendon_stiffness` stands
+    /// for a constant stretch per newton. The tolerance is the largest relative difference between the two, plus the
     /// uncertainty of the measurement.
     pub stiffness_tolerance: f64,
     /// Part of the motors' travel that the identified elasticity does not explain: rms residual, cm.
@@ -62,8 +62,8 @@ pub struct Identified {
     pub conduit: Vector4<f64>,
     /// `friction.pulley`.
     pub pulley: Vector4<f64>,
-    /// Factors for `gauge.newton_per_count`. The gains relative to each other are measured; their mean comes from
-    /// `gauge.reference`.
+    /// Factors for `gauge.newton_per_count`. Their ratios to each other are measured. Their mean comes from the source
+    /// that `gauge.reference` selects.
     pub gauge_gain: Vector4<f64>,
     /// Ratio of each motor's true torque to its commanded torque, if the gauges are right. Without a known weight, a
     /// common error of the gauges cannot be distinguished from a common error of the motors.
@@ -81,7 +81,7 @@ pub struct Identified {
 pub struct IdentifiedArms {
     /// `geometry.r`, cm.
     pub r: Matrix3x4<f64>,
-    /// `encoder.zero`.
+    /// `encoder.zero`, counts.
     pub encoder_zero: [i32; 4],
 }
 

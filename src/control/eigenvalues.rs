@@ -3,9 +3,10 @@
 use nalgebra::Matrix3;
 use std::f64::consts::TAU;
 
-/// Returns the three real eigenvalues, the largest first, by the cosine formula. The matrix must be symmetric, or the
-/// product of two positive semi-definite matrices. The function is inlined, so that a caller that uses only the largest
-/// eigenvalue computes only one cosine.
+/// Returns the three real eigenvalues, the largest first. They are the roots of the characteristic polynomial, by the
+/// trigonometric solution of the cubic equation. The matrix must be symmetric, or the product of two symmetric positive
+/// semi-definite matrices. The function is inlined, so that a caller that uses only the largest eigenvalue computes
+/// only one cosine.
 #[inline]
 pub(super) fn eigenvalues(matrix: &Matrix3<f64>) -> [f64; 3] {
     let square = matrix * matrix;

@@ -12,7 +12,7 @@ const WARNING_WINDOW: f64 = 1.0;
 /// A line counts as noisy if the share of lost replies in the window is larger than this.
 const NOISY: f64 = 0.02;
 
-/// A servo counts as overrunning if the share of cycles that skipped periods in the window is larger than this.
+/// A servo counts as overrunning if, in the window, the share of cycles that skipped periods is larger than this.
 const OVERRUN: f64 = 0.02;
 
 /// The line counts as unusable if the share of damaged replies in the time-out window is larger than this. With one
@@ -26,7 +26,7 @@ const DAMAGED: f64 = 0.25;
 /// A late cycle that is followed immediately by the next one gives one such sample.
 const STOPPED: u32 = 16;
 
-/// Smallest time between two samples by a clock that runs, periods.
+/// Smallest time between two samples that a running clock shows, periods.
 const LEAST_AGE: f64 = 0.1;
 
 /// State of the monitors of one finger.
@@ -69,9 +69,9 @@ impl Supervision {
         }
     }
 
-    /// Notes the warnings in the status of a reply. `counted` is the number of periods between the sample of the
-    /// previous reply and the sample of this one by the servo's count, and `clocked` by the board's clock; `clocked` is
-    /// `None` if the clock does not give it.
+    /// Notes the warnings in the status of a reply, and the time from the sample of the previous reply to the sample of
+    /// this reply, in periods. `counted` is this time by the servo's count of periods. `clocked` is this time by the
+    /// board's clock, or `None` if the clock does not give the time.
     pub fn note_reply(&mut self, status: Status, counted: f64, clocked: Option<f64>) {
         let advanced = clocked.is_none_or(|age| age >= LEAST_AGE);
         self.without_time = if advanced { 0 } else { self.without_time.saturating_add(1) };
@@ -133,7 +133,7 @@ impl Supervision {
         self.watch.resume();
     }
 
-    /// Forgets the line and the overruns from before a recovery.
+    /// Forgets the lost replies, the damaged replies and the overruns from before a recovery.
     pub fn recover(&mut self) {
         for quality in [&mut self.noise, &mut self.damage, &mut self.overruns] {
             quality.forget();
@@ -168,7 +168,8 @@ mod tests {
             supervision.note_reply(Status::default(), counted, clocked);
             supervision.age
         };
-        // A reply was lost, a cycle was late, and the age was not known by the clock.
+        // In this order: a reply was lost, a cycle was late, the next cycle followed at once, and the clock did not
+        // give the age.
         let ages = [(2.0, Some(2.01)), (1.0, Some(1.6)), (1.0, Some(0.0)), (70.0, None)];
         assert_eq!(ages.map(|(counted, clocked)| age(counted, clocked)), [2.01, 1.6, 0.0, 70.0]);
         let stopped: Vec<f64> = (0..100).map(|_| age(1.0, Some(0.0))).collect();

@@ -4,19 +4,21 @@ use crate::hand::{Hand, HandError, SetPointError};
 use crate::model::configuration::LARGEST_GRAVITY as LARGEST;
 
 impl Hand {
-    /// Sets gravity in the palm's frame, m/s^2. It replaces `hand.gravity` until the hand is closed. Every finger
-    /// compensates the new gravity within a cycle. If gravity changes by more than 2 m/s^2 in a period of 1 ms, this
-    /// takes several cycles, so that the torque does not jump. The new gravity also acts on simulated fingers and on a
-    /// simulated object. Every record of the black box and of telemetry contains the gravity of its cycle.
+    /// Sets gravity in the palm's frame, m/s^2. It replaces `hand.gravity` until the hand is closed. Every finger takes
+    /// the new gravity within a cycle. The compensated gravity changes by at most 2 m/s^2 per millisecond, so that the
+    /// torque does not jump. A large change therefore takes several cycles to compensate. The new gravity also acts on
+    /// simulated fingers and on a simulated object. Every record of the black box and of telemetry contains the gravity
+    /// of its cycle.
     ///
     /// Gravity is an input of the servos, as a set point is. The call neither allocates nor replaces a controller, so
     /// a planner can make it in every cycle. Set points, paths, monitors and the estimate of contacts continue.
     ///
     /// # Errors
     /// Returns an error if a component is NaN, infinite or beyond 100 m/s^2. Then nothing is changed. Returns an error
-    /// if a finger is faulted. The other fingers then have the new gravity, and this finger takes it when it recovers.
+    /// if a finger is faulted. The other fingers then have the new gravity, and the faulted finger takes the new
+    /// gravity when it recovers.
     pub fn set_gravity(&self, gravity: [f64; 3]) -> Result<(), HandError> {
-        // The configuration has the same range. Its check would allocate the text of a refusal.
+        // The range is that of the configuration. The check of the configuration would allocate the text of a refusal.
         if let Some(component) = gravity.iter().position(|value| !(-LARGEST..=LARGEST).contains(value)) {
             return Err(SetPointError::Gravity { component, value: gravity[component] }.into());
         }

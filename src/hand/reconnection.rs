@@ -17,10 +17,10 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 
 /// A port with its repair data. It may outlive its hand while a repair is in progress.
 pub(super) struct RepairablePort {
-    /// Numbers of the fingers, 1 to 3.
+    /// The fingers at this port.
     pub fingers: Vec<FingerNumber>,
-    /// Number of repairs that included the finger, in the order of `fingers`. When the servo takes a repaired finger,
-    /// the finger's number of recoveries reaches this number.
+    /// For each finger, in the order of `fingers`: the number of repairs that included the finger. When the servo takes
+    /// a repaired finger, the finger's number of recoveries reaches this number.
     pub repairs: [AtomicU32; FINGERS],
     /// Locked during a repair, which takes long. `None` after the hand is closed.
     pub repair: Mutex<Option<PortRepair>>,
@@ -61,7 +61,7 @@ impl Recovery {
         std::mem::forget(self.reconnecting.take());
     }
 
-    /// Ends the thread and closes the released links. Waits for repairs in progress.
+    /// Ends the thread, and closes the links that the servos have released. Waits for repairs in progress.
     pub fn end(&mut self) {
         if let Some((stop, thread)) = self.reconnecting.take() {
             drop(stop);

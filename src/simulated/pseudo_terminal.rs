@@ -41,8 +41,8 @@ impl PseudoTerminal {
         let name = CStr::from_bytes_until_nul(&name).map_err(io::Error::other)?;
         // SAFETY: `name` is a C string.
         let host_end = Descriptor::opened(unsafe { libc::open(name.as_ptr(), FLAGS) })?;
-        // The terminal must be raw before its path is known. A terminal that is not raw echoes, and removes some byte
-        // values.
+        // The terminal must be raw before a host knows its path. A terminal that is not raw echoes what it receives,
+        // and removes some byte values.
         make_raw(&host_end)?;
         // SAFETY: the command takes an integer.
         check(unsafe { libc::fcntl(board_end.number(), libc::F_SETFL, libc::O_RDWR | libc::O_NONBLOCK) })?;
@@ -55,8 +55,8 @@ impl PseudoTerminal {
         &self.path
     }
 
-    /// Waits for bytes, at most for `timeout`, and reads what has arrived. It returns 0 only after the whole `timeout`.
-    /// If the read fails, it sleeps for `timeout` before it returns 0.
+    /// Waits for bytes, at most for `timeout`, and reads what has arrived. Returns 0 only after the whole `timeout`. If
+    /// the read fails, sleeps for `timeout` and then returns 0.
     ///
     /// # Errors
     /// Returns [`Closed`] if another part of the program has closed a descriptor.
@@ -86,7 +86,7 @@ impl PseudoTerminal {
     /// Waits at most for `timeout` until one of these terminals has bytes or has failed. Returns false if the time has
     /// passed without either.
     pub fn wait_for_any(terminals: &[Option<Arc<Self>>; FINGERS], timeout: Duration) -> bool {
-        // The system ignores negative numbers.
+        // `ppoll` ignores descriptors with negative numbers.
         let number = |terminal: &Option<Arc<Self>>| terminal.as_ref().map_or(-1, |own| own.board_end.number());
         let mut polled = terminals.each_ref().map(|terminal| libc::pollfd {
             fd: number(terminal),
@@ -102,7 +102,8 @@ impl PseudoTerminal {
         ready > 0
     }
 
-    /// Sends bytes without waiting, as a UART does. Bytes that the host does not read are lost.
+    /// Sends bytes without waiting, as a UART does. Bytes are lost if the buffer of the terminal is full, because the
+    /// host does not read.
     pub fn write(&self, bytes: &[u8]) {
         if self.board_end.is_own() {
             // SAFETY: `bytes` is readable for its length.
@@ -110,8 +111,8 @@ impl PseudoTerminal {
         }
     }
 
-    /// Removes what a dead host has left: the mark of exclusive use, and answers that it did not read. Both outlive the
-    /// host, because the host's end is also open here.
+    /// Removes what a dead host has left: the mark of exclusive use, and answers that the host did not read. Both
+    /// outlive the host, because the host's end is also open here.
     pub fn forget_last_host(&self) {
         if self.host_end.is_own() {
             // SAFETY: neither request takes a pointer.

@@ -1,4 +1,4 @@
-//! The table of docs/architecture.md with the way of a set point from a call to the wire.
+//! Reads the table of docs/architecture.md that shows the way of a set point from a call to the wire.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ pub struct Station {
     pub shape: String,
 }
 
-/// Reads the section with the table: its text, and the rows of the table.
+/// Returns the text of the section that contains the table, and the rows of the table.
 pub fn read(root: &Path) -> (String, Vec<Station>) {
     let page = fs::read_to_string(root.join("docs/architecture.md")).expect("the page");
     let (_, section) = page.split_once("## The way of a set point").expect("the section");
@@ -19,7 +19,7 @@ pub fn read(root: &Path) -> (String, Vec<Station>) {
     let rows = section.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| |"));
     let stations = rows.enumerate().map(|(index, row)| {
         let cells: Vec<&str> = row.split('|').map(|cell| cell.trim().trim_matches('`')).collect();
-        let [_, number, file, function, _, shape, _] = cells[..] else { panic!("six columns in {row}") };
+        let [_, number, file, function, _, shape, _] = cells[..] else { panic!("five columns in {row}") };
         assert_eq!(number, (index + 1).to_string(), "{row}");
         Station { file: file.into(), function: function.into(), shape: shape.into() }
     });

@@ -1,5 +1,5 @@
-/* sun2xp_object: its result for a ball on a table, and every refusal. With the argument "none" no object is
-   configured. */
+/* Tests the result of sun2xp_object for a ball on a table, and refusals of this call. With the argument "none", no
+   object is configured. */
 #include <string.h>
 #include "Sun2Xp.h"
 #include "sun2xp.h"

@@ -1,4 +1,4 @@
-/* Counts the refusals that are reported. Include sun2xp.h before. C89. */
+/* Counts the refusals that are reported. Include sun2xp.h before this file. The code is C89. */
 static int refusals;
 
 /* The callback for sun2xp_set_log. */

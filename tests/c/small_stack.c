@@ -1,5 +1,5 @@
-/* Runs every call of the header in a thread of its own with a painted stack of 64 KiB. Prints how much of it each
-   call has used. */
+/* Runs the calls of Sun2Xp.h and many calls of sun2xp.h, each in a thread of its own with a stack of 64 KiB. The stack
+   is filled with PAINT before the call. The program prints the number of bytes that each call has overwritten. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <pthread.h>
@@ -10,7 +10,7 @@
 #include "check.h"
 
 #define STACK_BYTES (64 * 1024)
-/* The manual's limit (chapter 6), for the call alone: the thread itself needs some of the stack too. */
+/* The limit for one call (chapter 5 of sun2xp.h, "Stack"). The use of the thread itself is subtracted. */
 #define PROMISED_BYTES (16 * 1024)
 #define PAINT 0xA5
 
@@ -81,7 +81,7 @@ static int get_fault(void)
 
 static const struct job {
     const char *name;
-    int (*call)(void);
+    int (*call)(void);                  /* NULL for open_again, which is defined below */
 } jobs[] = {
     {"no call", nothing},
     {"SendPos without a hand", refused_without_hand},
@@ -110,7 +110,7 @@ static const struct job {
     {"sun2xp_fault_text", fault_text},
     {"sun2xp_write_black_box", write_black_box},
     {"sun2xp_zero", zero_finger},
-    {"sun2xp_identify without finger", identify_refused},
+    {"sun2xp_identify, no such finger", identify_refused},
     {"sun2xp_stop_all, sun2xp_recover", recover_hand},
     {"CloseHand", CloseHand},
 };

@@ -1,10 +1,10 @@
-//! Gives the boards of the tests the priority that simulated boards have in the library: a real microcontroller does
-//! not wait for compilers either.
+//! Gives the boards of the tests the priority that simulated boards have in the library. A busy computer then does not
+//! delay these boards, as it does not delay a real microcontroller.
 
 use std::os::unix::process::CommandExt;
 use std::process::Command;
 
-/// Lower than the priority of the servos.
+/// SCHED_FIFO priority. It is lower than the priority of the servos.
 const PRIORITY: libc::c_int = 20;
 
 /// Gives the calling thread and its children precedence on a busy machine, if that is permitted.

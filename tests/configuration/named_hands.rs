@@ -114,7 +114,7 @@ fn the_table_of_the_page_has_every_value_of_every_named_hand() {
         let [shown, ..] = simulations(&text);
         assert_eq!(ConfiguredSimulation { hand, ..shown }, hand.simulation(), "{}", hand.name());
     }
-    // Each row is a value that some named hand changes.
+    // Each row is a key whose value differs between the nominal hand and another named hand.
     for row in &rows[2..] {
         assert!(row[2..=names.len()].iter().any(|value| !value.is_empty() && *value != row[1]), "{row:?}");
     }

@@ -1,4 +1,5 @@
-//! The reference while the anchor moves toward a set point at a limited speed, and paths that begin meanwhile.
+//! Tests of the reported reference while the anchor moves toward a set point at a limited speed, and of paths that
+//! begin during this motion.
 
 use crate::motion::{Track, joints, send};
 use crate::rig::{Bench, TARGET};
@@ -31,7 +32,7 @@ fn a_slewing_anchor_is_reported_with_its_rates() {
     }
 }
 
-/// A path of one 30 s polynomial that continued the motion of the anchor would lead far beyond the joint limits.
+/// If a path of one polynomial of 30 s continued the motion of the anchor, it would lead far beyond the joint limits.
 #[test]
 fn a_slow_path_begins_smoothly_while_the_finger_settles() {
     for cycles in [5, 20, 50, 100] {
@@ -50,8 +51,8 @@ fn a_slow_path_begins_smoothly_while_the_finger_settles() {
     }
 }
 
-/// The acceleration and the jerk of an interpolated set point are fed forward. With steps of 3 and 6 ms they caused the
-/// fault OVER_TENSION at 60 N.
+/// The acceleration and the jerk of an interpolated set point are fed forward. A step lasts three periods of the
+/// planner. A step of 3 or 6 ms would cause the fault OVER_TENSION at 60 N, so a period below 10 ms acts as 10 ms.
 #[test]
 fn a_far_set_point_with_a_short_interpolation_does_not_overload_the_tendons() {
     for interpolate_ms in [1.0, 2.0] {

@@ -136,7 +136,7 @@ fn beside(declaration: &str, comment: &str) -> String {
 }
 
 /// Removes the parameter names of a declaration, because a planner may have macros with these names. The synopsis above
-/// the declaration has them.
+/// the declaration shows the names.
 fn without_parameter_names(line: &str) -> String {
     let call = line.starts_with("int ") || line.starts_with("const char *");
     let line = without_name_of_function(line);
@@ -169,7 +169,7 @@ fn code(declarations: &str) -> String {
     code.concat()
 }
 
-/// Checks that do not compile if a 64-bit compiler lays out a struct differently than the library.
+/// Returns C code that does not compile if a 64-bit compiler lays out a struct differently than the library.
 fn sizes(code: &str) -> String {
     let mut lines = String::new();
     for declaration in code.split("\nstruct ").skip(1) {

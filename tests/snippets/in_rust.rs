@@ -1,4 +1,5 @@
-//! The snippets in Rust: this file contains each of them as part of a function, which a test runs.
+//! The Rust snippets of README and docs. Each snippet, except that of docs/remote.md, is part of a function here, which
+//! a test runs.
 
 use crate::pages::{in_language, pages};
 use std::error::Error;
@@ -8,7 +9,7 @@ use sun2xp::{FingerNumber, Hand};
 
 const THIS_FILE: &str = include_str!("in_rust.rs");
 
-/// README.md.
+/// Contains the snippet of README.md.
 #[test]
 fn the_hand_is_a_spring() -> Result<(), Box<dyn Error>> {
     let hand = sun2xp::Hand::open(sun2xp::Configuration::default())?;
@@ -18,7 +19,7 @@ fn the_hand_is_a_spring() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// docs/events.md.
+/// Contains the snippet of docs/events.md.
 fn wait_until_settled(hand: &Hand) -> Result<(), Box<dyn Error>> {
     let queue = hand.events();
     hand.send_position(1, [0.0, 0.5, 0.8])?;
@@ -43,7 +44,7 @@ fn every_snippet_in_rust_is_in_this_file() {
     let pages = pages();
     let blocks = in_language(&pages, "rust");
     assert!(blocks.len() >= 2, "{} snippets were found", blocks.len());
-    // serve/tests/network has the snippet of docs/remote.md, because this package does not know that client.
+    // serve/tests/network has the snippet of docs/remote.md, because this package does not depend on the remote client.
     for block in blocks.iter().filter(|block| block.page != "docs/remote.md") {
         let indented: String = block.text.lines().map(|line| format!("    {line}\n").replace("    \n", "\n")).collect();
         assert!(THIS_FILE.contains(&indented), "{}: copy this snippet into a test here:\n{indented}", block.page);

@@ -1,4 +1,4 @@
-//! Hands and readers for the tests, and processes that have one.
+//! Hands and readers for the tests, and child processes that open a hand or a reader.
 
 use crate::pauses;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -45,7 +45,7 @@ pub fn read_for(reader: &mut Reader, time: Duration, messages: &mut Vec<Message>
     }
 }
 
-/// Reads until a message is found, for at most 10 s.
+/// Reads until `find` returns something for a message, for at most 10 s.
 pub fn read_until<T>(reader: &mut Reader, mut find: impl FnMut(&Message) -> Option<T>) -> T {
     let end = Instant::now() + Duration::from_secs(10);
     let mut messages = Vec::new();
@@ -67,11 +67,11 @@ pub fn cycles(messages: &[Message], finger: FingerNumber) -> Vec<u64> {
     messages.iter().filter_map(number).collect()
 }
 
-/// A process that has a hand or a reader. Dropping it kills it.
+/// A process that has a hand or a reader. The process is killed when this value is dropped.
 pub struct OtherProcess {
     pub child: Child,
     lines: BufReader<std::process::ChildStdout>,
-    /// Number of the process's forked child; 0 if there is none.
+    /// Process number of the process's forked child; 0 if there is none.
     copy: i32,
 }
 
@@ -81,7 +81,7 @@ impl OtherProcess {
         Self::start("hand", name)
     }
 
-    /// Starts a process whose hand has a forked child that keeps copies of its descriptors.
+    /// Starts a process with a hand of this name, and with a forked child that keeps copies of the hand's descriptors.
     pub fn with_forked_hand(name: &str) -> Self {
         Self::start("forked", name)
     }
@@ -102,7 +102,7 @@ impl OtherProcess {
         process
     }
 
-    /// Waits for a line of the process that contains a word, and returns the text behind the word.
+    /// Waits for a line of the process that contains a word, and returns the text after the word.
     pub fn line_with(&mut self, word: &str) -> String {
         let mut line = String::new();
         while !line.contains(word) {
@@ -136,7 +136,8 @@ impl Drop for OtherProcess {
     }
 }
 
-/// In a child process: does what the environment says until a line arrives. In the test program itself it does nothing.
+/// Does what the environment variables say, until a line arrives at standard input. Does nothing in the test program
+/// itself, which does not have these variables.
 pub fn child_is_told_what_to_do() {
     let (Ok(role), Ok(name)) = (std::env::var(ROLE), std::env::var(NAME)) else { return };
     let wait = || std::io::stdin().read(&mut [0]).expect("a byte or the end");
@@ -158,7 +159,7 @@ pub fn child_is_told_what_to_do() {
     }
 }
 
-/// Forks a child that keeps all descriptors and does nothing until it is killed. Returns its number.
+/// Forks a child that keeps all descriptors and does nothing until it is killed. Returns its process number.
 fn fork() -> i32 {
     // SAFETY: the child only calls `pause`, which is permitted after a fork of a process with threads.
     unsafe {

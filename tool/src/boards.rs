@@ -12,7 +12,8 @@ use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{BoardNumber, Configuration};
 
 /// Lists the boards at the serial ports, with the unique numbers of their fingers for `finger.board` of a
-/// configuration. Ports that another program uses are not opened. Boards only get a Hello, which changes nothing.
+/// configuration. A serial device is not opened if this user can see that another program uses it. Boards only get a
+/// Hello, which changes nothing.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file whose `hand.search_ports` and `finger.baud` are used. Without it, the defaults are used.
@@ -51,7 +52,7 @@ struct Port {
 #[derive(Serialize)]
 struct Finger {
     address: u8,
-    /// In the form that `finger.board` takes.
+    /// The number in the form that `finger.board` takes.
     unique_number: BoardNumber,
     firmware: String,
     board_kind: u16,

@@ -1,4 +1,4 @@
-"""Messages of the library in the log `sun2xp` of the module logging."""
+"""Passes the messages of the library to the logger `sun2xp` of the module `logging`."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Optional
 
 from . import _sun2xp
 
-#: Receives the messages of the library, such as warnings about missing permissions for real time. Without a handler,
-#: `logging` prints warnings on standard error.
+#: The logger of the library's refusals (level INFO) and warnings (level WARNING), such as missing permissions for real
+#: time. Without a handler, `logging` writes the warnings to standard error.
 logger = logging.getLogger("sun2xp")
 
 _starting = threading.Lock()
@@ -19,20 +19,20 @@ _thread: Optional[threading.Thread] = None
 
 
 def start() -> None:
-    """Begins to log, if this process does not do so yet."""
+    """Starts the thread that logs the messages, if it was not started before."""
     global _thread
     with _starting:
         if _thread is None:
             _thread = threading.Thread(target=_pass_on, name="sun2xp log", daemon=True)
             _sun2xp.take_messages()
             _thread.start()
-            # atexit calls the newest function first, so the hands are closed after `_end`. Messages then go to standard
-            # error again.
+            # `atexit` calls the newest function first, so `_end` runs before the function that closes the hands. The
+            # messages of that function go to standard error.
             atexit.register(_end)
 
 
 def flush() -> None:
-    """Waits until the messages of the calls so far are in the log."""
+    """Waits until all messages so far are logged, but at most for one second."""
     if threading.current_thread() is not _thread:
         _sun2xp.flush_messages()
 

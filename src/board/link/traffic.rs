@@ -1,4 +1,6 @@
-//! The cyclic traffic of a link: Commands with their Replies, and TactileRequests with their answers.
+//! The cyclic traffic of a link: Commands with their Replies, TactileRequests with their answers, and the answers to
+//! relayed requests. A relayed request is a handshake request of another thread, which the servo sends after its
+//! Commands.
 
 use crate::board::protocol::{Command, Message, Reply, TactileEvent, TactileRequest};
 

@@ -1,5 +1,6 @@
-//! One motor pulls alone, with a torque that rises until an encoder moves. If the encoder of another motor moves first,
-//! or if the motor's own encoder moves backward, the motor pulls until a gauge shows what is wrong.
+//! One motor pulls alone, with a force that rises until an encoder moves. If the encoder of another motor moves first,
+//! or if the motor's own encoder moves backward, the motor pulls until a gauge shows what is wrong. The unit t_min of
+//! some forces is `tendon.minimum`.
 
 use super::readings::Readings;
 use crate::calibration::average::Average;
@@ -7,7 +8,7 @@ use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;
 use nalgebra::Vector4;
 
-/// Rest before each pull, in which the readings are averaged, s.
+/// Time of rest before each pull, s. The readings are averaged in this time.
 const REST: f64 = 0.025;
 /// A motor is at rest if it moves by less than this distance in the time [`REST`], cm.
 const AT_REST: f64 = 0.001;
@@ -19,16 +20,17 @@ const RISE: f64 = 25.0;
 const HARDEST: f64 = 3.0;
 /// An encoder counts as moved when its reading has changed by more than this distance, cm at the tendon.
 const MOVED: f64 = 0.004;
-/// Pull after an encoder has moved wrongly, in t_min.
+/// Pull in [`Stage::Pulling`], and largest reverse pull in [`Stage::Braking`], in t_min.
 const PULL: f64 = 1.2;
-/// After an encoder has moved wrongly, the motor pulls for at most this time, s, and this distance, cm, because it may
-/// unwind its tendon.
+/// Longest time in [`Stage::Pulling`], s. It is short, because the motor may be unwinding its tendon.
 const LONGEST: f64 = 0.12;
+/// Largest travel of an encoder in [`Stage::Pulling`], cm. It is short for the same reason as [`LONGEST`].
 const FARTHEST: f64 = 0.12;
-/// A gauge has responded if it has changed by more than this, in t_min.
+/// A gauge has responded if its tension has changed by more than this, in t_min.
 const RESPONDED: f64 = 0.35;
-/// Damping that stops a motor after its pull, N s/cm, and the time for which it acts, s.
+/// Damping that stops a motor after its pull, N s/cm.
 const DAMPING: f64 = 2.0;
+/// Time for which the damping acts, s.
 const BRAKING: f64 = 0.02;
 
 /// The test of one motor.
@@ -48,7 +50,7 @@ enum Stage {
     Resting,
     /// The pull rises.
     Rising,
-    /// The motor pulls after `encoder` has moved in `direction`. This is the wrong encoder or the wrong direction.
+    /// The motor pulls after `encoder` has moved in `direction`. Either the encoder or the direction is wrong.
     Pulling {
         encoder: usize,
         direction: f64,
@@ -81,7 +83,8 @@ impl Pushing {
             Stage::Rising => {
                 let first = moved.iamax();
                 if moved[first].abs() > MOVED {
-                    // The encoder of a motor that pulls hard has not moved, but the pull has unwound another motor.
+                    // The motor's gauge shows the pull, and the pull has unwound another motor, but the motor's own
+                    // encoder has not moved.
                     if first != self.motor && moved[first] < 0.0 && risen[self.motor] > RESPONDED * minimum {
                         return Err(Obstacle::DeadEncoder { encoder: self.motor as u8 + 1 });
                     }

@@ -2,8 +2,8 @@
 //!
 //! Without touch sensors, the normal of a contact is not measured. The detector uses the direction that the force has
 //! when the finger first comes to rest during the contact. This direction is the normal if the finger has pressed
-//! against the object and has not carried it yet. A contact that begins to slide can be recognised by its motion only
-//! when the tip moves at 0.5 cm/s, and then the object is lost. The force leaves the cone before the contact slides.
+//! against the object and has not carried it yet. The motion of the tip shows a slip only when the tip moves at 0.5
+//! cm/s, and by then the object is lost. The force leaves the cone before the contact slides.
 
 use super::observation::{ObservationKind, Observations};
 use crate::control::contact::ContactEstimate;
@@ -18,7 +18,7 @@ const PAUSE: f64 = 0.05;
 /// Detects slip.
 #[derive(Clone, Debug)]
 pub(super) struct SlipDetector {
-    /// Largest ratio of the force along the surface to the force normal to it.
+    /// Largest ratio of the force along the surface to the force normal to it. `None` switches the detector off.
     friction: Option<f64>,
     /// Number of cycles for which a contact must exist before its normal is taken.
     settling: u32,
@@ -26,7 +26,7 @@ pub(super) struct SlipDetector {
     pause: u32,
 }
 
-/// The contact of the previous cycle.
+/// What the detector remembers of the present contact.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SlipState {
     /// Number of cycles since the contact was made.
@@ -46,7 +46,7 @@ impl SlipDetector {
         }
     }
 
-    /// `settled` tells whether the joints have come to rest since the set point changed.
+    /// Runs one cycle. `settled` tells whether the joints have come to rest since the set point changed.
     pub fn observe(
         &self,
         state: &mut SlipState,
@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn a_force_outside_the_cone_around_the_first_force_at_rest_is_a_slip() {
         let mut state = SlipState::default();
-        // First the finger approaches. Then it rests, and presses along y.
+        // First the finger moves in contact. Then the finger rests, and presses along y.
         assert_eq!(slips(&mut state, [1.0, 1.0, 0.0], false, 500), 0);
         assert_eq!(slips(&mut state, [0.0, 2.0, 0.0], true, 1), 0);
         // Then a load acts along z.

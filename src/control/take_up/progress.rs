@@ -1,4 +1,4 @@
-//! The progress of taking up slack, and the measurements that it needs.
+//! The progress of the take-up of slack, and the measurements that the take-up needs.
 
 use crate::control::take_up::touch::Gauge;
 use crate::control::take_up::travel_servo::Targets;
@@ -31,17 +31,17 @@ pub(crate) struct Slack {
     pub(super) waits_at: Vector4<f64>,
     /// Common stretch in multiples of the stretch at the pretension. A negative value is slack.
     pub(super) common: f64,
-    /// Rise of the common stretch while some tendons pull and another one is slack.
+    /// Rise of `common` while some tendons pull and another one is slack.
     pub(super) unopposed: f64,
     /// Whether the common stretch is kept, because the tensions are at the pretension.
     pub(super) steady: bool,
-    /// Whether a slack tendon was taken for a taut one, so that slack tendons are wound in again.
+    /// Whether slack tendons are wound in again, because a slack tendon was taken for a taut one.
     pub(super) touches_again: bool,
 }
 
 impl Slack {
     /// Converts lengths and pulls to another motor radius. `ratio` is the old radius of each motor divided by the new
-    /// one. The motor angles and the motor torques stay.
+    /// one. The motor angles and the motor torques stay the same.
     pub fn change_radius(&mut self, ratio: &Vector4<f64>) {
         let Targets { travel, speed, integral } = &mut self.targets;
         for length in [travel, speed, &mut self.wound, &mut self.taut_at, &mut self.waits_at] {

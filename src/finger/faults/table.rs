@@ -1,5 +1,8 @@
-//! The table of all faults. The texts, the constants of the C header and the table in `docs/faults.md` are generated
-//! from it.
+//! The table of all faults. The texts of faults, the constants of the C header and the table in `docs/faults.md` are
+//! generated from it.
+//!
+//! A row has these columns: number, kind, constant, severity, part, quantity and name; then text, cause and remedy;
+//! then the actions that the remedy names. [`Description`] explains the columns.
 //!
 //! Numbers are permanent: a new fault gets the next free number, and a fault that is no longer detected keeps its
 //! number.

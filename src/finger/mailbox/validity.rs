@@ -1,4 +1,4 @@
-//! Validities that are renewed without a new set point.
+//! Renewals of the validity of a set point, without a new set point.
 
 use super::{Mailbox, ServoEnd};
 use crate::finger::validity::Renewal;
@@ -18,8 +18,7 @@ impl Mailbox {
 }
 
 impl ServoEnd {
-    /// Returns the newest renewal, if there is one since the last call. The servo may receive a renewal before the set
-    /// point whose validity it renews.
+    /// Returns the newest renewal, if one has arrived since the last call. A renewal may arrive before its set point.
     pub fn new_renewal(&mut self) -> Option<Renewal> {
         self.renewals.update().then(|| *self.renewals.output_buffer())
     }

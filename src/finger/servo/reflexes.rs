@@ -9,8 +9,8 @@ use crate::finger::{Fault, FaultKind, Reaction, ReflexServer, Reflexes, Stage, r
 use crate::model::{FingerNumber, Part};
 
 impl FingerServo {
-    /// Gives the finger the rules that planners install with the returned value. Its rules read the events of all
-    /// fingers with clones of `bulletin`.
+    /// Gives the finger rules, which planners install with the returned value. The rules of each finger read the events
+    /// of all fingers from clones of `bulletin`.
     pub fn with_reflexes(mut self, finger: FingerNumber, bulletin: &Bulletin) -> (Self, Reflexes) {
         let (planners, server) = reflexes(finger, bulletin);
         self.memory.append(server.memory());
@@ -24,7 +24,7 @@ impl FingerServo {
         self.reflexes.server.iter_mut().for_each(|server| server.note(kinds));
     }
 
-    /// Evaluates the rules of a finger in the stage `Running`, and carries out the reaction of one that has fired.
+    /// Evaluates the rules of a finger in the stage `Running`, and carries out the reaction of a rule that has fired.
     /// `skipped` is the number of periods that will be skipped after this cycle.
     pub(super) fn react(&mut self, skipped: u64) {
         let period = self.motion.next_period;
@@ -37,7 +37,8 @@ impl FingerServo {
         }
         if self.reflexes.inhibited_until.is_some_and(|until| period >= until) {
             self.reflexes.inhibited_until = None;
-            // Later changes start from the set point that is held, and not from one that was not followed.
+            // Planners sent set points during the inhibition, but the finger has not followed them. Later changes
+            // therefore start from the set point that the finger holds.
             self.begin_phase();
         }
         let seconds = self.limits.period();
@@ -53,16 +54,17 @@ impl FingerServo {
         }
     }
 
-    /// Returns the number of periods since the last reply that have passed, 0 in a cycle with a reply. `skipped` is the
+    /// Returns the number of periods that have passed since the last reply; 0 in a cycle with a reply. `skipped` is the
     /// number of periods that will be skipped after this cycle.
     fn periods_without_reply(&self, skipped: u64) -> u64 {
         // `sample_age` already counts this cycle's period and the skipped ones.
         if self.answered { 0 } else { self.sample_age.saturating_sub(1 + skipped) }
     }
 
-    /// Begins a spring phase that continues with the set point in force. The numbers of set points that were sent in
-    /// the previous phase are assigned again, so a renewal of one of them must not renew the new set point with the
-    /// same number. A set point of a phase that ended because its set point expired is not accepted any more.
+    /// Begins a spring phase that continues with the set point in force. Planners count the next set points from the
+    /// number of this one, so they assign numbers of the previous phase again. The renewal of the previous phase is
+    /// discarded, because it could renew a new set point with the same number. From now on, set points of a phase that
+    /// ended because a set point expired are discarded too.
     fn begin_phase(&mut self) {
         self.report.springs += 1;
         self.report.expired_phase = None;

@@ -89,9 +89,9 @@ impl EventQueue {
         self.shared.clear();
     }
 
-    /// Returns a descriptor for poll(2) and select(2). It is readable while there is an event, and when the hand is
-    /// closed. The caller must not read, write or close it. [`EventQueue::next`] makes it unreadable when it finds no
-    /// event. The descriptor is closed with the queue.
+    /// Returns a descriptor for poll(2) and select(2). The descriptor is readable while there is an event, and when the
+    /// hand is closed. It becomes unreadable when [`EventQueue::next`] finds no event. The caller must not read, write
+    /// or close the descriptor, which is closed with the queue.
     ///
     /// # Errors
     /// Returns the system's error if it cannot create the descriptor or its thread.

@@ -18,7 +18,8 @@ pub struct Excess {
 const QUANTITIES: [(&str, &str); 3] = [("speed", "rad/s"), ("acceleration", "rad/s^2"), ("jerk", "rad/s^3")];
 
 impl Admission {
-    /// Refuses a path that leaves the joint limits. A finger whose set point is beyond a limit may return from there.
+    /// Refuses a path that leaves the joint limits. A path may begin at a set point beyond a limit, and return from
+    /// there.
     pub(super) fn check_joint_limits(
         &self,
         pieces: &[Piece],
@@ -67,7 +68,8 @@ impl Admission {
     pub(super) fn too_fast(&self, excess: &Excess, per_pose: usize) -> PathError {
         let &Excess { factor, piece, joint, quantity: index, value } = excess;
         let ((quantity, unit), limit) = (QUANTITIES[index], self.motion_limits.0[index]);
-        // The text gives the factor with two digits. The path must be admitted if the times are multiplied by it.
+        // The error text shows the factor with two decimals. The factor is rounded up, so that a path whose times are
+        // multiplied by it is admitted.
         let factor = (factor * 100.0).ceil() / 100.0;
         PathError::TooFast { finger: self.finger, pose: piece / per_pose, joint, quantity, unit, value, limit, factor }
     }

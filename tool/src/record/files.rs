@@ -16,7 +16,7 @@ use sun2xp::telemetry::{Description, Message};
 /// controller, and the controller that was replaced in that cycle.
 const MOST_CONTROLLERS: usize = 4;
 
-/// When a new file begins, and how many are kept.
+/// When a new file begins, and how many files are kept.
 #[derive(Clone, Copy, Default)]
 pub struct Limits {
     /// Largest size of a file, bytes.
@@ -68,8 +68,8 @@ pub struct Written {
 }
 
 impl Files {
-    /// Begins the first file, at a time of the monotonic clock, ns. Without `output` it gets a name in the working
-    /// directory.
+    /// Begins the first file. `time` is the beginning of the recording, ns of the monotonic clock. Without `output`,
+    /// the file is in the working directory, and its name consists of the hand's name, the date and the time of day.
     ///
     /// # Errors
     /// Returns an error if the file exists or cannot be written.
@@ -172,13 +172,13 @@ impl Files {
         }
     }
 
-    /// Deletes the oldest file if there are too many. If that fails, returns the reason, and the recording continues,
-    /// because its cycles matter more than the space.
+    /// Deletes the oldest file if there are too many. If that fails, returns the reason. The recording then continues,
+    /// because the cycles matter more than the space.
     fn delete_oldest(&mut self) -> Option<String> {
         let superfluous = self.limits.keep.is_some_and(|keep| self.paths.len() > keep as usize);
         let path = superfluous.then(|| self.paths.pop_front()).flatten()?;
         match fs::remove_file(&path) {
-            // Somebody may have moved it.
+            // The user may have moved or deleted the file.
             Err(error) if error.kind() != ErrorKind::NotFound => {
                 Some(format!("cannot delete {}: {error}. The file stays", ShownPath(&path)))
             }
@@ -248,7 +248,7 @@ fn create_new(path: &Path) -> io::Result<File> {
 }
 
 fn uncreated(path: &Path, error: &io::Error) -> Failure {
-    format!("cannot create {}: {error}", ShownPath(path)).into()
+    format!("cannot create {}: {error}: name another file with --output", ShownPath(path)).into()
 }
 
 /// Returns the name of a further file: `hand.mcap` becomes `hand-2.mcap`.

@@ -1,4 +1,4 @@
-//! The outbox in simulated time.
+//! Tests of the outbox in simulated time.
 
 mod losses;
 
@@ -55,7 +55,7 @@ fn without_ownership_nothing_is_sent() {
     assert_eq!((outbox.due(), outbox.next(u64::MAX), outbox.ownership()), (None, None, Err(Loss::Ended)));
 }
 
-/// During an emergency stop the owner falls silent, and what it sends meanwhile waits.
+/// During an emergency stop no Targets are sent. Set points that are put into the outbox meanwhile wait.
 #[test]
 fn targets_can_be_held_back() {
     let mut outbox = owner();
@@ -73,12 +73,12 @@ fn targets_can_be_held_back() {
 #[test]
 fn an_owner_that_commands_nothing_says_that_it_lives() {
     let mut outbox = owner();
-    let target = outbox.next(0).expect("at once");
+    let target = outbox.next(0).expect("a Target at once");
     assert_eq!((target.epoch, target.sequence, target.validity_ms, target.seen), (77, 1, 100, 1000 * MS));
     assert!(target.parts.is_empty());
     assert_eq!(outbox.next(19 * MS), None);
     outbox.heard(1010 * MS, 5, true);
-    let target = outbox.next(20 * MS).expect("after 20 ms");
+    let target = outbox.next(20 * MS).expect("a Target after 20 ms");
     assert_eq!((target.sequence, target.sent, target.seen), (2, 20 * MS, 1010 * MS));
     assert_eq!(outbox.due(), Some(40 * MS));
 }
@@ -100,12 +100,12 @@ fn a_change_is_sent_at_once_and_repeated_with_its_number() {
 fn a_planner_that_sends_without_a_pause_sends_the_newest() {
     let mut outbox = owner();
     let mut sent = Vec::new();
-    // A call each microsecond for 10 ms.
+    // The planner sends a set point each microsecond for 10 ms.
     for now in (0..10 * MS).step_by(1000) {
         outbox.put(joints(now as f64), None);
         sent.extend(outbox.next(now).map(|target| (now, target)));
     }
-    assert_eq!(sent.len(), 20, "one each 0.5 ms");
+    assert_eq!(sent.len(), 20, "one Target each 0.5 ms");
     for (now, target) in sent {
         assert_eq!(target.parts[0].place, Place::Joints([now as f64; 3]));
     }
@@ -122,7 +122,7 @@ fn what_is_not_confirmed_is_sent_with_the_next_change() {
     outbox.put(changes(Change::of(&FingerCommand::new(1).damping(0.5))), None);
     let all = part(&mut outbox, 2 * MS);
     assert_eq!((&all.place, all.stiffness, all.damping), (&Place::Joints([0.5; 3]), Some(KX), Some(0.5)));
-    // A confirmation of the first part does not confirm what came later.
+    // A confirmation of the first part does not confirm later changes.
     outbox.confirm(ONE, 1);
     assert!(!outbox.is_applied(ONE));
     outbox.put(changes(Change::of(&FingerCommand::new(1).damping(0.75))), None);
@@ -176,7 +176,7 @@ fn a_group_waits_as_a_whole() {
     outbox.put([one, other, None], None);
     assert_eq!(outbox.next(MS), None);
     outbox.confirm(ONE, 1);
-    let target = outbox.next(2 * MS).expect("both");
+    let target = outbox.next(2 * MS).expect("a Target with both parts");
     assert_eq!(target.parts.len(), 2);
 }
 
@@ -187,7 +187,7 @@ fn refused_values_are_not_sent_again() {
     part(&mut outbox, 0);
     let text = "too stiff: send a softer Kx".to_string();
     outbox.refused(&Answer { text: text.clone(), time: 1005 * MS, ..answer(Code::Argument, 1) });
-    let target = outbox.next(20 * MS).expect("it lives");
+    let target = outbox.next(20 * MS).expect("a Target without parts");
     assert_eq!((target.parts.len(), target.seen), (0, 1005 * MS));
     assert_eq!((outbox.take_refusal(), outbox.take_refusal()), (Some(text), None));
     outbox.put(stiffness(), None);
@@ -203,7 +203,7 @@ fn later_set_points_do_not_contain_a_refused_value_for_ever() {
     for number in 1..=20 {
         outbox.put(joints(f64::from(number)), None);
         let sent = part(&mut outbox, u64::from(number as u32) * MS);
-        // The refusal of a Target arrives after the next two.
+        // The refusal of a Target arrives after the next two Targets were sent.
         assert_eq!(sent.stiffness.is_some(), number <= 2, "set point {number}");
         match number {
             1 => {}
@@ -214,7 +214,7 @@ fn later_set_points_do_not_contain_a_refused_value_for_ever() {
     assert_eq!(part(&mut outbox, 40 * MS).place, Place::Joints([20.0; 3]));
 }
 
-/// On a long line, a Target is repeated before its refusal arrives.
+/// On a line with a long delay, a Target is repeated before its refusal arrives.
 #[test]
 fn the_refusals_of_repeated_targets_are_reported_once() {
     let mut outbox = owner();
@@ -230,7 +230,7 @@ fn the_refusals_of_repeated_targets_are_reported_once() {
     }
     assert_eq!(part(&mut outbox, 80 * MS).command, 2, "the new part is sent");
     outbox.refused(&answer(Code::Argument, 4));
-    assert!(outbox.take_refusal().is_some(), "that was the new part");
+    assert!(outbox.take_refusal().is_some(), "the new part was refused");
 }
 
 #[test]
@@ -240,20 +240,20 @@ fn a_refusal_does_not_concern_later_or_confirmed_values() {
     part(&mut outbox, 0);
     outbox.confirm(ONE, 1);
     outbox.refused(&answer(Code::Argument, 1));
-    assert_eq!(part(&mut outbox, 20 * MS).command, 1, "it was confirmed");
+    assert_eq!(part(&mut outbox, 20 * MS).command, 1, "the value was confirmed");
     outbox.put(joints(0.25), None);
     part(&mut outbox, 40 * MS);
     outbox.refused(&answer(Code::Argument, 2));
-    assert_eq!(part(&mut outbox, 60 * MS).command, 2, "it came with Target 3");
+    assert_eq!(part(&mut outbox, 60 * MS).command, 2, "the value came with Target 3");
     outbox.refused(&Answer { epoch: 76, ..answer(Code::Argument, 9) });
-    assert_eq!(part(&mut outbox, 80 * MS).command, 2, "that was another epoch");
+    assert_eq!(part(&mut outbox, 80 * MS).command, 2, "the refusal was of another epoch");
 }
 
 #[test]
 fn the_owner_notices_that_it_has_lost_the_hand() {
     let mut outbox = owner();
     outbox.heard(1000 * MS, 4, true);
-    assert!(outbox.ownership().is_ok(), "that State was older than the Answer");
+    assert!(outbox.ownership().is_ok(), "that State was not later than the Answer");
     outbox.heard(1001 * MS, 5, true);
     assert!(outbox.ownership().is_ok());
     outbox.heard(1002 * MS, 6, true);
@@ -270,10 +270,10 @@ fn a_new_epoch_begins_without_old_set_points() {
     part(&mut outbox, 0);
     outbox.put(joints(0.75), None);
     outbox.acquired(&Answer { epoch: 78, ..answer(Code::Done, 6) });
-    let target = outbox.next(MS).expect("it lives");
+    let target = outbox.next(MS).expect("a Target without parts");
     assert_eq!((target.epoch, target.sequence, target.parts.len()), (78, 1, 0));
     outbox.put(joints(0.25), None);
-    assert_eq!(part(&mut outbox, 2 * MS).command, 2, "numbers continue");
+    assert_eq!(part(&mut outbox, 2 * MS).command, 2, "command numbers continue");
 }
 
 #[test]

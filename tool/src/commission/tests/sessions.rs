@@ -1,4 +1,4 @@
-//! Whole commissionings: repairs, zeros against the truth, springs.
+//! Tests of whole commissionings: a person repairs the finger, the zeros are right, and the finger becomes a spring.
 
 use super::bench::World;
 use super::finger::{Bench, Helper};
@@ -10,7 +10,8 @@ use crate::commission::step::Step;
 use crate::commission::vitals::Vitals;
 use sun2xp::model::configuration::{ConfiguredFinger, NamedHand, ZeroingMethod};
 
-/// A person repairs what a step names, and the step is done again until the motors are right.
+/// One step fails. The person repairs what the step has found, and the step is done again. The other steps pass at
+/// once.
 #[test]
 fn a_repaired_finger_goes_on() {
     for kind in [0, 1, 2, 3, 4] {
@@ -59,8 +60,8 @@ fn a_whole_commissioning_ends_with_a_spring() {
 }
 
 /// Returns the error of the joint angles at the pose in which the finger was zeroed, degrees. The last of the `steps`
-/// is [`Step::Zeros`], or [`Step::Tendons`] for the error after identification. Returns `None` if a zeroing was refused
-/// twice.
+/// is [`Step::Zeros`], or [`Step::Tendons`] for the error after identification. Returns `None` if one of these two
+/// steps was refused twice.
 fn zero_error(seed: u64, method: ZeroingMethod, steps: &[Step]) -> Option<f64> {
     let case = right(seed);
     let mut belief = case.belief.clone();
@@ -99,7 +100,8 @@ fn zeros_of_all_hands(rounds: u64, steps: &[Step]) -> f64 {
             all += accepted;
         }
     }
-    // If every zeroing were refused, no zero would be wrong.
+    // If every zeroing were refused, the largest error would be 0. At least half of the commissionings must therefore
+    // be accepted.
     assert!(all as u64 >= 4 * rounds, "only {all} of {} commissionings were accepted", 8 * rounds);
     largest
 }

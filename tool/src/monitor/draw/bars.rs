@@ -1,15 +1,15 @@
-//! Bars of one line.
+//! Draws a joint angle or a tension as a bar in one line, and values as columns in several lines.
 
 use super::palette::Palette;
 use ratatui::text::Span;
 
-/// Part of t_min below which a tendon counts as slack, as for the controller.
+/// Part of t_min below which a tendon counts as slack. The controller uses the same part.
 const SLACK: f64 = 0.8;
 
-/// A bar of eighths of a character.
+/// Characters of which 0 to 8 eighths are filled from the left.
 const EIGHTHS: [char; 9] = [' ', '▏', '▎', '▍', '▌', '▋', '▊', '▉', '█'];
 
-/// Heights of eighths of a character.
+/// Characters of which 0 to 8 eighths are filled from the bottom.
 const HEIGHTS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 /// A joint within its limits: the thick line goes from zero to the measured angle (●), and ◆ is the set point.
@@ -24,7 +24,7 @@ pub fn joint(
     let cells = width.saturating_sub(2).max(1);
     let place = |angle: f64| {
         let part = (angle - low) / (high - low).max(f64::MIN_POSITIVE);
-        // A value that is not finite is at the left end.
+        // NaN is at the left end.
         (part.clamp(0.0, 1.0) * (cells - 1) as f64).round() as usize
     };
     let (at, zero) = (place(measured), place(0.0));
