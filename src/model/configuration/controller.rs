@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The tendon controllers.
+/// The controllers of a finger.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub enum Scheme {
