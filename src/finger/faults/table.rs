@@ -48,7 +48,7 @@ faults! {
         "a motor does not turn although its torque and the tension of its tendon are far out of balance",
         "the motor or its gear is jammed, its wires are broken, or its driver is off",
         "Switch the power off, turn the motor by hand and check its wiring; then recover the finger", [Recover];
-    9 OverheatedMotor "OVERHEATED_MOTOR" Fault Motor Share "over-heated motor",
+    9 OverheatedMotor "OVERHEATED_MOTOR" Fault Motor Share "overheated motor",
         "a motor has been at its thermal limit for too long; its heat is computed from the square of its torque over \
          time",
         "the finger presses or holds more than the motor can carry continuously",
@@ -138,7 +138,7 @@ faults! {
         "another program uses the serial port",
         "a planner or a terminal program is still running",
         "End that program (fuser -v PORT names it), or configure another port", [];
-    29 PortPermission "PORT_PERMISSION" Refusal Finger Nothing "port forbidden",
+    29 PortPermission "PORT_PERMISSION" Refusal Finger Nothing "no permission for the port",
         "this user has no permission to use the serial port",
         "the user is not in the group of the port",
         "Add the user to the group (usually dialout) and log in again", [];
@@ -184,7 +184,7 @@ faults! {
         "the machine is overloaded, or the rate is too high for it",
         "Permit real-time scheduling (run sun2xp doctor), give the servo a core of its own (finger.core), or \
          lower hand.rate", [];
-    40 RealtimeRefused "REALTIME_REFUSED" Warning Finger Nothing "no real time",
+    40 RealtimeRefused "REALTIME_REFUSED" Warning Finger Nothing "real time refused",
         "the system does not permit the servo to run in real time",
         "CAP_SYS_NICE or an rtprio limit is missing",
         "Grant the permission (run sun2xp doctor), or set finger.priority = 0 to run without real time", [];
@@ -202,7 +202,7 @@ faults! {
         "Send set points that are nearer, or a softer Kx", [];
     44 CalibrationFailed "CALIBRATION_FAILED" Warning Finger Nothing "calibration failed",
         "the last calibration failed; the finger is limp, and its previous calibration is in force",
-        "the error text of the calibration call names it",
+        "the cause that the error text of the calibration call names",
         "Follow the remedy in that error text, then calibrate again", [];
     45 WarmMotor "WARM_MOTOR" Warning Motor Share "warm motor",
         "a motor is near its thermal limit, and its torque is being limited",
