@@ -144,6 +144,20 @@ static int move(sun2xp_hand *hand)
     return 0;
 }
 
+/* Ends CanDrives, and removes the temporary folder with the sockets if there is one. */
+static void end_far_end(pid_t far_end, const char *folder)
+{
+    int i;
+
+    kill(far_end, SIGTERM);
+    waitpid(far_end, NULL, 0);
+    if (folder == NULL)
+        return;
+    for (i = 0; i <= 3; i++)
+        unlink(can_address(folder, i).sun_path);
+    rmdir(folder);
+}
+
 int main(int count, char **arguments)
 {
     char folder[] = "/tmp/can-XXXXXX";
@@ -154,8 +168,10 @@ int main(int count, char **arguments)
     pid_t far_end;
     int i, result;
 
-    if (count == 1 && if_nametoindex(place) == 0 && (place = mkdtemp(folder)) == NULL)
+    if (count == 1 && if_nametoindex(place) == 0 && (place = mkdtemp(folder)) == NULL) {
+        perror(folder);
         return 1;
+    }
     printf("CAN over %s\n", place);
     start_far_end(arguments[0], place, &far_end);
     memset(drives, 0, sizeof drives);
@@ -164,6 +180,7 @@ int main(int count, char **arguments)
         drives[i].finger = i + 1;
         if (can_open(&drives[i].bus, place, i + 1) != 0) {
             perror(place);
+            end_far_end(far_end, place == folder ? folder : NULL);
             return 1;
         }
         io[i].size = sizeof io[i];
@@ -183,11 +200,6 @@ int main(int count, char **arguments)
     } else {
         fprintf(stderr, "%s\n", sun2xp_error_text(NULL));
     }
-    kill(far_end, SIGTERM);
-    waitpid(far_end, NULL, 0);
-    for (i = 0; i <= 3 && place == folder; i++)
-        unlink(can_address(folder, i).sun_path);
-    if (place == folder)
-        rmdir(folder);
+    end_far_end(far_end, place == folder ? folder : NULL);
     return result == 0 ? 0 : 1;
 }

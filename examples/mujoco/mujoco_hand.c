@@ -143,16 +143,24 @@ static struct memory *map(const char *path)
     while ((file = open(path, O_RDWR)) < 0 || lseek(file, 0, SEEK_END) < (off_t)sizeof *memory) {
         if (file >= 0)
             close(file);
-        if (seconds() > deadline)
+        if (seconds() > deadline) {
+            errno = ETIMEDOUT;
             return NULL;
+        }
         nap();
     }
     memory = mmap(NULL, sizeof *memory, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     close(file);
     if (memory == MAP_FAILED)
         return NULL;
-    while (atomic_load(&memory->ready) == 0 && seconds() < deadline)
+    while (atomic_load(&memory->ready) == 0) {
+        if (seconds() > deadline) {
+            munmap(memory, sizeof *memory);
+            errno = ETIMEDOUT;
+            return NULL;
+        }
         nap();
+    }
     return memory;
 }
 
