@@ -5,7 +5,9 @@ use crate::capi::boundary::{MEMORY_OF_CALL, delegated};
 use crate::capi::hand_table;
 use crate::capi::handle::{Handle, sun2xp_hand};
 use crate::capi::memory::non_null;
+use crate::capi::opened_hand::NOT_UTF_8;
 use crate::capi::refusal::Wanted;
+use crate::files::line_of_error;
 use crate::hand::{ConfigurationError, HandError};
 use std::ffi::{CStr, c_char, c_int};
 
@@ -56,9 +58,12 @@ pub unsafe extern "C" fn sun2xp_adjust(hand: *mut sun2xp_hand, finger: c_int, ke
         Ok(move || {
             hand_table::command(hand, |hand| -> Result<(), HandError> {
                 hand.report(finger)?;
-                let reason = "is not UTF-8".to_string();
                 let number = finger.try_into()?;
-                let refused = |_| ConfigurationError::Adjustment { finger: number, line: 1, reason };
+                let refused = |error| ConfigurationError::Adjustment {
+                    finger: number,
+                    line: line_of_error(keys.to_bytes(), error),
+                    reason: NOT_UTF_8.into(),
+                };
                 hand.adjust(finger, keys.to_str().map_err(refused)?)
             })
         })

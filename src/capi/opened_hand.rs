@@ -3,11 +3,15 @@
 use crate::board::HandIo;
 use crate::capi::refusal::Refusal;
 use crate::capi::remote_hand::{RemoteHand, RemoteOpener, RemoteSource, over_the_network};
+use crate::files::line_of_error;
 use crate::hand::{ConfigurationError, Configured, FingersWithIo, Hand, HandError};
 use std::ffi::{CStr, OsStr, c_char};
 use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// Why a line of a text is refused.
+pub(super) const NOT_UTF_8: &str = "the line is not UTF-8 text: encode it in UTF-8";
 
 #[allow(clippy::large_enum_variant, reason = "the table keeps it in a box")]
 pub(super) enum OpenedHand {
@@ -84,8 +88,11 @@ impl Source {
 }
 
 fn utf_8(text: &[u8]) -> Result<&str, ConfigurationError> {
-    let file = "configuration text".into();
-    str::from_utf8(text).map_err(|_| ConfigurationError::Invalid { file, line: None, reason: "is not UTF-8".into() })
+    str::from_utf8(text).map_err(|error| ConfigurationError::Invalid {
+        file: "configuration text".into(),
+        line: Some(line_of_error(text, error)),
+        reason: NOT_UTF_8.into(),
+    })
 }
 
 /// Opens the hand that a configuration describes. With a table `[remote]` it is a hand on another machine, and

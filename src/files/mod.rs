@@ -10,6 +10,7 @@ mod update;
 
 pub use layout::with_line_ends_of;
 pub use privileges::raised_privileges;
+pub(crate) use regular::line_of_error;
 pub use regular::{open_regular_file, read_regular_file};
 #[cfg(feature = "internals")]
 pub use replace::NewFile;

@@ -4,6 +4,7 @@ use std::fs::{File, FileType, Metadata, OpenOptions, metadata};
 use std::io::{self, Read, Take};
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::Path;
+use std::str::Utf8Error;
 
 /// Opens a regular file for reading. The reader ends after `largest` + 1 bytes, so that a file that grows while it is
 /// read cannot fill the memory.
@@ -48,10 +49,14 @@ pub(super) fn read_text(input: &mut impl Read, largest: u64) -> io::Result<Strin
         return Err(too_large(largest));
     }
     String::from_utf8(bytes).map_err(|error| {
-        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
+        let line = line_of_error(error.as_bytes(), error.utf8_error());
         io::Error::new(io::ErrorKind::InvalidData, format!("line {line} is not UTF-8 text"))
     })
+}
+
+/// Returns the number of the line, counted from 1, that is not UTF-8 text.
+pub(crate) fn line_of_error(bytes: &[u8], error: Utf8Error) -> usize {
+    bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count() + 1
 }
 
 /// Refuses everything except regular files.

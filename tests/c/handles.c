@@ -61,7 +61,8 @@ static void refuses_what_cannot_be_opened(void)
     REFUSED(sun2xp_open(NULL, NULL), SUN2XP_ERROR_ARGUMENT, EFAULT, "hand");
     REFUSED(sun2xp_open_text(NULL, &hand), SUN2XP_ERROR_ARGUMENT, EFAULT, "configuration");
     REFUSED(sun2xp_open_text("[hand]\nrat = 1\n", &hand), SUN2XP_ERROR_CONFIGURATION, EINVAL, "configuration text:2");
-    REFUSED(sun2xp_open_text("# \xff\n", &hand), SUN2XP_ERROR_CONFIGURATION, EINVAL, "UTF-8");
+    REFUSED(sun2xp_open_text("#\n# \xff\n", &hand), SUN2XP_ERROR_CONFIGURATION, EINVAL,
+        "configuration text:2: the line is not UTF-8");
     REFUSED(sun2xp_open_named("golden", &hand), SUN2XP_ERROR_ARGUMENT, EINVAL, "sheathed");
     CHECK(hand == NULL);
 }

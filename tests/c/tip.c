@@ -153,7 +153,8 @@ static void adjustment(void)
     REFUSED(sun2xp_adjust(HAND, 1, "tendon.minimum = 6\ntendon.maximum = 7"), EINVAL, "tendon.maximum");
     REFUSED(sun2xp_adjust(HAND, 1, "priority = 3"), EBUSY, "priority");
     REFUSED(sun2xp_adjust(HAND, 1, "joints.maximum_degrees = [60, 40, 40]"), ERANGE, "Pos[");
-    REFUSED(sun2xp_adjust(HAND, 1, "\377"), EINVAL, "UTF-8");
+    REFUSED(sun2xp_adjust(HAND, 1, "tendon.minimum = 6\n\377"), EINVAL,
+        "line 2 of the keys to adjust: the line is not UTF-8");
     CHECK(sun2xp_adjust(HAND, 1, "tendon.minimum = 8\ncontroller.tension_gain = 3") == 0);
     for (tries = 0; tries < 250; tries++) {
         CHECK(sun2xp_tip(HAND, 1, Tip) == 0);
