@@ -187,7 +187,7 @@ pub enum HandError {
     )]
     Interrupted(FingerNumber),
     /// The finger is busy.
-    #[error("finger {0} is being opened, calibrated or closed: wait until this is done")]
+    #[error("finger {0} is being opened, recovered, calibrated or closed: wait until this is done")]
     Busy(FingerNumber),
     /// The motors of the finger are off, and no call is in progress that switches them on.
     #[error(

@@ -93,7 +93,8 @@ impl PseudoTerminal {
             events: libc::POLLIN,
             revents: 0,
         });
-        let limit = libc::timespec { tv_sec: timeout.as_secs() as libc::time_t, tv_nsec: timeout.subsec_nanos().into() };
+        let limit =
+            libc::timespec { tv_sec: timeout.as_secs() as libc::time_t, tv_nsec: timeout.subsec_nanos().into() };
         // SAFETY: the pollfds and the time limit live during the call, and the mask of signals may be null.
         let ready = unsafe { libc::ppoll(polled.as_mut_ptr(), FINGERS as libc::nfds_t, &limit, std::ptr::null()) };
         if ready < 0 {
