@@ -117,7 +117,7 @@ def longest_loop(cached):
 ROWS = [
     ("Command to Reply, typical", lambda cached: Bench(cached).reply_time(VALUES[0][0], 100), MARGIN),
     (
-        "Command to Reply, longest over phases of the main loop, torques and constants",
+        "Command to Reply, longest over torques, torque constants and phases of the main loop",
         lambda cached: at_any_phase(cached, 0),
         MARGIN,
     ),
