@@ -27,9 +27,9 @@ use std::ffi::{CStr, c_char, c_int};
 ///
 /// Until the path that was sent last has ended, the whole path is checked against all new limits, except
 /// those of finger.motion, which apply to later paths. With hand.out_of_range = "clamp" a path outside the
-/// new joint limits ends, and the finger moves to the end of the path at once. If the finger holds a pose
-/// beyond a joint limit, because it was there when it became a spring, this pose is compared only with
-/// limits that become narrower.
+/// new joint limits ends, and the finger moves to the end of the path at once. A finger that was beyond a
+/// joint limit when it became a spring may still hold its pose there. The call accepts this pose, unless the
+/// new limit is narrower.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
