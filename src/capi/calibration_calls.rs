@@ -51,8 +51,9 @@ use std::ffi::c_int;
 ///              the finger then holds its pose. If its new zeros had been found before the fault, they are in
 ///              force
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
-///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
-///              sun2xp_close, and the next calibration of the finger that can be stored stores them
+///   EACCES, ENOSPC, EBUSY ...  the configuration file cannot be written, or another process has kept it
+///              locked for 30 s; the zeros are in force until sun2xp_close, and the next calibration of the
+///              finger that can be stored stores them
 ///
 /// Threads: any.
 ///

@@ -22,8 +22,8 @@ pub struct sun2xp_event {
     pub part: c_int,
     /// Cycle of the event, as in sun2xp_status and sun2xp_record.
     pub cycle: c_ulong,
-    /// Events lost since sun2xp_open, or in a callback since sun2xp_on_event: they were not taken in time, or were lost
-    /// on the way from another machine.
+    /// Number of events that were lost since sun2xp_open; in a callback, since sun2xp_on_event. An event is lost if it
+    /// is not taken in time, or on the way from another machine.
     pub lost: c_ulong,
     /// Beginning of the event's cycle, s of CLOCK_MONOTONIC.
     pub time: f64,

@@ -102,12 +102,13 @@ pub unsafe extern "C" fn sun2xp_tip(hand: *mut sun2xp_hand, finger: c_int, tip: 
 /// sun2xp_send_stiffness. For the comparison with the bound, a rotational stiffness of k N cm/rad is
 /// converted to k / (l2 l2) N/cm, where l2 is the length of the last link.
 ///
-/// A soft finger is not a spring in four independent directions, because three joints turn the tip only by
-/// moving it. If the tip moves by a vector v, cm, it turns about normal by the dot product c . v, rad. The
-/// vector c depends on the pose. A rotational stiffness of k N cm/rad therefore stiffens the tip along c, by
-/// k |c| |c| N/cm, and the tip exerts no moment that is independent of its force. In the pose 0, 0.5, 0.8
-/// rad the example below gives 3.24, 3 and 3 N/cm along x, y and z. With normal along x it gives 3, 3.56 and
-/// 4.87 N/cm, and -1.02 N/cm between y and z. sun2xp_tip reads the stiffness that results.
+/// A soft finger is not a spring in four independent directions, because three joints cannot turn the tip
+/// without moving it. If the tip moves by a vector v, cm, it turns about normal by the dot product c . v,
+/// rad. The vector c depends on the pose. A rotational stiffness of k N cm/rad therefore stiffens the tip
+/// along c, by k |c| |c| N/cm, and the tip exerts no moment that is independent of its force. In the pose
+/// 0, 0.5, 0.8 rad the example below gives 3.24, 3 and 3 N/cm along x, y and z. With normal along x it
+/// gives 3, 3.56 and 4.87 N/cm, and -1.02 N/cm between y and z. sun2xp_tip reads the stiffness that
+/// results.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -78,7 +78,7 @@ pub struct sun2xp_path_pose {
 ///            stiff, or the path is too fast; sun2xp_error_text names the pose, and the factor by which the
 ///            path must be slower
 ///   EIO      the finger is faulted
-///   EBUSY    the finger is being opened or calibrated, or is limp
+///   EBUSY    the finger is being recovered or calibrated, or is limp
 ///   EAGAIN   during the call the finger has left its pose, because it was recovered or calibrated, its set
 ///            point expired, or a reflex reacted
 ///   ERANGE   a Kx is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio instead)

@@ -126,8 +126,9 @@ pub struct sun2xp_reflex {
 ///   EPERM    forked child
 ///   EFAULT   reflex is null
 ///   ENODEV   no such hand
-///   EINVAL   size is too small; no such finger, joint, condition, reaction or event; the member position
-///            or stiffness is NaN or infinite
+///   EINVAL   size is too small; no such finger, joint, condition, reaction or event; with
+///            SUN2XP_WHEN_OTHER_FINGER, the member finger equals the argument finger; the member position or
+///            stiffness is NaN or infinite
 ///   ERANGE   another value is NaN or outside its range; sun2xp_send_position would refuse the member
 ///            position, or sun2xp_send_stiffness the member stiffness, with ERANGE
 ///   EDOM     sun2xp_send_stiffness would refuse the member stiffness with EDOM

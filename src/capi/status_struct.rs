@@ -19,7 +19,7 @@ pub const SUN2XP_STATE_LIMP: c_int = 3;
 /// sun2xp_zero or sun2xp_identify moves the finger. Set points have no effect.
 pub const SUN2XP_STATE_CALIBRATING: c_int = 4;
 
-/// sun2xp_recover or the end of a calibration brings the tendons under tension. Set points have no effect.
+/// sun2xp_open, sun2xp_recover or the end of a calibration brings the tendons under tension. Set points have no effect.
 pub const SUN2XP_STATE_TENSIONING: c_int = 5;
 
 /// The process exits without sun2xp_close, and the finger goes to its configured end state or is already there. Only

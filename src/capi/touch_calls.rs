@@ -22,8 +22,8 @@ use std::ffi::{c_double, c_int, c_uint, c_ulong};
 pub struct sun2xp_touch {
     /// sizeof (struct sun2xp_touch), set before the call.
     pub size: usize,
-    /// 1: since sun2xp_open and the last reset of the board, the board has reported this element, and the newest report
-    /// of the element has a reading.
+    /// 1: the newest report of this element has a reading. 0: it has none, or the board has not reported the element
+    /// since sun2xp_open or since its last reset.
     pub valid: c_int,
     /// 1 if something presses the element, otherwise 0.
     pub pressed: c_int,
