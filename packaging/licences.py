@@ -92,7 +92,8 @@ def main():
     title = "The library, the tool and the Python package contain these crates:"
     write("third-party-licences.txt", title, local, EMBEDDED)
     remote = [package for package in contained(metadata, REMOTE) if package not in local]
-    title = "The server and the library of remote hands contain these crates, besides those of third-party-licences.txt:"
+    title = "The server and the library of remote hands contain these crates, besides those of "
+    title += "third-party-licences.txt:"
     write(REMOTE_FILE, title, remote, {})
 
 

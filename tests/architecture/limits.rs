@@ -10,10 +10,14 @@ const FUNCTION: usize = 60;
 /// Maximum number of columns of a line.
 const LINE: usize = 120;
 
-/// Folders whose files are not the project's: build products, and a crate of Zenoh with its upstream format.
-const FOREIGN: [&str; 3] = ["target", "build", "zenoh-link-tls"];
+/// Folders whose files are not the project's: build products, libraries of the web page, and a crate of Zenoh with its
+/// upstream format.
+const FOREIGN: [&str; 4] = ["target", "build", "vendor", "zenoh-link-tls"];
 
-/// Returns the Rust, C and C++ files of the project below a folder.
+/// Endings of the names of source files.
+const ENDINGS: [&str; 9] = [".rs", ".c", ".h", ".cpp", ".py", ".pyi", ".js", ".css", ".html"];
+
+/// Returns the source files of the project below a folder.
 pub fn source_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).expect("a folder") {
@@ -21,7 +25,7 @@ pub fn source_files(folder: &Path) -> Vec<PathBuf> {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         if path.is_dir() && !name.starts_with('.') && !FOREIGN.contains(&name) {
             files.extend(source_files(&path));
-        } else if [".rs", ".c", ".h", ".cpp"].iter().any(|ending| name.ends_with(ending)) {
+        } else if ENDINGS.iter().any(|ending| name.ends_with(ending)) {
             files.push(path);
         }
     }
@@ -42,7 +46,11 @@ pub fn exceeded(path: &Path, text: &str) -> Vec<String> {
         if columns > LINE {
             found.push(format!("{name}:{}: {columns} columns", index + 1));
         }
-        let begins = if name.to_string().ends_with(".rs") { is_rust_function(line) } else { is_c_function(line) };
+        let begins = match path.extension().and_then(|ending| ending.to_str()) {
+            Some("rs") => is_rust_function(line),
+            Some("c" | "h" | "cpp" | "js") => is_c_function(line),
+            _ => false,
+        };
         let length = if begins { function_length(&lines[index..]) } else { 0 };
         if length > FUNCTION {
             found.push(format!("{name}:{}: a function of {length} lines", index + 1));

@@ -115,6 +115,7 @@ fn a_file_a_function_or_a_line_beyond_its_limit_is_found() {
     assert_eq!(found("one.rs", &"// A line.\n".repeat(301)), ["one.rs: 301 lines"]);
     assert!(found("one.c", &"x".repeat(120)).is_empty());
     assert_eq!(found("one.c", &"x".repeat(121)), ["one.c:1: 121 columns"]);
+    assert_eq!(found("one.py", &"x".repeat(121)), ["one.py:1: 121 columns"]);
     for (name, begin, indentation) in [
         ("one.rs", "    pub(crate) const unsafe extern \"C\" fn long(\n        x: X,\n    ) {", "    "),
         ("one.rs", "async fn long() {", ""),

@@ -24,7 +24,9 @@ export class Labels {
     const { clientWidth: width, clientHeight: height } = this.view.canvas;
     for (const { label, finger } of this.labels) {
       const place = finger.group.localToWorld(PLACE.clone()).project(this.view.camera);
-      label.style.transform = `translate(${((place.x + 1) / 2) * width}px, ${((1 - place.y) / 2) * height}px) translate(-50%, -50%)`;
+      const x = ((place.x + 1) / 2) * width;
+      const y = ((1 - place.y) / 2) * height;
+      label.style.transform = `translate(${x}px, ${y}px) translate(-50%, -50%)`;
     }
   }
 }

@@ -94,7 +94,8 @@ class Plot {
     this.kind = kind;
     this.pointed = pointed;
     this.box = document.createElement("figure");
-    this.box.innerHTML = `<figcaption><b>${kind.title}</b> <small>${kind.unit}</small><span></span></figcaption><div></div>`;
+    const caption = `<b>${kind.title}</b> <small>${kind.unit}</small><span></span>`;
+    this.box.innerHTML = `<figcaption>${caption}</figcaption><div></div>`;
     parent.append(this.box);
     this.legend = this.box.querySelector("span");
     this.body = this.box.querySelector("div");

@@ -132,7 +132,8 @@ def stops_by_every_fault():
     def driver(registers):
         registers.driver_fault = True
 
-    faults = {reg.Registers.press_stop: STOPPED, supply: SUPPLY, driver: DRIVER, no_converter: SENSOR, open_bridge: SENSOR}
+    stop = reg.Registers.press_stop
+    faults = {stop: STOPPED, supply: SUPPLY, driver: DRIVER, no_converter: SENSOR, open_bridge: SENSOR}
     for cause, bit in faults.items():
         board = configured()
         assert status(board.ask(command([1000] * 4))) & ENABLED

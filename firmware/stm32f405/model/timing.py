@@ -71,7 +71,8 @@ def during_a_sample(cached, followers):
     for phase in range(0, 30, 2):
         bench = Bench(cached, constants)
         bench.reply_time(torques, 0)
-        conversions = lambda: [at for at, address, value in bench.registers.writes if address == GPIOB + BSRR and value == 2]
+        writes = bench.registers.writes
+        conversions = lambda: [at for at, address, value in writes if address == GPIOB + BSRR and value == 2]
         last = conversions()[-1]
         bench.board.run(lambda: bench.registers.now >= last + 9800 * MEGAHERTZ)
         # The sample of the main loop is due 10 ms after the last one. A Command of 17 bytes takes 85 us.
@@ -136,7 +137,8 @@ def main():
     for what, measure, margin in ROWS:
         (cached, count), (bound, _) = measure(True), measure(False)
         microseconds = bound / MEGAHERTZ
-        print(f"| {what} | {count or ''} | {cached} | {cached / MEGAHERTZ:.1f} | {bound} | {microseconds:.1f} |", flush=True)
+        row = f"| {what} | {count or ''} | {cached} | {cached / MEGAHERTZ:.1f} | {bound} | {microseconds:.1f} |"
+        print(row, flush=True)
         if margin and (microseconds > ALLOWED or cached / MEGAHERTZ * margin > ALLOWED):
             late.append(what)
     if late:

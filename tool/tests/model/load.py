@@ -43,4 +43,5 @@ for pose, rates in json.load(sys.stdin):
     answers.append({"tips": tips, "inertia": inertia(), "bias": data.qfrc_bias[speeds].tolist()})
 stops = [joint.range.tolist() for joint in joints]
 actuators = [model.actuator(actuator).name for actuator in range(model.nu)]
-json.dump({"answers": answers, "stops": stops, "actuators": actuators, "gravity": model.opt.gravity.tolist()}, sys.stdout)
+gravity = model.opt.gravity.tolist()
+json.dump({"answers": answers, "stops": stops, "actuators": actuators, "gravity": gravity}, sys.stdout)

@@ -22,9 +22,9 @@ cycles = [0, 0, 0]
 last = None
 description = None
 with open(sys.argv[1], "rb") as file:
-    for schema, channel, message, decoded in make_reader(file, decoder_factories=[DecoderFactory()]).iter_decoded_messages(
-        topics=["/finger1/cycle", "/finger2/cycle", "/finger3/cycle"]
-    ):
+    reader = make_reader(file, decoder_factories=[DecoderFactory()])
+    topics = ["/finger1/cycle", "/finger2/cycle", "/finger3/cycle"]
+    for schema, channel, message, decoded in reader.iter_decoded_messages(topics=topics):
         finger = int(channel.topic[len("/finger")])
         cycles[finger - 1] += 1
         if finger == 1:
