@@ -95,8 +95,8 @@ inline double limit(seconds longest) noexcept { return longest.count() > 0 ? lon
 using event_callback = std::function<void(const struct sun2xp_event &)>;
 
 /// The event callbacks of all hands. Each callback has a number that is never used again. The library gets this number
-/// and not the address of the callback, because the library may still call a callback that was removed: if the callback
-/// of one hand removes the callback of another hand, sun2xp_on_event does not wait.
+/// and not the address of the callback, because a callback may be destroyed just when the library begins to call it: if
+/// the callback of one hand removes the callback of another hand, sun2xp_on_event does not wait.
 #if defined(__GNUC__)
 // One table for all shared objects of the process, because one shared object can move a `hand` to another.
 class __attribute__((visibility("default"))) callbacks {
@@ -265,8 +265,8 @@ public:
     }
 
     /// Waits until the condition holds. Returns false if it does not hold within the time, or if the hand is on another
-    /// machine and no reports arrive from it. With a time of 0 or less, returns at once. With an infinite time, waits
-    /// without a limit. Accepts all_fingers.
+    /// machine and its newest state is older than remote.stale_ms. With a time of 0 or less, returns at once. With an
+    /// infinite time, waits without a limit. Accepts all_fingers.
     bool wait(until condition, seconds longest)
     {
         const int result = sun2xp_wait(hand_, number_, static_cast<int>(condition), detail::limit(longest));

@@ -94,8 +94,8 @@ class ObjectState:
 class TouchReading:
     """The newest reading of a tactile element."""
 
-    #: Whether the board has reported this element since the hand was opened and the board was last reset, and its
-    #: newest report has a reading. Otherwise the other fields are 0.
+    #: Whether the board could read the element when it reported the element last. False if the board has not reported
+    #: the element since the hand was opened, or since the last reset of the board. If false, the other fields are 0.
     valid: bool
     #: Whether something presses the element.
     pressed: bool

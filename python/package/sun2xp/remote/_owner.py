@@ -33,7 +33,7 @@ class Owner:
         self._end = float("inf")
         #: The number of the epoch, and the server's time from which every State contains this number.
         self._number = self._since = 0
-        #: The number of restarts of the server's machine at the beginning of the epoch.
+        #: The value of `Receiver.restarts` when the epoch began.
         self._restarts = 0
         self._sequence = 0
         self._command = 0

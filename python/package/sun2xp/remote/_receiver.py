@@ -183,8 +183,8 @@ class Receiver:
             self.changed.notify_all()
 
     def silence(self) -> float:
-        """Returns the time since the newest State or Answer has arrived, s. Does not lock, because callers have locked
-        the owners, and a wait locks in the opposite order."""
+        """Returns the time since the newest State or Answer has arrived, s. Does not lock `changed`, because a caller
+        may hold the lock of the Sender, and a wait takes these two locks in the opposite order."""
         return (time.monotonic_ns() - self._heard) * 1e-9
 
     def age(self) -> float:
