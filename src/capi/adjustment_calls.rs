@@ -56,7 +56,7 @@ pub unsafe extern "C" fn sun2xp_adjust(hand: *mut sun2xp_hand, finger: c_int, ke
         Ok(move || {
             hand_table::command(hand, |hand| -> Result<(), HandError> {
                 hand.report(finger)?;
-                let reason = "is not UTF-8".to_string();
+                let reason = "the keys are not UTF-8: encode them in UTF-8".to_string();
                 let number = finger.try_into()?;
                 let refused = |_| ConfigurationError::Adjustment { finger: number, line: 1, reason };
                 hand.adjust(finger, keys.to_str().map_err(refused)?)
