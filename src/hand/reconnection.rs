@@ -20,7 +20,7 @@ pub(super) struct RepairablePort {
     /// The fingers at this port.
     pub fingers: Vec<FingerNumber>,
     /// For each finger, in the order of `fingers`: the number of repairs that included the finger. The servo counts the
-    /// recoveries of a finger. This number is larger than that count until the servo has taken over the repaired finger.
+    /// recoveries of each finger. A repaired finger has more repairs than recoveries until the servo takes it over.
     pub repairs: [AtomicU32; FINGERS],
     /// Locked during a repair, which takes long. `None` after the hand is closed.
     pub repair: Mutex<Option<PortRepair>>,
