@@ -10,8 +10,9 @@ impl Hand {
     /// simulated fingers and on a simulated object. Every record of the black box and of telemetry contains the gravity
     /// of its cycle.
     ///
-    /// Gravity is an input of the servos, as a set point is. The call neither allocates nor replaces a controller, so
-    /// a planner can make it in every cycle. Set points, paths, monitors and the estimate of contacts continue.
+    /// Gravity is an input of the servos, as a set point is. The call does not allocate memory and does not replace a
+    /// controller, so a planner can make it in every cycle. Set points, paths, monitors and the estimate of contacts
+    /// continue.
     ///
     /// # Errors
     /// Returns an error if a component is NaN, infinite or beyond 100 m/s^2. Then nothing is changed. Returns an error

@@ -19,8 +19,8 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 pub(super) struct RepairablePort {
     /// The fingers at this port.
     pub fingers: Vec<FingerNumber>,
-    /// For each finger, in the order of `fingers`: the number of repairs that included the finger. When the servo takes
-    /// a repaired finger, the finger's number of recoveries reaches this number.
+    /// For each finger, in the order of `fingers`: the number of repairs that included the finger. The servo counts the
+    /// recoveries of each finger. A repaired finger has more repairs than recoveries until the servo takes it over.
     pub repairs: [AtomicU32; FINGERS],
     /// Locked during a repair, which takes long. `None` after the hand is closed.
     pub repair: Mutex<Option<PortRepair>>,

@@ -19,7 +19,7 @@ pub fn read(root: &Path) -> (String, Vec<Station>) {
     let rows = section.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| |"));
     let stations = rows.enumerate().map(|(index, row)| {
         let cells: Vec<&str> = row.split('|').map(|cell| cell.trim().trim_matches('`')).collect();
-        let [_, number, file, function, _, shape, _] = cells[..] else { panic!("five columns in {row}") };
+        let [_, number, file, function, _, shape, _] = cells[..] else { panic!("not five columns: {row}") };
         assert_eq!(number, (index + 1).to_string(), "{row}");
         Station { file: file.into(), function: function.into(), shape: shape.into() }
     });

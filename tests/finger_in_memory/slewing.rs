@@ -52,7 +52,8 @@ fn a_slow_path_begins_smoothly_while_the_finger_settles() {
 }
 
 /// The acceleration and the jerk of an interpolated set point are fed forward. A step lasts three periods of the
-/// planner. A step of 3 or 6 ms would cause the fault OVER_TENSION at 60 N, so a period below 10 ms acts as 10 ms.
+/// planner. With the default largest tension of 60 N, a step of 3 or 6 ms would cause the fault OVER_TENSION. A period
+/// below 10 ms therefore acts as 10 ms.
 #[test]
 fn a_far_set_point_with_a_short_interpolation_does_not_overload_the_tendons() {
     for interpolate_ms in [1.0, 2.0] {

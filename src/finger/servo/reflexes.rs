@@ -9,8 +9,8 @@ use crate::finger::{Fault, FaultKind, Reaction, ReflexServer, Reflexes, Stage, r
 use crate::model::{FingerNumber, Part};
 
 impl FingerServo {
-    /// Gives the finger rules, which planners install with the returned value. The rules of each finger read the events
-    /// of all fingers from clones of `bulletin`.
+    /// Lets planners install rules for the finger with the returned value. The rules of each finger read the events of
+    /// all fingers from clones of `bulletin`.
     pub fn with_reflexes(mut self, finger: FingerNumber, bulletin: &Bulletin) -> (Self, Reflexes) {
         let (planners, server) = reflexes(finger, bulletin);
         self.memory.append(server.memory());

@@ -90,8 +90,8 @@ impl EventQueue {
     }
 
     /// Returns a descriptor for poll(2) and select(2). The descriptor is readable while there is an event, and when the
-    /// hand is closed. It becomes unreadable when [`EventQueue::next`] finds no event. The caller must not read, write
-    /// or close the descriptor, which is closed with the queue.
+    /// hand is closed. While the hand is open, the descriptor becomes unreadable when [`EventQueue::next`] finds no
+    /// event. The caller must not read, write or close the descriptor, which is closed with the queue.
     ///
     /// # Errors
     /// Returns the system's error if it cannot create the descriptor or its thread.

@@ -60,7 +60,7 @@ pub struct Turn {
     pub undeleted: Option<String>,
 }
 
-/// The files that were written, for a message.
+/// The files that were written. The command prints this value at the end of a recording.
 pub struct Written {
     last: PathBuf,
     count: u32,

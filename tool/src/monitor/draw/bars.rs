@@ -3,7 +3,8 @@
 use super::palette::Palette;
 use ratatui::text::Span;
 
-/// Part of t_min below which a tendon counts as slack. The controller uses the same part.
+/// Fraction of t_min below which a tendon counts as slack. At or above this fraction, the controller counts a
+/// tendon as tight.
 const SLACK: f64 = 0.8;
 
 /// Characters of which 0 to 8 eighths are filled from the left.
