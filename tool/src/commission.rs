@@ -116,7 +116,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     let mut weights: Vec<f64> = arguments.weights.iter().map(|mass| mass * GRAVITY).collect();
     weights.sort_by(f64::total_cmp);
     if let Some(heaviest) = weights.last().filter(|&&heaviest| heaviest > finger.tendon.maximum) {
-        let most = finger.tendon.maximum / GRAVITY;
+        let most = heaviest_mass(finger.tendon.maximum);
         return Err(wrong_usage(format!(
             "the heaviest weight pulls with {heaviest:.1} N, and finger.tendon.maximum is {:.1} N: give --weights up \
              to {most:.2} kg",
@@ -137,6 +137,11 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     }
     writeln!(io::stdout(), "\n{}", session.closing()?)?;
     Ok(ExitStatus::SUCCESS)
+}
+
+/// Returns the largest mass that a tendon of this largest tension, N, can hold, rounded down to 0.01 kg.
+fn heaviest_mass(maximum: f64) -> f64 {
+    (maximum / GRAVITY * 100.0).floor() / 100.0
 }
 
 /// The measurements of a finger at its commissioning and today, each with the configuration that belongs to them.

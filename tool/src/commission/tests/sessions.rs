@@ -4,6 +4,7 @@ use super::bench::World;
 use super::finger::{Bench, Helper};
 use super::kinds::{KINDS, right};
 use crate::commission::desk::Desk;
+use crate::commission::heaviest_mass;
 use crate::commission::outcome::Outcome;
 use crate::commission::person::GRAVITY;
 use crate::commission::step::Step;
@@ -27,6 +28,15 @@ fn a_repaired_finger_goes_on() {
             assert!(outcome.passed(), "{name}, {step}: {outcome:?}");
         }
         assert_eq!(person.outcomes.iter().filter(|(_, outcome)| !outcome.passed()).count(), 1, "{name}");
+    }
+}
+
+/// The largest mass that a refusal permits is accepted.
+#[test]
+fn the_heaviest_mass_of_a_refusal_does_not_pull_too_much() {
+    for maximum in [20.0, 45.0, 60.0, 100.0] {
+        let mass: f64 = format!("{:.2}", heaviest_mass(maximum)).parse().expect("a number");
+        assert!(mass * GRAVITY <= maximum && (mass + 0.01) * GRAVITY > maximum, "{mass} kg at {maximum} N");
     }
 }
 
