@@ -1,7 +1,7 @@
 """The parallel stiffness controller of the Stanford/JPL hand.
 
-Lengths are in cm, forces in N, torques in N cm, angles in rad, stiffnesses in N/cm, times in s. Fingers are numbered
-1 to 3, joints 0 to 2, tendons 1 to 4.
+Lengths are in cm, forces in N, torques in N cm, angles in rad, stiffnesses in N/cm, times in s, unless a description
+says otherwise. Fingers are numbered 1 to 3, joints 0 to 2, tendons 1 to 4.
 
     import sun2xp
 

@@ -150,7 +150,8 @@ def _opened(function: Callable[..., _sun2xp.Opened], *arguments: Any) -> Hand:
     try:
         hand = Hand(function(*arguments))
     except Error:
-        # When this error is raised, the log contains the messages of the failed opening. Ctrl-C does not wait for them.
+        # The messages of the failed opening are in the log before the error is raised. KeyboardInterrupt is no `Error`,
+        # so Ctrl-C does not wait for the log.
         _log.flush()
         raise
     _log.flush()

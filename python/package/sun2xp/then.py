@@ -36,8 +36,8 @@ def grip(by: float, most: float, direction: numpy.typing.ArrayLike = (0.0, 0.0, 
     Args:
         by: increase of the force, N.
         most: largest force, N.
-        direction: direction of the force in the finger's frame: shape (3,), any length. If it is zero, the tip presses
-            harder in the direction in which the spring presses now.
+        direction: direction of the force in the finger's frame: a vector of any magnitude, shape (3,). If it is zero,
+            the tip presses harder in the direction in which the spring presses now.
     """
     return ("grip", by, most, direction)
 

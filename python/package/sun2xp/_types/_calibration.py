@@ -52,7 +52,7 @@ class Identified:
     #: Pulley friction of each tendon, `friction.pulley`: the largest difference of the tensions on the two sides of the
     #: pulleys, as a part of the smaller tension: shape (4,).
     pulley: Array
-    #: Factors for `gauge.newton_per_count`: shape (4,).
+    #: Factors by which the calibration has multiplied `gauge.newton_per_count`: shape (4,).
     gauge_gain: Array
     #: Ratio of each motor's true torque to its commanded torque: shape (4,).
     motor_ratio: Array

@@ -54,7 +54,7 @@ class RemoteHand(Reading):
             network.subscriber(f"{self._prefix}refused/{network.client}", self._take_refusal),
         ]
         network.sender.add(self._owner)
-        # The server publishes a State at least every 10 ms.
+        # The protocol requires a State at least every 10 ms.
         self._receiver.wait_for(lambda: self._receiver.age() < float("inf"), ANSWER_TIME)
 
     def __enter__(self) -> "RemoteHand":
