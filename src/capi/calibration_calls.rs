@@ -44,12 +44,12 @@ use std::ffi::c_int;
 ///   EBUSY      the finger is being calibrated or recovered already
 ///   ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
 ///              joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
-///              gives the remedy. The finger is then limp. There are two exceptions. (1) The finger moved
-///              while it was read, or its counts were not valid: the finger is then a spring or limp, as
-///              before, but a path or an interpolated motion (finger.motion.interpolate_ms) that it followed
-///              has ended. (2) Another thread has recovered the finger from a fault during the calibration:
-///              the finger then holds its pose. If its new zeros had been found before the fault, they are in
-///              force
+///              gives the remedy. The finger is then limp. There are two exceptions. (1) With "pose" the
+///              finger moved while its encoders were read, or with "kept" the counts were not valid: the
+///              finger is then a spring or limp, as before, but a path or an interpolated motion
+///              (finger.motion.interpolate_ms) that it followed has ended. (2) Another thread has recovered the
+///              finger from a fault during the calibration: the finger then holds its pose. If its new zeros
+///              had been found before the fault, they are in force
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
 ///   EACCES, ENOSPC, EBUSY ...  the configuration file cannot be written, or another process has kept it
 ///              locked for 30 s; the zeros are in force until sun2xp_close, and the next calibration of the

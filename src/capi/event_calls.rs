@@ -169,8 +169,8 @@ pub extern "C" fn sun2xp_on_event(
 ///
 /// The descriptor is readable while sun2xp_next_event would return an event, and from the beginning of
 /// sun2xp_close on. A call of sun2xp_next_event that returns 0 makes the descriptor unreadable. So after each
-/// poll, call sun2xp_next_event until it returns 0. Do not read, write or close the descriptor. At its end,
-/// sun2xp_close closes the descriptor.
+/// poll, call sun2xp_next_event until it returns 0. Do not read, write or close the descriptor. sun2xp_close
+/// closes the descriptor as its last step.
 ///
 /// Returns the descriptor, the same one until sun2xp_close, or a negative number with
 ///   EPERM    forked child

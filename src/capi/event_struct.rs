@@ -23,7 +23,7 @@ pub struct sun2xp_event {
     /// Cycle of the event, as in sun2xp_status and sun2xp_record.
     pub cycle: c_ulong,
     /// Number of events that were lost since sun2xp_open; in a callback, since sun2xp_on_event. An event is lost if it
-    /// is not taken in time, or on the way from another machine.
+    /// is not taken in time. An event of a hand on another machine can also be lost on the way.
     pub lost: c_ulong,
     /// Beginning of the event's cycle, s of CLOCK_MONOTONIC.
     pub time: f64,

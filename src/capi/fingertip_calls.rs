@@ -23,8 +23,8 @@ use std::ffi::c_int;
 /// From the next cycle on, the anchor of the fingertip's spring moves to tip, along a straight line in joint
 /// angles and at a bounded speed. The stiffness Kx is the one sent last (sun2xp_send_stiffness). When the
 /// anchor is at tip and p is the position of the fingertip, the force is Kx (tip - p) at any distance,
-/// whatever the configured controller.law. If several joint solutions are within the joint limits, the call
-/// takes the one nearest to the present pose.
+/// whatever the configured finger.controller.law. If several joint solutions are within the joint limits, the
+/// call takes the one nearest to the present pose.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -83,7 +83,7 @@ pub unsafe extern "C" fn sun2xp_tip(hand: *mut sun2xp_hand, finger: c_int, tip: 
     })
 }
 
-/// sun2xp_send_contact - make a fingertip the spring of a contact type
+/// sun2xp_send_contact - give a fingertip the stiffness of a contact type
 ///
 ///   finger       1 to 3
 ///   dimensions   number of dimensions of the contact (section 4.2 of the report):

@@ -12,12 +12,13 @@ use std::ffi::c_int;
 /// tip causes almost no joint torque, so that the force cannot be computed from the joint torques. Along
 /// these directions, the members force and stiffness are zero. The member contact_force does not contain
 /// constant errors of the gauges. The member stiffness is the part of Kx, or of the joint stiffness, that
-/// the present pose admits, plus three other springs: the soft joint limits, the spring of joint 0 while the
-/// tip is near the axis of this joint, and the rotational stiffness of a contact. After a change of Kx, this
-/// member has its new value in the next cycle, although the stiffness of the finger itself changes over
-/// 50 ms. The members contact_force, stiffness and touching are zero while the finger is not running. The
-/// member slide_speed is 0 while the member touching is 0. While touching is 1, the tip slides on the object
-/// at this speed, or tip and object move together at this speed.
+/// the present pose admits, plus three other stiffnesses: that of the spring that pushes a joint back from
+/// beyond its limit, that of the spring that holds joint 0 while the tip is near the axis of this joint, and
+/// the rotational stiffness of a contact. After a change of Kx, this member has its new value in the next
+/// cycle, although the stiffness of the finger itself changes over 50 ms. The members contact_force,
+/// stiffness and touching are zero while the finger is not running. The member slide_speed is 0 while the
+/// member touching is 0. While touching is 1, the tip slides on the object at this speed, or tip and object
+/// move together at this speed.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_tip {

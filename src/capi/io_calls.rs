@@ -57,8 +57,8 @@ use std::ffi::{c_char, c_int};
 ///   EFAULT   a function of io is null
 ///   EMFILE   16 hands are open
 ///   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
-///   EINVAL   the configuration is unusable; gauge.newton_per_count or gauge.zero was set for another board;
-///            tension_unit is negative, infinite or NaN
+///   EINVAL   the configuration is unusable; finger.gauge.newton_per_count or finger.gauge.zero does not fit
+///            this hardware (docs/other-hardware.md); tension_unit is negative, infinite or NaN
 ///   others   as sun2xp_open, and the errno that start has returned
 ///
 /// Threads: any.

@@ -5,7 +5,7 @@
 
 use std::ffi::{c_int, c_uint, c_ulong, c_void};
 
-/// The watchdog of the hardware has tripped since the last call of start.
+/// The watchdog of the hardware has tripped since the library last called start (struct sun2xp_io).
 pub const SUN2XP_IO_WATCHDOG: c_uint = 1;
 
 /// The hardware has entered the end state for a reason other than its watchdog.

@@ -15,7 +15,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// sun2xp_open - open the hand of a configuration file
 ///
-///   path   the file; null: the file that OpenHand finds, or the simulated hand if OpenHand finds none
+///   path   the file; null: the file that OpenHand finds (docs/configuration.md), or the simulated hand if
+///          OpenHand finds none
 ///   hand   result: the handle of the hand
 ///
 /// Opens the ports, starts the servos and brings the tendons under tension. Returns when every finger has

@@ -48,9 +48,10 @@ pub struct sun2xp_path_pose {
 /// Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only pose
 /// is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
 /// continuous, with one exception: if a path that continues the motion would be refused, the finger first
-/// brakes for 0.15 s. The braking begins with the present speed, but without acceleration and jerk. State
-/// feedback smooths this step in acceleration and jerk. State feedback also feeds speed, acceleration and
-/// jerk forward, so the finger follows without the lag of sun2xp_send_position.
+/// brakes for 0.15 s. The braking begins with the present speed, but without acceleration and jerk. The
+/// controller "state feedback" (finger.controller.scheme) smooths this step in acceleration and jerk. This
+/// controller also feeds speed, acceleration and jerk forward, so the finger follows without the lag of
+/// sun2xp_send_position.
 ///
 /// Between two poses that have a Kx, Kx changes linearly. Until the first pose that has a Kx, Kx changes
 /// linearly from its value at the beginning of the path. After sun2xp_send_joint_stiffness this value is 0,

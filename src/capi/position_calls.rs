@@ -17,8 +17,8 @@ use std::ffi::c_int;
 /// angles and at a bounded speed. The stiffness Kx is the one sent last (sun2xp_send_stiffness). When the
 /// anchor has arrived, the force of the fingertip is Kx (tip - p) at any distance: tip is the place of the
 /// fingertip at the angles in position, and p is the present place of the fingertip. With
-/// controller.law = "report" the finger follows the law of the report, which holds for small distances. The
-/// call does not wait until the finger arrives. sun2xp_limits reads the joint limits.
+/// finger.controller.law = "report" the finger follows the law of the report, which holds for small
+/// distances. The call does not wait until the finger arrives. sun2xp_limits reads the joint limits.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

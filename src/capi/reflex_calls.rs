@@ -88,11 +88,11 @@ pub struct sun2xp_reflex {
     pub reaction: c_int,
     /// 0 to 255. If several rules have fired, the one with the highest priority reacts first.
     pub priority: c_int,
-    /// Bound of the condition, N, rad or s.
+    /// Bound of the condition: 0 to 1000 N, -pi to pi rad, or 0 to 3600 s.
     pub bound: c_double,
-    /// SUN2XP_THEN_GRIP: increase of the force, N. SUN2XP_THEN_DAMP: ratio.
+    /// SUN2XP_THEN_GRIP: increase of the force, N, 0 to 1000. SUN2XP_THEN_DAMP: ratio, 0 to 10.
     pub value: c_double,
-    /// SUN2XP_THEN_GRIP: largest force, N.
+    /// SUN2XP_THEN_GRIP: largest force, N, 0 to 1000.
     pub largest: c_double,
     /// Time after a reaction in which the rule does not fire, s, 0 to 3600.
     pub refractory: c_double,
