@@ -216,4 +216,5 @@ class Sender:
         try:
             owner.publish(sent)
         except Exception as error:  # The Targets of the other hands must go on.
-            warnings.warn(f"a Target cannot be sent, so its hand stops: {error}", RuntimeWarning, stacklevel=2)
+            text = "the set points of a hand cannot be sent, and its fingers stop if no later attempt succeeds"
+            warnings.warn(f"{text}: {error}", RuntimeWarning, stacklevel=2)
