@@ -129,8 +129,8 @@ pub enum Obstacle {
     },
     /// The measurements do not determine a value, or the value is impossible.
     #[error(
-        "{part}: {what} was identified as {value:.4}, which is impossible: the finger was touched, or two gauges \
-         or motors are swapped. Let nothing touch the finger, and check their cables"
+        "{part}: the identification of {what} gave {value:.4}, which is impossible: the finger was touched, or two \
+         gauges or motors are swapped. Let nothing touch the finger, and check their cables"
     )]
     Implausible {
         /// The part of the finger.

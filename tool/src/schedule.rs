@@ -22,8 +22,8 @@ use sun2xp::model::ShownPath;
 /// Maximum size of the file that --costs names, bytes. The file contains four numbers.
 const LARGEST_COSTS: u64 = 1 << 16;
 
-/// Computes whether every cycle of the hand meets its deadline, from worst-case times, line times and the allocation of
-/// the fingers.
+/// Computes whether every cycle of the hand meets its deadline, from worst-case times, the times on the lines, and the
+/// allocation of fingers to threads, cores and ports.
 ///
 /// The worst cases of this machine are measured on the simulated hand, with the rate, threads, cores and priorities of
 /// the configuration. With --costs they are read from a TOML file with the keys `wake_up`, `write` (the commands of one

@@ -48,7 +48,8 @@ pub struct Address {
 /// Returns an error if the address cannot be used.
 pub fn listen(address: &Address) -> Result<TcpListener, Failure> {
     let at = SocketAddr::new(address.bind, address.port);
-    TcpListener::bind(at).map_err(|error| format!("cannot serve at {at}: {error}").into())
+    TcpListener::bind(at)
+        .map_err(|error| format!("cannot serve at {at}: {error}. Choose another --port or --bind").into())
 }
 
 /// Serves the page until SIGINT, SIGTERM, SIGHUP or SIGQUIT. Prints its address. With a `control`, pages may move the

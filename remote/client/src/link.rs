@@ -143,7 +143,8 @@ impl Link {
         match (waited.timed_out(), exchange.view.malformed()) {
             (false, _) => Ok(()),
             (true, None) => Err(self.not_connected(
-                "it answers, but its State does not arrive. Check whether the server permits this client to read",
+                "the server answers, but no State (the message with the measured cycles) arrives. Check whether the \
+                 server permits this client to read",
             )),
             (true, Some(error)) => Err(self.protocol(error)),
         }

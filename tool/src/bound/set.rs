@@ -181,7 +181,11 @@ impl SetBound {
 
     pub fn write(&self, out: &mut impl Write, screen: &Screen, searched: &Searched) -> io::Result<()> {
         let Searched { number, rate, .. } = searched;
-        writeln!(out, "finger {number}, bounds in N/cm (samples that are unstable at every stiffness):\n")?;
+        writeln!(
+            out,
+            "finger {number}, bounds in N/cm; in brackets, the number of samples that are unstable at every \
+             stiffness:\n"
+        )?;
         write!(out, "{}", self.table().text(screen))?;
         let least = &self.plants[self.limited_by];
         writeln!(

@@ -74,7 +74,9 @@ impl Plot for Faults {
         let (begin, end) =
             spans().fold((f64::INFINITY, 0f64), |(begin, end), span| (begin.min(span.from), end.max(span.to)));
         if present.is_empty() {
-            return Err("the recording has no cycle in this time".into());
+            return Err("the recording has no cycle of the chosen fingers between --from and --to: change \
+                        --from, --to or --finger"
+                .into());
         }
         let listed = self.listed();
         let left_out = self.happened.len() - listed.len();

@@ -61,7 +61,9 @@ impl Plot for Stiffness {
     }
 
     fn draw(&self, selection: &Selection) -> Result<Figure, Failure> {
-        let newest = self.newest.as_ref().ok_or("the finger is not a spring in this time")?;
+        let newest = self.newest.as_ref().ok_or(
+            "the finger is not a spring in any cycle between --from and --to: change --from, --to or --finger",
+        )?;
         let Newest { time, sent, in_force, force, scale } = newest;
         let forces = self.forces.iter().chain([force]).flatten().map(|part| part.abs());
         let radius = |stiffness: &Matrix3<f64>| stiffness.row_iter().map(|row| row.norm()).fold(0.0, f64::max);

@@ -53,7 +53,9 @@ impl Plot for Timing {
             || present.iter().flat_map(|(_, times)| [times.0.first(), times.0.last()]).flatten().map(|one| one.0);
         let (begin, end) = (ends().fold(f64::INFINITY, f64::min), ends().fold(f64::NEG_INFINITY, f64::max));
         if begin > end {
-            return Err("the recording has no cycle in this time".into());
+            return Err("the recording has no cycle of the chosen fingers between --from and --to: change \
+                        --from, --to or --finger"
+                .into());
         }
         let period = 1e6 / self.rate;
         let legend: Vec<(Sign, String)> = present

@@ -131,7 +131,10 @@ impl Report {
         writeln!(out, "\n{}\n", title(&format!("{:.0} Hz", self.rate)))?;
         write!(out, "{}", self.configured.table().text(screen))?;
         let Sensor { bytes, compute } = self.with_sensor.sensor;
-        let more = format!("{:.0} Hz with {bytes} more bytes and {compute:.0} us more per finger", self.rate);
+        let more = format!(
+            "{:.0} Hz with an additional sensor: {bytes} more bytes and {compute:.0} us more per finger",
+            self.rate
+        );
         writeln!(out, "\n{}\n", title(&more))?;
         writeln!(out, "{}", self.with_sensor.table().text(screen))?;
         for Thread { scheduled, tactile_events } in self.configured.threads.iter().filter(|one| one.tactile_events > 0)

@@ -39,7 +39,9 @@ impl Refusal {
     /// Returns the text of the response.
     pub fn text(self) -> &'static str {
         match self {
-            Self::Host => "Refused: the Host of the request is not the address that sun2xp has printed.\n",
+            Self::Host => {
+                "Refused: the Host of the request is not the address that sun2xp has printed. Open that address.\n"
+            }
             Self::Origin => "Refused: the request comes from another page.\n",
             Self::Token => "Refused: the token is missing or wrong. Open the address that sun2xp has printed.\n",
         }

@@ -219,8 +219,5 @@ class Sender:
         try:
             owner.publish(sent)
         except Exception as error:  # The Targets of the other hands must go on.
-            warnings.warn(
-                f"a Target cannot be sent ({error}), so its hand stops: check the connection, and open the hand again",
-                RuntimeWarning,
-                stacklevel=2,
-            )
+            text = "the set points of a hand cannot be sent, and its fingers stop if no later attempt succeeds"
+            warnings.warn(f"{text}: {error}: check the connection", RuntimeWarning, stacklevel=2)

@@ -32,8 +32,8 @@ impl Wrong {
                 format!("Nothing to do: encoder.sign compensates it. Or swap the channels A and B of encoder {encoder}")
             }
             Self::EncoderDead(encoder) => format!(
-                "Check the cable and the supply of encoder {encoder}, and that its disc turns with the shaft. One \
-                 missing channel looks the same"
+                "Check the cable and the supply of encoder {encoder}, and that its disc turns with the shaft. If one \
+                 of its two channels is missing, the encoder does not count either"
             ),
             Self::EncoderScale(..) => "Nothing to do: encoder.counts_per_revolution is corrected".into(),
             Self::EncoderUnclear(motor, _) => {

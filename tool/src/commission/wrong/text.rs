@@ -84,7 +84,10 @@ impl Wrong {
             Self::GaugeZero(gauge, newton) => write!(f, "gauge {gauge} is {newton:+.1} N from its configured zero"),
             Self::GaugeNoise(gauge, newton) => write!(f, "gauge {gauge} has a noise of {newton:.2} N rms"),
             Self::GaugeNotLinear(gauge, newton) => {
-                write!(f, "gauge {gauge} is {newton:.2} N rms from a straight line through its weights")
+                write!(
+                    f,
+                    "the readings of gauge {gauge} deviate by {newton:.2} N rms from a straight line over the weights"
+                )
             }
             Self::GaugeAtEnd(gauge, count, zero) => write!(
                 f,
