@@ -25,10 +25,11 @@ use std::ffi::{CStr, c_char, c_int};
 /// default bound applies. If the bound is lowered while a path changes Kx, the Kx of the end of the path
 /// takes effect at once.
 ///
-/// Until the path that was sent last has ended, the whole path is checked against the new limits. The new
-/// limits of finger.motion apply only to later paths. With hand.out_of_range = "clamp" a path outside the
-/// new joint limits ends, and the finger moves to the end of the path at once. A joint limit is checked
-/// only if it becomes narrower, because a finger that was found in a pose beyond a limit may hold this pose.
+/// If the path that was sent last has not ended, the call checks the whole path against the new limits,
+/// including the part that the finger has already followed. The new limits of finger.motion are not checked,
+/// because they apply only to later paths. With hand.out_of_range = "clamp" a path outside the new joint
+/// limits ends, and the finger moves to the end of the path at once. A joint limit is checked only if it
+/// becomes narrower, because a finger that was found in a pose beyond a limit may hold this pose.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
