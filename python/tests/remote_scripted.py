@@ -51,8 +51,8 @@ class Scripted:
         self.status = {}
         #: The code of every Answer to a Request.
         self.code = 0
-        #: `gets` has the action of every Request, and None for every get of the Status. The next `unanswered` gets
-        #: receive no reply.
+        #: `gets` has the action of every Request, and None for every get of the Status. `unanswered` is the number of
+        #: further gets that will receive no reply.
         self.gets, self.unanswered = [], 0
         #: The sequence number and the parts of every Target.
         self.targets = []

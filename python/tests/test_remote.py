@@ -46,8 +46,9 @@ def test_a_set_point_arrives_and_is_repeated_with_what_the_hand_does_not_have_ye
     assert hand.fingers == [1, 2, 3] and hand.owned
     double.publishing = False
     time.sleep(0.05)
-    hand.send_stiffness(1, numpy.diag([2.0, 2.0, 1.0]))
-    hand.send_position(1, HOME)
+    # The parameters have the names of the calls of a local hand.
+    hand.send_stiffness(finger=1, stiffness=numpy.diag([2.0, 2.0, 1.0]))
+    hand.send_position(finger=1, position=HOME)
     eventually(lambda: double.targets and double.targets[-1][3] and double.targets[-1][3][0][2] == 1)
     finger, command, place, bits, poses, values = double.targets[-1][3][0]
     assert (finger, place, bits, poses) == (1, 1, 1, 0) and command == 2

@@ -116,7 +116,7 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
 ///
 /// When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
 /// called again. If a callback makes one of these calls, the call does not wait. The previous callback may
-/// then still be running, but it is not called again.
+/// then still be running or be called once more, so its context must stay valid for some time.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

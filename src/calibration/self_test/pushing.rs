@@ -117,7 +117,8 @@ impl Pushing {
         (self.stage, self.seconds) = (stage, 0.0);
     }
 
-    /// Averages the readings until all motors have been at rest for the time [`REST`].
+    /// Averages the readings for the time [`REST`]. Restarts the average if a motor moves, but not after
+    /// [`LONGEST_WAIT`].
     fn rest(&mut self, period: f64, readings: &Readings, moved: &Vector4<f64>) {
         self.waited += period;
         if self.seconds > 1.5 * period && moved.amax() > AT_REST && self.waited < LONGEST_WAIT {

@@ -2,8 +2,9 @@
 //!
 //! Without touch sensors, the normal of a contact is not measured. The detector uses the direction that the force has
 //! when the finger first comes to rest during the contact. This direction is the normal if the finger has pressed
-//! against the object and has not carried it yet. The motion of the tip shows a slip only when the tip moves at 0.5
-//! cm/s, and by then the object is lost. The force leaves the cone before the contact slides.
+//! against the object and has not carried it yet. The motion of the tip shows a slip only at more than about 0.5 cm/s,
+//! because lower speeds are within the noise of the joint rates. By then the object is lost. The force, in contrast,
+//! leaves the cone before the contact slides.
 
 use super::observation::{ObservationKind, Observations};
 use crate::control::contact::ContactEstimate;

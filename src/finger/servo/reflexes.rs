@@ -61,10 +61,11 @@ impl FingerServo {
         if self.answered { 0 } else { self.sample_age.saturating_sub(1 + skipped) }
     }
 
-    /// Begins a spring phase that continues with the set point in force. Planners count the next set points from the
-    /// number of this one, so they assign numbers of the previous phase again. The renewal of the previous phase is
-    /// discarded, because it could renew a new set point with the same number. From now on, set points of a phase that
-    /// ended because a set point expired are discarded too.
+    /// Begins a spring phase (`FingerReport::springs`) with the set point in force. Planners count their next set
+    /// points from its number. They may already have given the next numbers to set points that the finger has not
+    /// followed, so these numbers can occur again. The renewal of the previous phase is therefore discarded: it could
+    /// renew a new set point with the same number. Until now, the finger also accepted set points of a phase that ended
+    /// because a set point expired (`FingerReport::expired_phase`). From now on they are discarded.
     fn begin_phase(&mut self) {
         self.report.springs += 1;
         self.report.expired_phase = None;

@@ -135,9 +135,9 @@ class RemoteHand(Reading):
         """Sends the position of the tip in the finger's frame, cm: shape (3,). Errors are those of `send_position`."""
         self.send_group([SetPoint(finger, tip=tip)])
 
-    def send_stiffness(self, finger: int, kx: numpy.typing.ArrayLike) -> None:
+    def send_stiffness(self, finger: int, stiffness: numpy.typing.ArrayLike) -> None:
         """Sends Kx in the finger's frame, N/cm: shape (3, 3), symmetric. Errors are those of `send_position`."""
-        self.send_group([SetPoint(finger, stiffness=kx)])
+        self.send_group([SetPoint(finger, stiffness=stiffness)])
 
     def send_damping(self, finger: int, ratio: float) -> None:
         """Sends the damping relative to the one that the controller chooses. Errors are those of `send_position`."""
