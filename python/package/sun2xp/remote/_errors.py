@@ -79,4 +79,7 @@ def error_of(answer: Answer, action: str, finger: int = 0, fault: int = 0) -> Op
         return Fault(text, number=_NUMBERS[code], finger=finger, fault=fault)
     if code == 8:
         return Closed(text, number=_NUMBERS[code])
-    return Error(text or f"the server answers with code {code}", number=ErrorNumber.NOT_SUPPORTED)
+    return Error(
+        text or f"the server answers with code {code}: use a client and a server of the same version",
+        number=ErrorNumber.NOT_SUPPORTED,
+    )
