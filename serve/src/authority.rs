@@ -45,8 +45,8 @@ pub fn check_folder(folder: &Path, user: u32) -> Result<(), ServeError> {
 /// not an authority that is valid now.
 pub fn read(certificate: &Path, key: &Path, user: u32) -> Result<KeyPair, ServeError> {
     for (path, other) in [(key, certificate), (certificate, key)] {
-        let missing = || format!("is missing, but {} is there: restore it, or choose an empty folder", other.display());
-        symlink_metadata(path).map_err(|error| ServeError::certificate(path, format!("{}: {error}", missing())))?;
+        let missing = || format!("but {} exists: restore the missing file, or choose an empty folder", other.display());
+        symlink_metadata(path).map_err(|error| ServeError::certificate(path, format!("{error}, {}", missing())))?;
     }
     check_key(key, user)?;
     let text = read_regular_file(key, LARGEST).map_err(|error| ServeError::certificate(key, error))?;

@@ -32,7 +32,11 @@ pub(super) fn save_at_fault(recording: &Recording, folder: &Path) {
             )
         }
         Err(error) => {
-            format!("finger {finger} faulted, but its black box cannot be written to {}: {error}", ShownPath(folder))
+            format!(
+                "finger {finger} faulted, but its black box cannot be written to {}: {error}. Set hand.black_box to a \
+                 folder that exists, has free space and is writable for this user",
+                ShownPath(folder)
+            )
         }
     });
 }

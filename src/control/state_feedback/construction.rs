@@ -88,8 +88,8 @@ impl Drives {
         let too_far = || Unusable {
             key: "tendon.stiffness",
             reason: format!(
-                "{} N/cm and a motor mass (motor.inertia / geometry.motor_radius^2) of {} kg differ so much that state \
-                 feedback has no observer at {rate} Hz: check these values, and geometry.motor_radius",
+                "{} N/cm does not suit a motor mass (motor.inertia / geometry.motor_radius^2) of {} kg, because state \
+                 feedback then has no observer at {rate} Hz: check these values, and geometry.motor_radius",
                 tendon.stiffness / 100.0,
                 tendon.mass
             ),

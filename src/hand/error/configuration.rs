@@ -14,8 +14,8 @@ use thiserror::Error;
 pub enum ConfigurationError {
     /// The configuration file cannot be read.
     #[error(
-        "cannot read the configuration file {}: {source}. The file must exist if SUN2XP_CONFIG names it, and must be a \
-         text file of at most 1 MiB that this user may read",
+        "cannot read the configuration file {}: {source}. The file must exist if SUN2XP_CONFIG, an option or a call \
+         names it. It must be a text file of at most 1 MiB that this user may read",
         ShownPath(path)
     )]
     Unreadable {

@@ -190,8 +190,8 @@ fn judge(
                       simulation is then uneven; a real board is not affected. End other programs, and measure again";
         return Finding::new(Rating::Warning, subject, found, advice);
     }
-    let advice = "Replies arrive too late for their cycle: raise the baud rate of the board and finger.baud, connect \
-         the adapter to a USB port of its own, shorten its latency timer, or lower hand.rate";
+    let advice = "Replies are lost, or arrive late in their cycle: check the cable, raise the baud rate of the board \
+         and finger.baud, connect the adapter to a USB port of its own, shorten its latency timer, or lower hand.rate";
     Finding::new(verdict, subject, found, advice)
 }
 

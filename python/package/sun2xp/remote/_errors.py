@@ -83,6 +83,6 @@ def error_of(answer: Answer, action: str, finger: int = 0, fault: int = 0) -> Op
     if code == 8:
         return Closed(text, number=_NUMBERS[code])
     return Error(
-        text or f"the server answers with code {code} (docs/remote-protocol.md): use the server's version of sun2xp",
+        text or f"the server answers with code {code}: use a client and a server of the same version",
         number=ErrorNumber.NOT_SUPPORTED,
     )
