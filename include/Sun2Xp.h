@@ -4,9 +4,10 @@
 
        SUN2XP_WRITE_HEADER=1 cargo test --test header
 
-   This file is the interface and the manual for planners of 1990: five calls and HandError. sun2xp.h is
-   the interface for new programs, and has all other calls. Both may be used together. The report is
-   COINS Technical Report 90-48 (1990), which describes the controller.
+   A planner is a program that commands the hand. The report is COINS Technical Report 90-48 (1990), which
+   describes the controller. Planners of 1990 were written for the report's controller. This file declares
+   the interface of these planners: five calls and HandError. It is also the manual of this interface.
+   sun2xp.h is the interface for new programs, and has all other calls. Both headers may be used together.
 
        1. Quick start             5. Planners of 1990
        2. Return values, errno    6. Threads, signals, fork, exit
@@ -52,7 +53,7 @@
    2. RETURN VALUES, ERRNO
 
    Every call except HandError returns an int: 0 if it succeeded, -1 if it was refused. A refused call
-   changes nothing. errno gives the kind of the refusal. HandError() gives its cause and the remedy:
+   changes nothing. HandError() gives the cause and the remedy. errno gives the class of the refusal:
 
        EPERM      the process is a forked child (chapter 6)
        EFAULT     an argument is a null pointer
@@ -64,16 +65,18 @@
        EIO        the finger is faulted: a fault or a stop call of sun2xp.h has stopped it. CloseHand and
                   OpenHand start it again, and so does sun2xp_recover of sun2xp.h
        ESHUTDOWN  the process is exiting, and the hand is closed (chapter 6)
-       others     a configuration file, a port or enforced real time: the errno of the system, or the
-                  errno that describes the reason best
+       others     there is not enough memory; the configuration file or a port cannot be used; or
+                  hand.real_time is "enforce", and real time is not available (see OpenHand). The value is the
+                  errno of the system, or the errno that describes the reason best
 
    If several reasons apply, a call reports the one that its entry lists first. A call that succeeds
    changes neither errno nor the text of HandError(). Arrays are read and written only during the call. An
    output is written only if the call returns 0.
 
    Planners of 1990 ignore return values. For them the first refusal of each kind in a process also
-   prints one line on standard error, unless hand.print_refusals is false for the hand that OpenHand
-   opened last. A refusal of OpenHand prints this line in any case.
+   prints one line on standard error. Refusals with the same cause are of one kind, whatever their
+   arguments were. The key hand.print_refusals = false (chapter 7) suppresses these lines for the hand that
+   OpenHand opened last, except the line for a refusal of OpenHand.
 
 
    3. UNITS, FRAMES, ORDER
@@ -96,9 +99,9 @@
 
    SendPos, SendKx and GetPos take arrays of float and arrays of double. The compiler chooses by the
    type of the argument (Pos[3], Kx[3][3] or Kx[9], const or not), in C with macros and in C++ with
-   templates. Other types do not compile: cast a void * pointer to the type of its elements. NULL
-   and 0 compile, and are refused with EFAULT. C arrays of variable length compile, but their
-   lengths are not checked.
+   templates. Other types do not compile: cast a void * pointer to float * or double *. NULL and 0
+   compile, and are refused with EFAULT. C arrays of variable length compile, but their lengths are
+   not checked.
 
    The C macros are function-like, so they do not work for a planner that declares the functions
    itself or takes their addresses. Compile such a planner with
@@ -122,7 +125,7 @@
        no include at all          the plain symbols take float; for double compile with
                                   -DSendPos=SendPosD -DSendKx=SendKxD -DGetPos=GetPosD
        return values ignored      see the line on standard error (chapter 2)
-       functions of its own       no conflict: this header declares only OpenHand, SendPos, SendKx, GetPos,
+       the planner's functions    no conflict: this header declares only OpenHand, SendPos, SendKx, GetPos,
                                   CloseHand and HandError, and SendPosD, SendKxD and GetPosD for double. The
                                   other names of the library begin with sun2xp_, Sun2Xp or SUN2XP_
 
@@ -169,8 +172,9 @@
    directory belong to its caller, and the library does not trust them. It then reads only
    /etc/xdg/sun2xp/sun2xp.toml; if SUN2XP_CONFIG is set, OpenHand fails with EACCES.
 
-   The file is TOML: [hand], [finger] for all fingers, [finger.1] to [finger.3] for one. Every key
-   has a default. An unknown key is refused, with file, line and reason.
+   The file is TOML: [hand], [finger] for all fingers, [finger.1] to [finger.3] for one. This manual
+   writes hand.rate for the key rate of [hand]. Every key has a default. An unknown key is refused, with
+   file, line and reason.
 
    Example, sun2xp.toml:
 
@@ -187,7 +191,7 @@
    wait for the network. GetPos is refused with ETIMEDOUT if its data are too old.
 
 
-   8. THE CALLS: below, each with its manual. The examples are statements of a function that has opened
+   8. THE CALLS: each call has an entry below. The examples are statements of a function that has opened
    the hand, in a file that includes stdio.h and stdlib.h. */
 
 #ifndef SUN2XP_H
@@ -262,7 +266,7 @@ extern "C" {
    ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
    EINVAL   the configuration is unusable; HandError names file, line and reason
    ENOENT, EACCES, EBUSY ...  a port cannot be opened; errno of the system
-   ETIMEDOUT and other errnos of a link: a board does not answer, or the device is not a board
+   ETIMEDOUT ...  a board does not answer, or the device at the port is not a board
    EIO      a finger does not come under tension in time, or faults before it does
    EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
             configured core is not available; HandError says what to change
@@ -291,10 +295,11 @@ int OpenHand(void);
 
  Returns 0, or -1 with
    EPERM    forked child
-   EBUSY    in a callback of sun2xp_on_event: another thread is opening or closing the hand
+   EBUSY    the call was made in a callback of sun2xp_on_event while another thread was opening or
+            closing the hand
 
  Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes. Waits until the
- callback of sun2xp_on_event has returned, except in a callback.
+ callback of sun2xp_on_event has returned, unless the call was made in a callback.
  */
 int CloseHand(void);
 
@@ -306,14 +311,14 @@ int CloseHand(void);
    i     finger, 1 to 3
    Pos   Pos[3]: desired angles of joints 0, 1, 2, rad (chapter 3)
 
- All three angles take effect together. From the next cycle on, the anchor of the fingertip's spring
- moves to Pos, along a straight line in joint angles and at a bounded speed. The stiffness is the one
- sent last. When the anchor is at Pos, the force of the fingertip is Kx (Tip - p) at any distance: Tip
- is the position of the fingertip at the angles Pos, and p is its present position. With
- controller.law = "report" the finger follows the law of the report, which holds for small distances.
- The call does not wait until the finger arrives; GetPos reads where it is. The limits are the
- configured joint limits, by default -1.0472 to 1.0472 for joint 0, -0.5236 to 1.7453 for joint 1 and
- 0.0873 to 2.0944 for joint 2.
+ All three angles take effect together. From the next cycle on, the anchor (rest position) of the
+ fingertip's spring moves to Pos, along a straight line in joint angles and at a bounded speed. The
+ stiffness is the one sent last. When the anchor is at Pos, the force of the fingertip is Kx (Tip - p)
+ at any distance: Tip is the position of the fingertip at the angles Pos, and p is its present
+ position. With finger.controller.law = "report" the finger follows the law of the report, which holds
+ for small distances. The call does not wait until the finger arrives; GetPos reads where it is. The
+ limits are the configured joint limits, by default -1.0472 to 1.0472 rad for joint 0, -0.5236 to
+ 1.7453 rad for joint 1 and 0.0873 to 2.0944 rad for joint 2.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -352,8 +357,8 @@ int SendPosD(int, const double *);
  taken effect after 50 ms. Kx must be symmetric; two mirrored entries that differ by up to 1e-3 of
  the largest entry are averaged. No eigenvalue may be below -1e-3 times the largest one. Kx may be
  singular or zero: along directions without stiffness the finger is limp but still damped. The
- largest eigenvalue may be at most the configured bound, by default 6 N/cm at 1000 Hz and above, and
- 5 N/cm below.
+ largest eigenvalue may be at most the configured bound, by default 6 N/cm if the servo rate
+ (hand.rate) is 1000 Hz or more, and 5 N/cm otherwise.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -363,7 +368,8 @@ int SendPosD(int, const double *);
    EDOM     Kx is not symmetric, or has a negative eigenvalue
    ERANGE   Kx is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
    EIO      the finger is faulted
-   ERANGE   Kx is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio instead)
+   ERANGE   Kx is too stiff for the damping ratio of sun2xp_send_damping ("clamp" clamps this ratio
+            instead)
 
  Threads: any. Never waits for a servo. Takes about 1 us.
 
@@ -447,9 +453,9 @@ const char *HandError(void);
 
 #elif defined(__cplusplus)
 
-/* These are templates, because NULL and 0 would match two overloads for pointers. NULL and 0 match no template, so the
-   compiler calls the plain function, which refuses them. The block is extern "C++", because a planner may include this
-   header inside its own extern "C". */
+/* SendPos, SendKx and GetPos are templates, because NULL and 0 would match two overloads for pointers. NULL and 0 match
+   no template, so the compiler calls the plain function, which refuses them. The block is extern "C++", because a
+   planner may include this header inside its own extern "C". */
 extern "C++" {
 
 inline int Sun2XpSendPos(int Sun2XpFinger, const float *Sun2XpArray) { return ::SendPos(Sun2XpFinger, Sun2XpArray); }
@@ -525,7 +531,7 @@ typedef struct Sun2XpNull Sun2XpNull;
     (1 ? _Generic(Array, Sun2XpVoid *: Array, default: (Sun2XpVoid *)0) : (Sun2XpNull *)0)
 #define SUN2XP_NULL_NUMBER(Array) \
     (1 ? (Sun2XpVoid *)(Sun2XpLong)_Generic(Array, Sun2XpInt: Array, Sun2XpLong: Array, default: 0) : (Sun2XpNull *)0)
-/* An array of variable length matches both Element (*)[3] and Element (*)[9], so one list must not contain both. */
+/* An array of variable length matches both Element (*)[3] and Element (*)[9], so one _Generic must not list both. */
 #define SUN2XP_ROWS_OF_9(Element) \
     Element (*)[9]: (Element *)0, Element##C (*)[9]: (Element##C *)0, \
     Element##V (*)[9]: (Element##V *)0, Element##CV (*)[9]: (Element##CV *)0

@@ -1,4 +1,4 @@
-/* sun2xp.h - hands as sets of springs: the C interface of new programs
+/* sun2xp.h - hands as sets of springs: the C interface for new programs
 
    GENERATED from src/capi/; do not edit. To renew it:
 
@@ -8,9 +8,12 @@
        2. Results and errors      5. Threads, signals, fork, exit
        3. Units, frames, order    6. Servo and real time
 
-   The calls follow in sections, each with its manual. Sun2Xp.h has the five calls of 1990. The calls of
-   this header also work on the hand that OpenHand has opened: sun2xp_default_hand returns its handle.
-   The report is COINS Technical Report 90-48 (1990), which describes the controller.
+   After these chapters, the calls follow in sections. The comment above a call is the entry of this call.
+   Sun2Xp.h has the five calls of 1990, such as OpenHand. The calls of this header also work on the hand
+   that OpenHand has opened: sun2xp_default_hand returns its handle. The report is COINS Technical Report
+   90-48 (1990), which describes the controller. A planner is a program that commands a hand. A board is
+   I/O hardware at a serial port: it drives the motors of one or more fingers and reads their sensors.
+   Names that begin with "hand." or "finger." are keys of the configuration file (docs/sun2xp.toml).
 
 
    1. QUICK START
@@ -49,15 +52,16 @@
 
    2. RESULTS AND ERRORS
 
-   A call that returns an int returns 0, or a number above 0 that its entry describes. A refused call
-   returns the negative of a SUN2XP_ERROR_ number, sets errno, and changes nothing unless its entry says
-   otherwise. sun2xp_error gives number, text and remedy of the calling thread's last refused call, for
-   one hand or for any. A call that succeeds changes neither errno nor these. If several reasons apply, a
-   call reports the one that its entry lists first. The most common errnos and their numbers are:
+   A call that succeeds and returns an int returns 0, or a number above 0 that its entry describes. A
+   refused call returns the negative of a SUN2XP_ERROR_ number, sets errno, and changes nothing unless its
+   entry says otherwise. sun2xp_error gives the number, the text and the remedy of the calling thread's
+   last refusal, for one hand or for any hand. A call that succeeds changes neither errno nor this refusal.
+   If there are several reasons to refuse a call, the call reports the one that its entry lists first. The
+   most common errnos and their SUN2XP_ERROR_ numbers are:
 
        EPERM      SUN2XP_ERROR_FORKED          the process is a forked child (chapter 5)
        EFAULT     SUN2XP_ERROR_ARGUMENT        an argument is a null pointer
-       ENODEV     SUN2XP_ERROR_NO_HAND         the handle is null, foreign, or of a closed hand
+       ENODEV     SUN2XP_ERROR_NO_HAND         the handle is null, unknown to the library, or that of a closed hand
        EINVAL     SUN2XP_ERROR_ARGUMENT        no such finger; NaN or infinity; a wrong size
        EINVAL     SUN2XP_ERROR_NOT_SUPPORTED   a finger that the hand does not have (hand.fingers)
        EINVAL     SUN2XP_ERROR_CONFIGURATION   an unusable configuration
@@ -66,17 +70,18 @@
        EIO        SUN2XP_ERROR_FAULTED         a fault, sun2xp_stop or sun2xp_stop_all has stopped the finger
        EBUSY      SUN2XP_ERROR_BUSY            hand or finger is being opened, closed, calibrated or recovered
        ETIMEDOUT  SUN2XP_ERROR_TIMED_OUT       a time limit has expired
-       ENOTSUP    SUN2XP_ERROR_NOT_SUPPORTED   the call needs a simulated finger or object, or a hand of this machine
+       ENOTSUP    SUN2XP_ERROR_NOT_SUPPORTED   the call needs a simulated finger or object, or a hand on this machine
        ESHUTDOWN  SUN2XP_ERROR_EXITING         the process is exiting (chapter 5)
        others     the errno of the system, or the errno that describes the reason best
 
-   Arrays, structs and texts are read and written only during the call. An output is written only if the
-   call succeeds, and by sun2xp_next_event and sun2xp_wait_event only if they return 1.
+   Arrays, structs and texts of the program are read and written only during the call. A result is written
+   only if the call succeeds. sun2xp_next_event and sun2xp_wait_event write their result only if they
+   return 1.
 
-   The first refusal of each kind in a process is also reported in a message, unless hand.print_refusals
-   is false for the hand of the call. The refusal of an opening, or of a handle that is null, foreign or
-   of a closed hand, is reported in any case. Messages go to the callback of sun2xp_set_log, or to
-   standard error.
+   The first refusal for each kind of reason in a process is also reported in a message, unless
+   hand.print_refusals is false for the hand of the call. If a call opens a hand, or if its handle belongs
+   to no open hand, the message appears even if this key is false. Messages go to the callback of
+   sun2xp_set_log if there is one, and otherwise to standard error.
 
 
    3. UNITS, FRAMES, ORDER
@@ -86,11 +91,15 @@
    where an entry says so. Joints are 0, 1 and 2: 0 turns the finger sideways, 1 and 2 bend it. Matrices
    are in row-major order: pass matrix[9], or &matrix[0][0] of matrix[3][3].
 
-   The frame of a finger has its origin at the finger's base. With link lengths l0, l1, l2 the tip is at
+   The frame of a finger has its origin at the finger's base. With link lengths l0, l1, l2 and joint
+   angles j0, j1, j2, the tip is at
 
        x = (l0 + l1 cos(j1) + l2 cos(j1 + j2)) sin(j0)
        y = -l1 sin(j1) - l2 sin(j1 + j2)
        z = (l0 + l1 cos(j1) + l2 cos(j1 + j2)) cos(j0)
+
+   The palm's frame is common to all fingers: finger.base and finger.turn_degrees of the configuration give
+   the position and the direction of each finger in this frame.
 
 
    4. STRUCTS
@@ -98,8 +107,9 @@
    The first member of every struct is size. Set it to the sizeof of the struct before the call. A size
    below that of the struct's first version is refused, and so is one above 4096. Later versions of the
    library add members at the end. If a program was compiled with a newer header and runs with an older
-   library, the result members that this library does not know are zero. The library never changes size. In
-   the structs that it passes to functions of the program, the library sets size.
+   library, this library ignores the argument members that it does not know, and sets such result members
+   to zero. The library never changes the size that a program has set. In the structs that it passes to
+   functions of the program, the library sets size itself.
 
 
    5. THREADS, SIGNALS, FORK, EXIT
@@ -116,9 +126,9 @@
    The program's arrays, structs and texts may lie in pages that its own handler of SIGSEGV or SIGBUS makes
    accessible when a call first accesses them.
 
-   Standard error: lines of the library are lost if standard error is a pipe without a reader, or a file
-   that may not grow. The program gets no SIGPIPE and no SIGXFSZ for these lines. A call that prints a line
-   waits until the line is written, but no servo does.
+   Standard error: messages are lost if standard error is a pipe without a reader, or a file that may not
+   grow. The program gets no SIGPIPE and no SIGXFSZ for messages. A call that prints a message waits until
+   the message is written. A servo never waits for that.
 
    Stack: a call needs up to 16 KiB of its thread's stack. The stack of each thread of the library contains
    a copy of the program's thread-local data (__thread). Large thread-local data therefore enlarge the
@@ -127,12 +137,13 @@
    Sandbox: install a sandbox (seccomp) before a hand is opened. If it forbids a system call that threads,
    waits, ports or pseudo-terminals need, opening is refused with the errno of the sandbox.
 
-   Slow calls: the calls that open and close hands, sun2xp_recover, sun2xp_zero, sun2xp_identify,
-   sun2xp_adjust, sun2xp_write_black_box, sun2xp_wait, sun2xp_on_event,
-   sun2xp_event_descriptor and sun2xp_wait_event (while there is no event) run in a thread of the library,
-   and the program's thread waits for it. A signal handler may jump out of that wait (siglongjmp). The call
-   then continues to its end. If a handler jumps out of sun2xp_wait_event, that call takes no event. If it
-   jumps out of a call that opens a hand, that call writes no handle, and the hand stays open until exit.
+   Slow calls: a slow call runs in a thread of the library, and the program's thread waits for it. The slow
+   calls are those that open or close a hand, sun2xp_recover, sun2xp_zero, sun2xp_identify, sun2xp_adjust,
+   sun2xp_write_black_box, sun2xp_wait, sun2xp_on_event, sun2xp_event_descriptor and, while there is no
+   event, sun2xp_wait_event. A signal handler may jump out of the wait for a slow call (siglongjmp). The
+   call then continues to its end. If a handler jumps out of sun2xp_wait_event, that call takes no event.
+   If it jumps out of a call that opens a hand, that call writes no handle, and the hand stays open until
+   exit.
 
    Undefined behaviour: the behaviour is undefined if a signal handler jumps (longjmp, siglongjmp) out of a
    call that is not slow. The same holds if a handler interrupts any call and then calls pthread_exit or,
@@ -171,17 +182,18 @@
    releases its ports even if forked children are alive. If the program ends without closing, its ports
    stay locked until those children have ended too.
 
-   Descriptors: a daemon must detach before it opens a hand. The library's descriptors close at exec.
-   Their numbers are 512 or more if the limit (ulimit -n) permits it. A program that closes only lower
-   numbers, as many daemons do up to 255, keeps its hands. If it closes all descriptors, the fingers fault
-   with SUN2XP_FAULT_PORT_CLOSED or SUN2XP_FAULT_PORT_VANISHED. The library does not touch files that the
-   program then opens under these numbers. To start a hand again, close and open it.
+   Descriptors: a daemon must detach before it opens a hand, because detaching forks. The library's
+   descriptors close at exec. Their numbers are 512 or more if the limit (ulimit -n) permits it. A program
+   that closes only lower numbers, as many daemons do up to 255, keeps its hands. If a program closes all
+   descriptors, its fingers fault with SUN2XP_FAULT_PORT_CLOSED or SUN2XP_FAULT_PORT_VANISHED. The library
+   does not touch files that the program then opens under these numbers. To start a hand again, close and
+   open it.
 
    Exit: when a program exits with hands open, an exit handler of the library brings the fingers to their
-   end state, as closing does. The first opening registers that handler (atexit). Exit handlers that the
-   program registers later run before it and find the hands open. Those registered earlier run after it and
-   find the hands closed: calls that only read still work, and calls that would open or move a hand are
-   refused with ESHUTDOWN.
+   end state (hand.end_state), as closing does. The first opening registers that handler (atexit). Exit
+   handlers that the program registers later run before it and find the hands open. Those registered earlier
+   run after it and find the hands closed: calls that only read still work, and calls that would open or move
+   a hand are refused with ESHUTDOWN.
 
    A program that is killed or calls _exit leaves the motors to the boards, which receive no more commands
    and enter the configured end state. If the last thread of a process ends by pthread_exit with a hand
@@ -193,7 +205,7 @@
 
    By default each finger has its own servo thread, which runs 1000 times a second under SCHED_FIFO and
    with locked memory. If finger.core is configured, the thread runs on this core. If the system does not
-   permit one of these, opening follows hand.real_time:
+   permit SCHED_FIFO, locked memory or this core, opening follows hand.real_time:
 
        "try"      the hand works without it, with the jitter of an ordinary process; a message and
                   sun2xp_status report that
@@ -204,8 +216,8 @@
    waits in every cycle, but the system counts the time in ticks of up to 10 ms. Set the limit to 100000
    (microseconds) or more, or to unlimited, or set hand.real_time to "ignore".
 
-   sun2xp doctor examines a machine and says what to change. sun2xp_timing reports where the time of a
-   cycle goes. */
+   The command `sun2xp doctor` examines a machine and says what to change. sun2xp_timing reports where the
+   time of a cycle goes. */
 
 #ifndef SUN2XP_HANDLES_H
 #define SUN2XP_HANDLES_H
@@ -227,7 +239,7 @@
 extern "C" {
 #endif
 
-/* An open hand. A handle is never dereferenced: a null, foreign or closed handle is refused. */
+/* An open hand. The library never dereferences a handle, and refuses one that belongs to no open hand. */
 typedef struct sun2xp_hand sun2xp_hand;
 
 /* The version of this header. Compare with sun2xp_version_number. */
@@ -243,8 +255,9 @@ typedef struct sun2xp_hand sun2xp_hand;
 #define SUN2XP_ERROR_EXITING 3              /* The process is exiting, and its hands are closed. */
 #define SUN2XP_ERROR_NO_HAND 4              /* The handle does not belong to an open hand. */
 #define SUN2XP_ERROR_BUSY 5                 /* Hand or finger is busy: it is being opened, closed, calibrated or
-                                               recovered, or 16 groups wait for the finger. Call again later. If the
-                                               motors of a finger are off, first zero it. */
+                                               recovered, or 16 groups of sun2xp_send_group have not taken effect
+                                               yet. Call again later. If a finger is limp (SUN2XP_STATE_LIMP), zero
+                                               it first. */
 #define SUN2XP_ERROR_TOO_MANY 6             /* Too many hands or reflexes. */
 #define SUN2XP_ERROR_ARGUMENT 7             /* An argument makes no sense: null, NaN, no such finger, a struct that
                                                is too small. */
@@ -287,8 +300,8 @@ struct sun2xp_error {
 
  Every thread has its own refusals. A thread remembers the last refusal of each of the four hands that
  have refused its calls most recently. Calls without a handle, such as sun2xp_open, and calls with a null
- handle together count as one hand. Only hand = null returns their refusal. A call that succeeds does not
- change the refusals.
+ handle together count as one hand. sun2xp_error returns their refusal only if hand is null. A call that
+ succeeds does not change the refusals.
 
  Returns 0, or -SUN2XP_ERROR_ARGUMENT if error is null or error->size is too small. Never sets errno.
 
@@ -333,11 +346,11 @@ typedef void (*sun2xp_log)(int severity, const char *text, void *user);
    callback   function to call with each message; null: messages go to standard error again
    user       third argument of each call of the function
 
- With a callback the library prints nothing. It calls the function where it would print a line: in a
- thread that opens a hand, in a thread whose call is refused (the first refusal of each kind, unless
- hand.print_refusals is false), and in a thread of the library that is not real-time. Several threads
- may call it at the same time. It must make no calls of the library, and must return. The text is
- valid only during the call. There is one callback for all hands of the process.
+ With a callback the library prints nothing. Instead it calls the callback: in a thread that opens a hand,
+ in a thread whose call is refused (the first refusal of each kind, unless hand.print_refusals is false),
+ and in a thread of the library that is not real-time. Several threads may call the callback at the same
+ time. The callback must make no calls of the library, and must return. The text is valid only until the
+ callback returns. There is one callback for all hands of the process.
 
  When sun2xp_set_log has returned, the previous callback is not running and is not called again. A message
  that comes while sun2xp_set_log waits for the previous callback is printed.
@@ -377,8 +390,8 @@ unsigned int sun2xp_version_number(void);
 /*
  sun2xp_abi_version - the number of the binary interface
 
- A program must not run if this differs from its SUN2XP_ABI_VERSION. The number is part of the name of the shared
- library, so only a program that loads the library by dlopen needs this comparison.
+ A program must not use the library if this number differs from the program's SUN2XP_ABI_VERSION. The number is part
+ of the name of the shared library, so only a program that loads the library by dlopen needs this comparison.
 
  Threads: any. Works in a forked child too.
  */
@@ -390,7 +403,8 @@ unsigned int sun2xp_abi_version(void);
 /*
  sun2xp_open - open the hand of a configuration file
 
-   path   the file; null: the file that OpenHand finds, or the simulated hand if there is none
+   path   the file; null: the file that OpenHand finds (docs/configuration.md), or the simulated hand if
+          OpenHand finds none
    hand   result: the handle of the hand
 
  Opens the ports, starts the servos and brings the tendons under tension. Returns when every finger has
@@ -405,8 +419,10 @@ unsigned int sun2xp_abi_version(void);
    ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
    EINVAL   the configuration is unusable; sun2xp_error_text names file, line and reason
    ENOENT, EACCES, EBUSY ...  a port cannot be opened; errno of the system
-   ETIMEDOUT and other errnos of a link: a board does not answer, or the device is not a board
-   EIO      a finger does not come under tension in time, or faults before it does
+   ETIMEDOUT ...  a board does not answer, or the device is not a board. The errno is ENODEV if the board
+            that finger.board names is not found
+   EIO      the tendons of a finger do not come under tension in time, the finger faults before that, or
+            the self-test finds wrong wiring (hand.self_test)
    EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
             configured core is not available
 
@@ -473,9 +489,9 @@ int sun2xp_open_named(const char *name, sun2xp_hand **hand);
 /*
  sun2xp_close - stop a hand
 
- Brings every finger to the configured end state and stops the servos, as CloseHand does. Afterwards the
- handle does not belong to an open hand, and no later hand has the same handle. At exit the library closes
- all hands that are still open.
+ Brings every finger to the configured end state (hand.end_state) and stops the servos, as CloseHand does.
+ Afterwards the handle does not belong to an open hand, and no later hand has the same handle. At exit the
+ library closes all hands that are still open.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -498,15 +514,17 @@ sun2xp_hand *sun2xp_default_hand(void);
 
 /* ---- HARDWARE OF THE PROGRAM ------------------------------------------------------------------------------------- */
 
-#define SUN2XP_IO_WATCHDOG 1                /* The watchdog of the hardware has tripped since the start. */
-#define SUN2XP_IO_ENDED 2                   /* The hardware has entered the end state for another reason. */
+#define SUN2XP_IO_WATCHDOG 1                /* The watchdog of the hardware has tripped since the library last called
+                                               start (struct sun2xp_io). */
+#define SUN2XP_IO_ENDED 2                   /* The hardware has entered the end state for a reason other than its
+                                               watchdog. */
 #define SUN2XP_IO_EMERGENCY_STOP 4          /* The emergency stop is active. */
 #define SUN2XP_IO_SUPPLY 8                  /* The supply of the motors is missing or out of range. */
 #define SUN2XP_IO_DRIVER 16                 /* A motor driver reports a fault. */
 #define SUN2XP_IO_SENSOR 32                 /* An encoder or a gauge cannot be read. */
 #define SUN2XP_IO_ZERO_LOST 64              /* The encoder counts have lost their reference to the zero. In the first
-                                               sample it does not fault the finger: a message says so, and the finger
-                                               must be zeroed (sun2xp_zero). */
+                                               sample this bit does not fault the finger: a message reports it, and
+                                               the finger must be zeroed (sun2xp_zero). */
 
 /* The terms under which the motors of a finger may move. The library sets all members. */
 struct sun2xp_io_terms {
@@ -522,35 +540,40 @@ struct sun2xp_io_terms {
     double torque_constants[4];             /* Torque constant of each motor, N cm/A. */
 };
 
-/* What the sensors of a finger measured. Before the call the library sets size, and all other members to 0. */
+/*
+ What the sensors of a finger measured. Before the library calls start or exchange, it sets size, and sets all other
+ members to 0.
+ */
 struct sun2xp_io_sample {
     size_t size;                            /* sizeof (struct sun2xp_io_sample) in the library. */
     double time;                            /* Time of the measurement, s of any clock that advances evenly. 0 stands
                                                for the time at which the exchange returned. */
     double tensions[4];                     /* Tensions at the gauges, N. */
     int encoders[4];                        /* Counts of the motor encoders. */
-    unsigned int faults;                    /* Sum of SUN2XP_IO_... for faults that are present. Each faults the
-                                               finger, except SUN2XP_IO_ZERO_LOST in the first sample. */
+    unsigned int faults;                    /* Sum of the SUN2XP_IO_... bits of all present faults. Each bit stops
+                                               the finger with a fault, except SUN2XP_IO_ZERO_LOST in the first
+                                               sample. */
 };
 
 /* The command of one exchange. The library sets all members. */
 struct sun2xp_io_command {
     size_t size;                            /* sizeof (struct sun2xp_io_command) in the library. */
-    unsigned long number;                   /* Number of the command, counted from the start. An exchange that is
-                                               repeated after an error (in_step) has the same number again. */
-    int enable;                             /* 0: the motors are off, and the torques are zero. */
+    unsigned long number;                   /* Number of the command, counted from the last call of start. An
+                                               exchange that is repeated after an error (only with in_step) has the
+                                               same number again. */
+    int enable;                             /* 0: the motors must be off, and the torques are zero. */
     double torques[4];                      /* Torques of motors 1 to 4, N cm. */
     double deadline;                        /* Time by which the exchange should return, s of CLOCK_MONOTONIC. */
 };
 
-/* The hardware of one finger (sun2xp_open_io). Set members that are not used to 0. */
+/* The hardware of one finger (sun2xp_open_io). Set unused members to 0. */
 struct sun2xp_io {
     size_t size;                            /* sizeof (struct sun2xp_io), the same in every element of an array. */
     int finger;                             /* Finger, 1 to 3. */
     int holds;                              /* 1: the hardware supports the end state "hold". */
-    int in_step;                            /* 1: a simulation that advances by one period in each exchange. The
-                                               servo waits for it. */
-    double shortest_watchdog;               /* Shortest watchdog time of the hardware, s. */
+    int in_step;                            /* 1: the hardware is a simulation that advances by one period in each
+                                               exchange. The servo waits for the simulation. */
+    double shortest_watchdog;               /* Shortest watchdog time that the hardware supports, s. */
     double tension_unit;                    /* Step in which the library stores tensions, N. 0 selects 0.005 N. */
     void *user;                             /* First argument of the functions. */
     int (*start)(void*, const struct sun2xp_io_terms*, struct sun2xp_io_sample*); /* Prepares the hardware, with the
@@ -568,18 +591,19 @@ struct sun2xp_io {
    io      io[count]: the hardware of each of these fingers; copied
    hand    result: the handle of the hand
 
- Opens a hand as sun2xp_open does. A finger with an entry in io has no serial port: the library calls
- start, then exchange in every cycle, then stop, all with user as first argument. Each returns 0, or an
- errno. Timing, faults and recovery are those of a board (docs/other-hardware.md):
+ Opens a hand as sun2xp_open does. A finger with an element in io has no serial port: the library calls
+ start, then exchange in every cycle, then stop, all with user as first argument. Each must return 0, or an
+ errno if it fails. Timing, faults and recovery are as with a board (docs/other-hardware.md). The library
+ calls these functions as follows:
 
-   start     in a thread of the library that is not real-time, at opening and at every recovery; may take
-             seconds. An error refuses the call.
-   exchange  in the servo thread of the finger. An error counts as a lost reply. If exchange returns
-             after the deadline, the cycle is late. If the next period has begun by then, the cycle
-             also counts as an overrun.
-   stop      in the servo thread, at a recovery, or when opening is refused. After an error, the library
-             calls it again, at least twice if the errors persist. Every start that has succeeded is
-             followed by a stop.
+   start     in a thread of the library that is not real-time, at opening and at every recovery. start
+             may take seconds. If it fails, the opening or the recovery is refused.
+   exchange  in the servo thread of the finger. A failure counts as a lost reply. If exchange returns 0
+             after the deadline, the sample is used nevertheless. If the next period has begun by then,
+             the cycle counts as an overrun.
+   stop      in the servo thread. At a recovery, or when opening is refused, it may be called in a thread
+             that is not real-time. After a failure, the library calls stop again, at least twice if the
+             failures persist. Every start that has succeeded is followed by a stop.
 
  Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a
  servo thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery,
@@ -588,27 +612,27 @@ struct sun2xp_io {
  cycle. A finger that is faulted or stopped gets no exchange.
 
  exchange and stop must not allocate memory, wait for locks, write files or call the library. The behaviour
- is undefined if one of the functions does not return: longjmp, pthread_exit, exceptions.
+ is undefined if one of the functions does not return, because of longjmp, pthread_exit or an exception.
 
  The program must provide a watchdog outside this process, such as that of its drives: if no exchange
  comes for terms->watchdog, the hardware must enter the end state by itself, even if this process hangs
  or has died.
 
  A tension may be from -8191 to 57342 times io->tension_unit. A tension that is NaN or outside this range
- faults the finger, as SUN2XP_IO_SENSOR does. So does an encoder that moves by more than 32767 counts
- between two exchanges.
+ faults the finger, as SUN2XP_IO_SENSOR does. An encoder that moves by more than 32767
+ counts between two exchanges faults the finger in the same way.
 
  Returns 0, or a negative number with
    EPERM    forked child
    ENOMEM   there is not enough memory
    EFAULT   hand is null, or io is null and count is not 0
-   EINVAL   size is too small; count is not 0 to 3; no such finger, or two entries for one finger;
+   EINVAL   size is too small; count is not 0 to 3; no such finger, or two elements for one finger;
             shortest_watchdog is negative or NaN
    EFAULT   a function of io is null
    EMFILE   16 hands are open
    ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
-   EINVAL   the configuration is unusable; gauge.newton_per_count or gauge.zero was set for another board;
-            tension_unit is negative, infinite or NaN
+   EINVAL   the configuration is unusable; finger.gauge.newton_per_count or finger.gauge.zero does not fit
+            this hardware (docs/other-hardware.md); tension_unit is negative, infinite or NaN
    others   as sun2xp_open, and the errno that start has returned
 
  Threads: any.
@@ -640,12 +664,13 @@ int sun2xp_open_io_text(const char *configuration, int count, const struct sun2x
    finger     1 to 3
    position   position[3]: desired angles of joints 0, 1, 2, rad
 
- All three angles take effect together. From the next cycle on, the anchor of the fingertip's spring moves
- to the angles in position, along a straight line in joint angles and at a bounded speed. The stiffness is
- the one sent last. When the anchor has arrived, the force of the fingertip is Kx (tip - p) at any
- distance: tip is the place of the fingertip at the angles in position, and p is its present place. With
- controller.law = "report" the finger follows the law of the report, which holds for small distances. The
- call does not wait until the finger arrives. sun2xp_limits reads the joint limits.
+ All three angles take effect together. From the next cycle on, the anchor of the fingertip's spring (the
+ point toward which the spring pulls) moves to the angles in position, along a straight line in joint
+ angles and at a bounded speed. The stiffness Kx is the one sent last (sun2xp_send_stiffness). When the
+ anchor has arrived, the force of the fingertip is Kx (tip - p) at any distance: tip is the place of the
+ fingertip at the angles in position, and p is the present place of the fingertip. With
+ finger.controller.law = "report" the finger follows the law of the report, which holds for small
+ distances. The call does not wait until the finger arrives. sun2xp_limits reads the joint limits.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -731,25 +756,28 @@ int sun2xp_position(sun2xp_hand *hand, int finger, double *position);
  Result of sun2xp_tip. Vectors are in the finger's frame.
 
  The member force is computed from the measured tensions, so it includes friction, weight and inertia of
- the finger. It is never NaN. Near singular poses there are directions in which a force on the tip
- causes no joint torque, so that the joints cannot measure it. Along these directions, the members force
- and stiffness are zero. The member contact_force does not contain constant errors of the gauges. The
- member stiffness is the part of Kx, or of the joint stiffness, that the present pose admits, plus three
- other springs: the soft joint limits, the spring of joint 0 while the tip is near the axis of this
- joint, and the rotational stiffness of a contact. After a change of Kx, this member has its new value
- in the next cycle, although the stiffness of the finger itself changes over 50 ms. The members
- contact_force, stiffness and touching are zero while the finger is not running. The member slide_speed
- is 0 while the member touching is 0. While touching is 1, the tip slides on the object at this speed,
- or tip and object move together at this speed.
+ the finger. This member is never NaN. Near singular poses there are directions in which a force on the
+ tip causes almost no joint torque, so that the force cannot be computed from the joint torques. Along
+ these directions, the members force and stiffness are zero. The member contact_force does not contain
+ constant errors of the gauges. The member stiffness is the part of Kx, or of the joint stiffness, that
+ the present pose admits, plus three other stiffnesses: that of the spring that pushes a joint back from
+ beyond its limit, that of the spring that holds joint 0 while the tip is near the axis of this joint, and
+ the rotational stiffness of a contact. After a change of Kx, this member has its new value in the next
+ cycle, although the stiffness of the finger itself changes over 50 ms. The members contact_force,
+ stiffness and touching are zero while the finger is not running. The member slide_speed is 0 while the
+ member touching is 0. While touching is 1, the tip slides on the object at this speed, or tip and object
+ move together at this speed.
  */
 struct sun2xp_tip {
     size_t size;                            /* sizeof (struct sun2xp_tip), set before the call. */
-    int force_directions;                   /* Number of force directions that the joints can measure, 0 to 3. */
+    int force_directions;                   /* Number of directions in which the member force can be computed, 0 to
+                                               3. */
     double position[3];                     /* Position of the tip: x, y, z, cm. */
     double force[3];                        /* Force of the tip on an object, with friction and weight: x, y, z, N. */
     double tensions[4];                     /* Measured tendon tensions, N. */
     double stiffness[3][3];                 /* Stiffness of the tip in its present pose, N/cm, row by row. */
-    double contact_force[3];                /* Force of the tip without friction, weight, inertia: x, y, z, N. */
+    double contact_force[3];                /* Force of the tip on an object, without friction, weight, inertia: x,
+                                               y, z, N. */
     double slide_speed;                     /* Speed of the tip perpendicular to contact_force, cm/s. */
     int touching;                           /* 1: tensions and motion show that the finger touches something. */
 };
@@ -761,10 +789,10 @@ struct sun2xp_tip {
    tip      tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm
 
  From the next cycle on, the anchor of the fingertip's spring moves to tip, along a straight line in joint
- angles and at a bounded speed. The stiffness is the one sent last. When the anchor is at tip and p is
- the position of the fingertip, the force is Kx (tip - p) at any distance, whatever the configured
- controller.law. If several joint solutions are within the joint limits, the call takes the one nearest
- to the present pose.
+ angles and at a bounded speed. The stiffness Kx is the one sent last (sun2xp_send_stiffness). When the
+ anchor is at tip and p is the position of the fingertip, the force is Kx (tip - p) at any distance,
+ whatever the configured finger.controller.law. If several joint solutions are within the joint limits, the
+ call takes the one nearest to the present pose.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -808,7 +836,7 @@ int sun2xp_send_tip(sun2xp_hand *hand, int finger, const double *tip);
 int sun2xp_tip(sun2xp_hand *hand, int finger, struct sun2xp_tip *tip);
 
 /*
- sun2xp_send_contact - make a fingertip the spring of a contact type
+ sun2xp_send_contact - give a fingertip the stiffness of a contact type
 
    finger       1 to 3
    dimensions   number of dimensions of the contact (section 4.2 of the report):
@@ -827,12 +855,13 @@ int sun2xp_tip(sun2xp_hand *hand, int finger, struct sun2xp_tip *tip);
  sun2xp_send_stiffness. For the comparison with the bound, a rotational stiffness of k N cm/rad is
  converted to k / (l2 l2) N/cm, where l2 is the length of the last link.
 
- A soft finger is not a spring in four independent directions, because three joints turn the tip only by
- moving it. If the tip moves by a vector v, cm, it turns about normal by the dot product c . v, rad. The
- vector c depends on the pose. A rotational stiffness of k N cm/rad therefore stiffens the tip along c, by
- k |c| |c| N/cm, and the tip exerts no moment that is independent of its force. In the pose 0, 0.5, 0.8
- rad the example below gives 3.24, 3 and 3 N/cm along x, y and z. With normal along x it gives 3, 3.56 and
- 4.87 N/cm, and -1.02 N/cm between y and z. sun2xp_tip reads the stiffness that results.
+ A soft finger is not a spring in four independent directions, because three joints cannot turn the tip
+ without moving it. If the tip moves by a vector v, cm, it turns about normal by the dot product c . v,
+ rad. The vector c depends on the pose. A rotational stiffness of k N cm/rad therefore stiffens the tip
+ along c, by k |c| |c| N/cm, and the tip exerts no moment that is independent of its force. In the pose
+ 0, 0.5, 0.8 rad the example below gives 3.24, 3 and 3 N/cm along x, y and z. With normal along x it
+ gives 3, 3.56 and 4.87 N/cm, and -1.02 N/cm between y and z. sun2xp_tip reads the stiffness that
+ results.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -859,13 +888,14 @@ int sun2xp_send_contact(sun2xp_hand *hand, int finger, int dimensions, const dou
  sun2xp_send_damping - set the damping of a fingertip
 
    finger   1 to 3
-   ratio    damping relative to what the controller chooses from the stiffness; 1 after sun2xp_open
+   ratio    damping relative to the damping that the controller chooses for the stiffness; 1 after sun2xp_open
 
  The ratio changes without a jump in torque and stays until another ratio is sent. It becomes 1 again when
  the finger becomes a spring after a fault or a calibration, when a set point expires, and when a reflex
- with the reaction SUN2XP_THEN_SOFTEN fires. A reflex with SUN2XP_THEN_DAMP replaces it. A finger whose
- ratio is much below or much above 1 does not come to rest. The permitted range depends on the controller
- (finger.controller.scheme), the rate and the largest eigenvalue k of the stiffness, N/cm:
+ with the reaction SUN2XP_THEN_SOFTEN fires. A reflex with SUN2XP_THEN_DAMP replaces the ratio. A finger
+ whose ratio is much below or much above 1 does not come to rest. The permitted range depends on the
+ controller (finger.controller.scheme: state feedback, or figure 9, 10 or 11 of the report), the rate and
+ the largest eigenvalue k of the stiffness, N/cm:
 
                                      1000 Hz and above    below 1000 Hz
    state feedback         smallest   0.40 + 0.09 k        0.70 + 0.07 k
@@ -942,10 +972,10 @@ int sun2xp_send_joint_stiffness(sun2xp_hand *hand, int finger, const double *sti
    torque   torque[3]: torque of joints 0, 1, 2, N cm; positive torques increase the angles
 
  The torque acts in addition to the spring of Kx, of a contact or of sun2xp_send_joint_stiffness, until
- the next call replaces it; zero ends it. It takes effect like Kx, without a jump. If the stiffness is
- zero, the finger is controlled by torque alone: a free finger then moves to its joint limits, at a speed
- that only damping and friction limit. The torque also ends at a fault, at a calibration, when a set point
- expires, and when a reflex holds, retracts or softens the finger.
+ the next sun2xp_send_joint_torque replaces it; zero ends it. The torque takes effect like Kx, without a
+ jump. If the stiffness is zero, the finger is controlled by torque alone: a free finger then moves to its
+ joint limits, at a speed that only damping and friction limit. The torque also ends at a fault, at a
+ calibration, when a set point expires, and when a reflex holds, retracts or softens the finger.
 
  A torque is refused if it needs more tension than a tendon and its motor permit. If the spring, the
  compensation of gravity and the torque together need more, the servo scales their sum down.
@@ -970,8 +1000,9 @@ int sun2xp_send_joint_torque(sun2xp_hand *hand, int finger, const double *torque
 
 /* ---- GROUPS AND WAITING ------------------------------------------------------------------------------------------ */
 
-#define SUN2XP_WAIT_ARRIVED 1               /* Every joint has been within finger.events.arrived_degrees of the set
-                                               point sent last. */
+#define SUN2XP_WAIT_ARRIVED 1               /* Since the set point sent last took effect, there was a cycle in which
+                                               every joint was within finger.events.arrived_degrees of this set
+                                               point. */
 #define SUN2XP_WAIT_SETTLED 2               /* Since the set point sent last took effect, there was a time of
                                                finger.events.settled_ms in which no joint moved by more than
                                                finger.events.settled_degrees. */
@@ -993,7 +1024,7 @@ struct sun2xp_set_point {
 
    count        number of commands, 0 to 3
    set_points   set_points[count]: one command for each finger of the group, in any order; set size of
-                every command, and set members that are not used to 0
+                every command, and set unused members to 0
 
  Each command has the effect of sun2xp_send_position or sun2xp_send_tip, sun2xp_send_stiffness and
  sun2xp_send_damping. All fingers of the group follow their commands from the same cycle on, even if
@@ -1015,8 +1046,8 @@ struct sun2xp_set_point {
    EIO      a finger of the group is faulted
    ERANGE   a ratio is outside the range of sun2xp_send_damping, or a stiffness is too stiff for the ratio
             (hand.out_of_range = "clamp" clamps the ratio)
-   EBUSY    16 groups of a finger have not taken effect yet, because they are sent faster than one in
-            a period, or the servo does not run
+   EBUSY    16 groups of a finger have not taken effect yet, because the program sends more
+            than one in each period, or because the servo does not run
 
  Threads: any. Never waits for a servo. Takes a few us.
 
@@ -1041,15 +1072,15 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
    until     SUN2XP_WAIT_ARRIVED or SUN2XP_WAIT_SETTLED
    seconds   longest time to wait
 
- Returns at once if the condition holds already. For all fingers it must hold at the same time. A finger
- that an object blocks settles without arriving. If the set point is a position of the tip, the finger
- arrives at the joint angles that were computed for it. If a reflex has replaced the set point that was
- sent last, the condition must hold for the set point of the reflex. The same applies if the finger
- ignored the set point because a reflex inhibits set points for some time. The wait then returns only
- after this time. If the set point that was sent last has expired, the condition must hold for the pose
- that the finger holds since then. The events SUN2XP_EVENT_REFLEX_FIRED and SUN2XP_EVENT_EXPIRED say that
- this has happened. Other calls work during the wait. sun2xp_close works too, and then the wait is
- refused.
+ If the condition holds already, the call returns at once. With SUN2XP_ALL_FINGERS the condition must hold
+ for all fingers at the same time. A finger that an object blocks settles without arriving. If the set
+ point is a position of the tip, the finger arrives at the joint angles that were computed for it. If a
+ reflex has replaced the set point that was sent last, the condition must hold for the set point of the
+ reflex. The same applies if the finger ignored the set point because a reflex inhibits set points for
+ some time. The wait then returns only after this time. If the set point that was sent last has expired,
+ the condition must hold for the pose that the finger holds since then. The events
+ SUN2XP_EVENT_REFLEX_FIRED and SUN2XP_EVENT_EXPIRED say that this has happened. Other calls work during
+ the wait. sun2xp_close works too, and then the wait is refused.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1081,8 +1112,8 @@ struct sun2xp_path_pose {
     int is_tip;                             /* 0: the member place holds joint angles. 1: it holds a position of the
                                                tip. */
     double time;                            /* Time since the beginning of the path, s. */
-    double place[3];                        /* Joint angles, rad, or x, y, z of the tip, finger's frame, cm. */
-    const double *stiffness;                /* Matrix of sun2xp_send_stiffness. Null: no effect on stiffness. */
+    double place[3];                        /* Joint angles, rad, or x, y, z of the tip in the finger's frame, cm. */
+    const double *stiffness;                /* Matrix Kx of sun2xp_send_stiffness. Null: the pose has no Kx. */
 };
 
 /*
@@ -1094,13 +1125,14 @@ struct sun2xp_path_pose {
    seconds   how long the path stays valid after its end, s; 0 for finger.motion.valid_ms
 
  The path begins at once. Its first point is the present place of the anchor of the fingertip's spring,
- and it continues the anchor's motion. It passes every pose at its time and rests at the last one.
- Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only
- pose is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
+ and the path continues the anchor's motion. It passes every pose at its time and rests at the last one.
+ Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only pose
+ is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
  continuous, with one exception: if a path that continues the motion would be refused, the finger first
- brakes for 0.15 s. The braking begins with the present speed, but without acceleration and jerk. State
- feedback smooths this step. Speed, acceleration and jerk are fed forward, so the finger follows without
- the lag of sun2xp_send_position.
+ brakes for 0.15 s. The braking begins with the present speed, but without acceleration and jerk. The
+ controller "state feedback" (finger.controller.scheme) smooths this step in acceleration and jerk. This
+ controller also feeds speed, acceleration and jerk forward, so the finger follows without the lag of
+ sun2xp_send_position.
 
  Between two poses that have a Kx, Kx changes linearly. Until the first pose that has a Kx, Kx changes
  linearly from its value at the beginning of the path. After sun2xp_send_joint_stiffness this value is 0,
@@ -1121,14 +1153,14 @@ struct sun2xp_path_pose {
    ENOMEM   there is not enough memory for the computation
    ENODEV   no such hand
    EINVAL   size is too small; count is not 1 to 128; seconds is NaN, negative or more than 3600; no such
-            finger; a time is more than 3600, or less than 1 ms later than the one before; joint angles and
+            finger; a time is more than 3600 s, or less than 1 ms later than the one before; joint angles and
             tip positions are mixed; an entry is NaN or infinite
    EDOM     a Kx is not symmetric, or has a negative eigenvalue
    ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is too
             stiff, or the path is too fast; sun2xp_error_text names the pose, and the factor by which the
             path must be slower
    EIO      the finger is faulted
-   EBUSY    the finger is being opened or calibrated, or is limp
+   EBUSY    the finger is being recovered or calibrated, or is limp
    EAGAIN   during the call the finger has left its pose, because it was recovered or calibrated, its set
             point expired, or a reflex reacted
    ERANGE   a Kx is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio instead)
@@ -1156,10 +1188,9 @@ int sun2xp_send_path(sun2xp_hand *hand, int finger, int count, const struct sun2
    position   position[3]: desired angles of joints 0, 1, 2, rad, as for sun2xp_send_position
    seconds    how long the angles are valid, s; 0 for finger.motion.valid_ms
 
- Has the effect of sun2xp_send_position. If the time given by seconds passes without another command of
- the planner, the finger no longer follows the angles. By default it then holds its present pose, with
- the soft stiffness finger.motion.expired_stiffness. With finger.motion.on_expiry = "end state" it
- faults.
+ Has the effect of sun2xp_send_position. If the time given by seconds passes without another command to
+ the finger, the finger no longer follows the angles. By default it then holds its present pose, with the
+ soft stiffness finger.motion.expired_stiffness. With finger.motion.on_expiry = "end state" it faults.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1184,7 +1215,7 @@ int sun2xp_send_position_for(sun2xp_hand *hand, int finger, const double *positi
 /* Result of sun2xp_joint_torques. */
 struct sun2xp_joint_torques {
     size_t size;                            /* sizeof (struct sun2xp_joint_torques), set before the call. */
-    double measured[3];                     /* From the measured tensions: joints 0, 1, 2, N cm. */
+    double measured[3];                     /* Torques from the measured tensions: joints 0, 1, 2, N cm. */
     double commanded[3];                    /* Torques that the servo commands, N cm, within the tension limits. */
 };
 
@@ -1203,7 +1234,7 @@ struct sun2xp_palm_pose {
    finger     1 to 3
    position   position[3]: angles of joints 0, 1, 2, rad. Null: the measured angles
    jacobian   result: jacobian[9], row by row: entry [row][column] is the motion of the tip
-              along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8 of the report)
+              along axis row (x, y, z of the finger's frame) when joint column turns, cm/rad (eq. 8 of the report)
 
  A force f on the tip, N, exerts this torque on joint k, N cm: entry [0][k] times f[0], plus entry [1][k]
  times f[1], plus entry [2][k] times f[2].
@@ -1297,8 +1328,8 @@ int sun2xp_joint_torques(sun2xp_hand *hand, int finger, struct sun2xp_joint_torq
    finger   1 to 3
    pose     result, from the last cycle of the servo; set pose->size before the call
 
- base and rotation follow from the configuration, finger.base and finger.turn_degrees. By default two
- fingers are side by side, and the thumb is opposite to them.
+ The members base and rotation follow from finger.base and finger.turn_degrees of the configuration. By
+ default two fingers are side by side, and the thumb is opposite to them.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1350,7 +1381,7 @@ struct sun2xp_limits {
     double tension_minimum;                 /* Smallest tension of a tendon, N. */
     double tension_maximum;                 /* Largest tension of a tendon, N. */
     double motor_torque[4];                 /* Largest torques of the motors, N cm. */
-    double stiffness;                       /* Largest eigenvalue of a stiffness, N/cm. */
+    double stiffness;                       /* Largest permitted eigenvalue of a stiffness, N/cm. */
 };
 
 /*
@@ -1384,14 +1415,15 @@ int sun2xp_limits(sun2xp_hand *hand, int finger, struct sun2xp_limits *limits);
 /*
  Result of sun2xp_touch.
 
- If the member valid is 0, the members pressed, count and force are 0 too. The member force is the count
- minus its zero, times newton_per_count of the configuration. Events are lost if they do not fit into the queue of
- the board, or if their element is not configured.
+ If the member valid is 0, the members pressed, count and force are 0 too. The member force is the member count minus
+ the zero of the element, times newton_per_count of the configuration. Tactile events are lost if they do not fit
+ into the queue of the board, or if their element is not configured.
  */
 struct sun2xp_touch {
     size_t size;                            /* sizeof (struct sun2xp_touch), set before the call. */
-    int valid;                              /* 1: since sun2xp_open and the last reset of the board, the board has
-                                               reported this element, and its newest report has a reading. */
+    int valid;                              /* 1: the newest report of this element has a reading. 0: it has none, or
+                                               the board has not reported the element since sun2xp_open or since its
+                                               last reset. */
     int pressed;                            /* 1 if something presses the element, otherwise 0. */
     unsigned int count;                     /* The raw count of the element. */
     double force;                           /* Force on the element, N. */
@@ -1501,14 +1533,14 @@ int sun2xp_object(sun2xp_hand *hand, struct sun2xp_object *object);
 
    finger   1 to 3
    force    force[3]: force on the fingertip along x, y, z of the finger's frame, N. It
-            acts until the next call; zero ends it
+            acts until the next sun2xp_push for this finger; zero ends it
 
  Returns 0, or a negative number with
    EPERM    forked child
    EFAULT   force is null
    ENODEV   no such hand
    EINVAL   no such finger; an entry is NaN or infinite
-   ENOTSUP  the finger is on a real port
+   ENOTSUP  the finger is not simulated by the library
    ERANGE   a component is beyond 1000 N
 
  Threads: any.
@@ -1535,10 +1567,12 @@ int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
  default bound applies. If the bound is lowered while a path changes Kx, the Kx of the end of the path
  takes effect at once.
 
- The whole path that was sent last is checked against the new limits until it has ended, except those of
- finger.motion, which apply to later paths. With hand.out_of_range = "clamp" a path outside the new
- joint limits ends, and the finger moves to the end of the path at once. A pose beyond a joint limit, in
- which the finger was found, is compared only with a limit that becomes narrower.
+ If the path that was sent last has not ended, the call checks the whole path against the new limits,
+ including the part that the finger has already followed. The new limits of finger.motion are not checked,
+ because they apply only to later paths. With hand.out_of_range = "clamp" a path outside the new joint
+ limits ends, and the finger moves to the end of the path at once. A finger that was beyond a joint limit
+ when it became a spring may still hold its pose there. The call accepts this pose, unless the new limit is
+ narrower.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1572,21 +1606,22 @@ int sun2xp_adjust(sun2xp_hand *hand, int finger, const char *keys);
                                                or after sun2xp_close and sun2xp_open. */
 #define SUN2XP_STATE_CALIBRATING 4          /* sun2xp_zero or sun2xp_identify moves the finger. Set points have no
                                                effect. */
-#define SUN2XP_STATE_TENSIONING 5           /* sun2xp_recover or the end of a calibration brings the tendons under
-                                               tension. Set points have no effect. */
+#define SUN2XP_STATE_TENSIONING 5           /* sun2xp_open, sun2xp_recover or the end of a calibration brings the
+                                               tendons under tension. Set points have no effect. */
 #define SUN2XP_STATE_CLOSED 6               /* The process exits without sun2xp_close, and the finger goes to its
-                                               configured end state or is in it. Only exit handlers and remaining
-                                               threads see this state. */
+                                               configured end state or is already there. Only exit handlers and
+                                               remaining threads see this state. */
 
 /*
  Result of sun2xp_status.
 
- The member measured_rate is the number of cycles divided by the time up to this call: it falls while the
- servo does not run. The delays cover the cycles since sun2xp_open or sun2xp_reset_timing. The member
- torque_scale applies to all joints alike, so the torque keeps its direction. The member
- stiffness_scale is below 1 in poses in which the tendons cannot provide the whole Kx, for example near
- the straight pose. A joint beyond its limit can reduce it too, because the spring that pushes the joint
- back needs a part of what the tendons provide. sun2xp_tip gives the stiffness that results.
+ The member measured_rate is the number of cycles divided by the time from sun2xp_open to this call: the
+ rate falls while the servo does not run. The members wake_up_median, wake_up_p99 and wake_up_maximum
+ cover the cycles since sun2xp_open or the last sun2xp_reset_timing. The member torque_scale applies to
+ all joints alike, so the torque keeps its direction. The member stiffness_scale is below 1 in poses in
+ which the tendons cannot provide the whole Kx, for example near the straight pose. A joint beyond its
+ limit can reduce it too, because the spring that pushes the joint back needs a part of what the tendons
+ provide. sun2xp_tip gives the stiffness that results.
  */
 struct sun2xp_status {
     size_t size;                            /* sizeof (struct sun2xp_status), set before the call. */
@@ -1597,7 +1632,8 @@ struct sun2xp_status {
     double wake_up_median;                  /* Median delay of the start of a cycle, us (jitter). */
     double wake_up_p99;                     /* Delay that 99 of 100 cycles did not exceed, us. */
     double wake_up_maximum;                 /* Maximum delay, us. */
-    double torque_scale;                    /* Fraction of the joint torque that the tension limits permit, 0 to 1. */
+    double torque_scale;                    /* Fraction of the desired joint torque that the tension limits permitted
+                                               in the last cycle, 0 to 1. */
     unsigned long cycles;                   /* Cycles since sun2xp_open. */
     unsigned long skipped_periods;          /* Whole periods in which no cycle began because the previous cycle was
                                                not over or the servo thread did not run, up to now. One late cycle
@@ -1610,9 +1646,9 @@ struct sun2xp_status {
     int memory_locked;                      /* 1: sun2xp_open has locked the memory of every servo thread, so that no
                                                servo thread waits for a page. 0: the memory of at least one servo
                                                thread is not locked. If the planner calls munlockall later, this
-                                               memory is unlocked too, and this member stays 1. sun2xp_close and
-                                               sun2xp_open lock the memory again. */
-    int on_core;                            /* 1: each servo thread with a configured core runs on it. */
+                                               memory is unlocked too, and this member stays 1. If the hand is closed
+                                               and opened again, sun2xp_open locks the memory again. */
+    int on_core;                            /* 1: each servo thread with a configured core runs on this core. */
     double stiffness_scale;                 /* Fraction of Kx in force in the last cycle, 0 to 1. */
 };
 
@@ -1648,7 +1684,8 @@ int sun2xp_status(sun2xp_hand *hand, int finger, struct sun2xp_status *status);
 /* ---- TIMING ------------------------------------------------------------------------------------------------------ */
 
 #define SUN2XP_STAGE_WAKE_UP 0              /* From the scheduled start of a cycle to the thread's first instruction. */
-#define SUN2XP_STAGE_WRITE 1                /* Passing the commands of the port to the system. */
+#define SUN2XP_STAGE_WRITE 1                /* Passing the commands of all fingers on the port to the operating
+                                               system. */
 #define SUN2XP_STAGE_WIRE 2                 /* From the end of SUN2XP_STAGE_WRITE until the reply can be read: the
                                                line in both directions, and the board. */
 #define SUN2XP_STAGE_READ 3                 /* Reading the reply. */
@@ -1739,7 +1776,7 @@ int sun2xp_reset_timing(sun2xp_hand *hand, int finger);
 #define SUN2XP_FAULT_GAUGE_DISAGREES         6 /* gauge against encoders */
 #define SUN2XP_FAULT_ENCODER_JUMP            7 /* encoder jump */
 #define SUN2XP_FAULT_STALLED_MOTOR           8 /* stalled motor */
-#define SUN2XP_FAULT_OVERHEATED_MOTOR        9 /* over-heated motor */
+#define SUN2XP_FAULT_OVERHEATED_MOTOR        9 /* overheated motor */
 #define SUN2XP_FAULT_JOINT_AT_STOP          10 /* joint at its stop */
 #define SUN2XP_FAULT_IMPOSSIBLE_POSE        11 /* impossible pose */
 #define SUN2XP_FAULT_SLACK_IN_MOTION        12 /* slack in motion */
@@ -1759,7 +1796,7 @@ int sun2xp_reset_timing(sun2xp_hand *hand, int finger);
 #define SUN2XP_FAULT_PORT_FAILED            26 /* port failed */
 #define SUN2XP_FAULT_PORT_MISSING           27 /* port missing */
 #define SUN2XP_FAULT_PORT_BUSY              28 /* port busy */
-#define SUN2XP_FAULT_PORT_PERMISSION        29 /* port forbidden */
+#define SUN2XP_FAULT_PORT_PERMISSION        29 /* no permission for the port */
 #define SUN2XP_FAULT_PORT_UNUSABLE          30 /* port unusable */
 #define SUN2XP_FAULT_BOARD_SILENT           31 /* board silent */
 #define SUN2XP_FAULT_UNINTELLIGIBLE         32 /* no protocol */
@@ -1770,7 +1807,7 @@ int sun2xp_reset_timing(sun2xp_hand *hand, int finger);
 #define SUN2XP_FAULT_IDENTITY_CHANGED       37 /* identity changed */
 #define SUN2XP_FAULT_ZERO_LOST              38 /* zero lost */
 #define SUN2XP_FAULT_OVERRUN                39 /* overrun */
-#define SUN2XP_FAULT_REALTIME_REFUSED       40 /* no real time */
+#define SUN2XP_FAULT_REALTIME_REFUSED       40 /* real time refused */
 #define SUN2XP_FAULT_SERVO_PANIC            41 /* servo failed */
 #define SUN2XP_FAULT_CURRENT_LIMIT          42 /* current limit */
 #define SUN2XP_FAULT_TORQUE_NOT_ADMITTED    43 /* torque not admitted */
@@ -1788,8 +1825,8 @@ int sun2xp_reset_timing(sun2xp_hand *hand, int finger);
 /*
  Result of sun2xp_fault.
 
- The text of sun2xp_fault_text says which kind of part a fault concerns, for example a tendon. A part is 0
- if the fault concerns the whole finger.
+ The text of sun2xp_fault_text says which kind of part a fault concerns, for example a tendon. The member
+ part or warning_part is 0 if the fault or the warning concerns the whole finger.
  */
 struct sun2xp_fault {
     size_t size;                            /* sizeof (struct sun2xp_fault), set before the call. */
@@ -1880,14 +1917,14 @@ const char *sun2xp_fault_text(int number);
 int sun2xp_stop_all(void);
 
 /*
- sun2xp_stop - stop a finger, or all
+ sun2xp_stop - stop a finger, or all fingers of a hand
 
    finger   1 to 3, or SUN2XP_ALL_FINGERS
 
  The finger faults (SUN2XP_FAULT_STOP_CALL) at the start of its next cycle, and its board enters the
  configured end state, as with sun2xp_stop_all. The other fingers continue, unless hand.on_fault is
  "hand". The finger stays stopped until sun2xp_recover, or sun2xp_close and sun2xp_open. A finger that
- has faulted already stays as it is. Like sun2xp_stop_all, this is not a safety function. Unlike
+ has faulted already stays as it is. Like sun2xp_stop_all, sun2xp_stop is not a safety function. Unlike
  sun2xp_stop_all, it must not be called in a signal handler.
 
  Returns 0, or a negative number with
@@ -1922,8 +1959,8 @@ int sun2xp_stop(sun2xp_hand *hand, int finger);
    EIO      the finger faults again; or its board is not the one found by sun2xp_open, or has lost its
             zero; or its servo thread has failed (SUN2XP_FAULT_SERVO_PANIC), which only sun2xp_close and
             sun2xp_open remedy. sun2xp_error_text gives the reason
-   ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: the port is not there yet, the board
-            does not answer, or the servo does not run. Call again
+   ENOENT, EACCES, ETIMEDOUT ...  the port is not there yet, the board does not answer, or the servo
+            does not run. Call again
 
  Threads: any.
 
@@ -1946,10 +1983,10 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
 
  Slackens the tendons and reads the gauges. Then finds the zero of the encoders by finger.zeroing.method:
 
-   "pose"   The finger stands in finger.zeroing.pose_degrees. It must stand still from the start of
-            the call until its encoders have been read. This takes 0.3 s for a finger that is a
-            spring, and some seconds for a limp finger. A jig or a person must hold a limp finger.
-            A finger that moves is refused, and so is a limp finger that nothing holds.
+   "pose"   The finger must be in the pose finger.zeroing.pose_degrees, and must stand still there from
+            the start of the call until its encoders have been read. This takes 0.3 s for a finger
+            that is a spring, and some seconds for a limp finger. A jig or a person must hold a limp
+            finger. A finger that moves is refused, and so is a limp finger that nothing holds.
    "stops"  Each joint moves slowly against both of its stops. The finger needs room for that.
    "kept"   The configured zero stays, if the board reports that its counts are still valid.
 
@@ -1975,15 +2012,16 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
    EBUSY      the finger is being calibrated or recovered already
    ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
               joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
-              gives the remedy. The finger is then limp. There are two exceptions. (1) The finger moved
-              while it was read, or its counts were not valid: the finger is then a spring or limp, as
-              before, but a path or an interpolated motion (finger.motion.interpolate_ms) that it followed
-              has ended. (2) Another thread has recovered the finger from a fault during the calibration:
-              the finger then holds its pose. If its new zeros had been found before the fault, they are in
-              force
-   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
-   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
-              sun2xp_close, and the next calibration of the finger that can be stored stores them
+              gives the remedy. The finger is then limp. There are two exceptions. (1) With "pose" the
+              finger moved while its encoders were read, or with "kept" the counts were not valid: the
+              finger is then a spring or limp, as before, but a path or an interpolated motion
+              (finger.motion.interpolate_ms) that it followed has ended. (2) Another thread has recovered the
+              finger from a fault during the calibration: the finger then holds its pose. If its new zeros
+              had been found before the fault, they are in force
+   ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
+   EACCES, ENOSPC, EBUSY ...  the configuration file cannot be written, or another process has kept it
+              locked for 30 s; the zeros are in force until sun2xp_close, and the next calibration of the
+              finger that can be stored stores them
 
  Threads: any.
 
@@ -2046,9 +2084,9 @@ struct sun2xp_event {
     int part;                               /* Number of the joint, 0 to 2, or of the tendon, motor, gauge or
                                                encoder, 1 to 4; 0 for the whole finger. */
     unsigned long cycle;                    /* Cycle of the event, as in sun2xp_status and sun2xp_record. */
-    unsigned long lost;                     /* Events lost since sun2xp_open, or in a callback since sun2xp_on_event:
-                                               they were not taken in time, or were lost on the way from another
-                                               machine. */
+    unsigned long lost;                     /* Number of events that were lost since sun2xp_open; in a callback,
+                                               since sun2xp_on_event. An event is lost if it is not taken in time. An
+                                               event of a hand on another machine can also be lost on the way. */
     double time;                            /* Beginning of the event's cycle, s of CLOCK_MONOTONIC. */
     double values[4];                       /* Values, whose meaning depends on the kind (docs/events.md). Unused
                                                ones are 0. */
@@ -2123,14 +2161,14 @@ int sun2xp_wait_event(sun2xp_hand *hand, struct sun2xp_event *event, double seco
 
  When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
  called again. If a callback makes one of these calls, the call does not wait. The previous callback may
- then still be running, but it is not called again.
+ then still be running or be called once more, so its context must stay valid for some time.
 
  Returns 0, or a negative number with
    EPERM    forked child
    ENODEV   no such hand
    EAGAIN   the system refuses to start a thread
 
- Threads: any, and callback. Waits until the previous callback has returned.
+ Threads: any. Waits until the previous callback has returned, except in a callback.
 
  Example:
 
@@ -2149,9 +2187,9 @@ int sun2xp_on_event(sun2xp_hand *hand, void (*callback)(const struct sun2xp_even
  sun2xp_event_descriptor - a descriptor for poll and select
 
  The descriptor is readable while sun2xp_next_event would return an event, and from the beginning of
- sun2xp_close on. sun2xp_next_event makes it unreadable when it returns 0. So after each poll, call
- sun2xp_next_event until it returns 0. Do not read, write or close the descriptor. sun2xp_close closes it
- at its end.
+ sun2xp_close on. A call of sun2xp_next_event that returns 0 makes the descriptor unreadable. So after each
+ poll, call sun2xp_next_event until it returns 0. Do not read, write or close the descriptor. sun2xp_close
+ closes the descriptor as its last step.
 
  Returns the descriptor, the same one until sun2xp_close, or a negative number with
    EPERM    forked child
@@ -2179,8 +2217,9 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 #define SUN2XP_WHEN_EVENT 1                 /* An event of the finger occurs. The member named event gives its kind. */
 #define SUN2XP_WHEN_OTHER_FINGER 2          /* An event of another finger occurs. The member named event gives its
                                                kind, and the member named finger gives the number of that finger. */
-#define SUN2XP_WHEN_FORCE_ABOVE 3           /* The force of the surroundings on the tip is above the value in the
-                                               member bound, N. */
+#define SUN2XP_WHEN_FORCE_ABOVE 3           /* The force of the surroundings on the tip (the magnitude of
+                                               contact_force of sun2xp_tip) is above the value in the member bound,
+                                               N. */
 #define SUN2XP_WHEN_TENSION_ABOVE 4         /* The tension of any tendon is above the value in the member bound, N. */
 #define SUN2XP_WHEN_TENSION_BELOW 5         /* The tension of any tendon is below the value in the member bound, N. */
 #define SUN2XP_WHEN_JOINT_ABOVE 6           /* The angle of the joint with the number in the member joint is above
@@ -2196,31 +2235,37 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 #define SUN2XP_THEN_GRIP 5                  /* The tip presses harder. Its force rises by the amount in the member
                                                value, but to at most the amount in the member largest, both in N.
                                                This needs a Kx without an eigenvalue of 0. */
-#define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio in the member value. */
+#define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio in the member value, or the nearest
+                                               ratio that its stiffness permits. */
 
 /*
  A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.
 
- If the member refractory is 0, the rule fires again only after its condition was false. After a reaction,
- the finger ignores set points of the planner for the time in the member inhibition. For SUN2XP_THEN_GRIP,
- the member position is the direction in the finger's frame in which the tip presses harder; 0, 0, 0 is the
- direction in which its spring presses. If the spring presses with less than 0.05 N in this direction, the
- reaction changes no set point, but a path still ends.
+ If the member refractory is 0, the rule fires again only after its condition has been false. If the
+ member refractory is above 0, the rule also fires again after this time while its condition stays true.
+ After a reaction, the finger ignores set points of the planner for the time in the member inhibition. For
+ SUN2XP_THEN_GRIP, the member position is the direction in the finger's frame in which the tip presses
+ harder; 0, 0, 0 is the direction in which its spring presses. If the spring presses with less than 0.05 N
+ in this direction, the reaction changes no set point, but a path still ends.
  */
 struct sun2xp_reflex {
     size_t size;                            /* sizeof (struct sun2xp_reflex), set before the call. */
     int condition;                          /* SUN2XP_WHEN_EVENT to SUN2XP_WHEN_PLANNER_SILENT. */
-    int event;                              /* SUN2XP_EVENT_... for the conditions EVENT and OTHER_FINGER. */
+    int event;                              /* SUN2XP_EVENT_... for SUN2XP_WHEN_EVENT and SUN2XP_WHEN_OTHER_FINGER. */
     int finger;                             /* The other finger for SUN2XP_WHEN_OTHER_FINGER. */
-    int joint;                              /* Joint, 0 to 2, for the conditions JOINT_ABOVE and JOINT_BELOW. */
+    int joint;                              /* Joint, 0 to 2, for SUN2XP_WHEN_JOINT_ABOVE and
+                                               SUN2XP_WHEN_JOINT_BELOW. */
     int reaction;                           /* SUN2XP_THEN_STOP to SUN2XP_THEN_DAMP. */
-    int priority;                           /* 0 to 255. In a cycle, the rule with the highest priority reacts first. */
-    double bound;                           /* N, rad or s, as the condition says. */
-    double value;                           /* SUN2XP_THEN_GRIP: increase of the force, N. SUN2XP_THEN_DAMP: ratio. */
-    double largest;                         /* SUN2XP_THEN_GRIP: largest force, N. */
+    int priority;                           /* 0 to 255. If several rules have fired, the one with the highest
+                                               priority reacts first. */
+    double bound;                           /* Bound of the condition: 0 to 1000 N, -pi to pi rad, or 0 to 3600 s. */
+    double value;                           /* SUN2XP_THEN_GRIP: increase of the force, N, 0 to 1000.
+                                               SUN2XP_THEN_DAMP: ratio, 0 to 10. */
+    double largest;                         /* SUN2XP_THEN_GRIP: largest force, N, 0 to 1000. */
     double refractory;                      /* Time after a reaction in which the rule does not fire, s, 0 to 3600. */
     double inhibition;                      /* Time after a reaction in which set points are ignored, s, 0 to 3600. */
-    double position[3];                     /* RETRACT: joint angles, rad. GRIP: direction of the force. */
+    double position[3];                     /* SUN2XP_THEN_RETRACT: joint angles, rad. SUN2XP_THEN_GRIP: direction of
+                                               the force. */
     double stiffness[3][3];                 /* SUN2XP_THEN_SOFTEN: stiffness, N/cm, row by row. */
 };
 
@@ -2236,19 +2281,20 @@ struct sun2xp_reflex {
  SUN2XP_EVENT_REFLEX_FIRED with the number of the rule. The servo of a built-in simulated finger, or of
  hardware with in_step, waits for every reply, so SUN2XP_WHEN_LINK_LOST never becomes true for it.
 
- A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
- later calls that change a part of a set point start from the new one. The next sun2xp_send_position
- moves the finger again. The set point of the reaction expires when the one that was sent last would have
- expired. The finger ignores a set point that is sent within the time in the member inhibition. This is no
- error, and the ignored set point still restarts the time after which set points expire. A rule stays until
- sun2xp_remove_reflex or sun2xp_close.
+ A reaction replaces the set point and ends a path. Set points that were sent before are discarded, and
+ later calls that change a part of a set point start from the set point of the reaction. The next
+ sun2xp_send_position moves the finger again. The set point of the reaction expires when the one that was
+ sent last would have expired. The finger ignores a set point that is sent within the time in the member
+ inhibition. The call that sends it is not refused, and the ignored set point still restarts the time
+ after which set points expire. A rule stays until sun2xp_remove_reflex or sun2xp_close.
 
  Returns the number of the rule, above 0, or a negative number with
    EPERM    forked child
    EFAULT   reflex is null
    ENODEV   no such hand
-   EINVAL   size is too small; no such finger, joint, condition, reaction or event; the member position
-            or stiffness is NaN or infinite
+   EINVAL   size is too small; no such finger, joint, condition, reaction or event; with
+            SUN2XP_WHEN_OTHER_FINGER, the member finger equals the argument finger; the member position or
+            stiffness is NaN or infinite
    ERANGE   another value is NaN or outside its range; sun2xp_send_position would refuse the member
             position, or sun2xp_send_stiffness the member stiffness, with ERANGE
    EDOM     sun2xp_send_stiffness would refuse the member stiffness with EDOM
@@ -2306,10 +2352,11 @@ struct sun2xp_record {
     unsigned long oldest;                   /* First cycle that is stored now. */
     unsigned long newest;                   /* Last cycle that is stored now. */
     double time;                            /* Start of the cycle on CLOCK_MONOTONIC, s. */
-    int answered;                           /* 1: the board's reply arrived. 0: none came in this cycle. */
+    int answered;                           /* 1: the board's reply arrived in this cycle. 0: no reply arrived. */
     int status_bits;                        /* Status bits of the newest reply (docs/board-protocol.md). */
     int computed;                           /* 1: the controller ran and computed the members below. */
-    int follows;                            /* 1: position_sent is the set point in force. 0: none is in force. */
+    int follows;                            /* 1: position_sent is the set point in force. 0: no set point is in
+                                               force. */
     double position[3];                     /* Measured joint angles, rad. */
     double position_sent[3];                /* Joint angles of the set point in force, rad. The anchor of the spring
                                                moves toward them. */

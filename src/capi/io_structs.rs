@@ -5,10 +5,10 @@
 
 use std::ffi::{c_int, c_uint, c_ulong, c_void};
 
-/// The watchdog of the hardware has tripped since the library last called start (struct sun2xp_io).
+/// The watchdog of the hardware has tripped since the last call of start.
 pub const SUN2XP_IO_WATCHDOG: c_uint = 1;
 
-/// The hardware has entered the end state for a reason other than its watchdog.
+/// The hardware has entered the end state, but not by its watchdog.
 pub const SUN2XP_IO_ENDED: c_uint = 2;
 
 /// The emergency stop is active.

@@ -17,7 +17,7 @@ use std::ffi::{c_int, c_ulong};
 /// From the scheduled start of a cycle to the thread's first instruction.
 pub const SUN2XP_STAGE_WAKE_UP: c_int = 0;
 
-/// Passing the commands of all fingers on the port to the operating system.
+/// Passing the commands of the port's fingers to the operating system.
 pub const SUN2XP_STAGE_WRITE: c_int = 1;
 
 /// From the end of SUN2XP_STAGE_WRITE until the reply can be read: the line in both directions, and the
