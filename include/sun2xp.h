@@ -514,10 +514,8 @@ sun2xp_hand *sun2xp_default_hand(void);
 
 /* ---- HARDWARE OF THE PROGRAM ------------------------------------------------------------------------------------- */
 
-#define SUN2XP_IO_WATCHDOG 1                /* The watchdog of the hardware has tripped since the library last called
-                                               start (struct sun2xp_io). */
-#define SUN2XP_IO_ENDED 2                   /* The hardware has entered the end state for a reason other than its
-                                               watchdog. */
+#define SUN2XP_IO_WATCHDOG 1                /* The watchdog of the hardware has tripped since the last call of start. */
+#define SUN2XP_IO_ENDED 2                   /* The hardware has entered the end state, but not by its watchdog. */
 #define SUN2XP_IO_EMERGENCY_STOP 4          /* The emergency stop is active. */
 #define SUN2XP_IO_SUPPLY 8                  /* The supply of the motors is missing or out of range. */
 #define SUN2XP_IO_DRIVER 16                 /* A motor driver reports a fault. */
@@ -1684,8 +1682,7 @@ int sun2xp_status(sun2xp_hand *hand, int finger, struct sun2xp_status *status);
 /* ---- TIMING ------------------------------------------------------------------------------------------------------ */
 
 #define SUN2XP_STAGE_WAKE_UP 0              /* From the scheduled start of a cycle to the thread's first instruction. */
-#define SUN2XP_STAGE_WRITE 1                /* Passing the commands of all fingers on the port to the operating
-                                               system. */
+#define SUN2XP_STAGE_WRITE 1                /* Passing the commands of the port's fingers to the operating system. */
 #define SUN2XP_STAGE_WIRE 2                 /* From the end of SUN2XP_STAGE_WRITE until the reply can be read: the
                                                line in both directions, and the board. */
 #define SUN2XP_STAGE_READ 3                 /* Reading the reply. */
@@ -2235,8 +2232,7 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 #define SUN2XP_THEN_GRIP 5                  /* The tip presses harder. Its force rises by the amount in the member
                                                value, but to at most the amount in the member largest, both in N.
                                                This needs a Kx without an eigenvalue of 0. */
-#define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio in the member value, or the nearest
-                                               ratio that its stiffness permits. */
+#define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio value, or the nearest admitted ratio. */
 
 /*
  A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.
