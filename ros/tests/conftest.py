@@ -166,8 +166,8 @@ class Planner:
         return self.finish(self.begin(service))
 
     def recover(self):
-        """Recovers all fingers. The threads of the node are not real-time, so the machine may pause a simulated board so
-        long that it does not answer in time. Only then the call is repeated."""
+        """Recovers all fingers. The threads of the node are not real-time, so the machine may pause a simulated board
+        so long that it does not answer in time. Only then the call is repeated."""
         for attempt in range(MOST_REPEATED + 1):
             before = waits(self.process)
             response = self.call("recover")

@@ -29,6 +29,9 @@ use nalgebra::{Vector3, Vector4};
 /// Fraction of t_min from which a tendon counts as tight.
 const TIGHT: f64 = 0.8;
 
+/// Why a configuration whose joints cannot all be springs is refused.
+const NO_STIFFNESS: &str = "gives at least one joint no stiffness: check that geometry.r has rank 3";
+
 impl Controller {
     /// Constructs the controller of `finger` at `rate`, Hz, without gravity. Gains that are not configured follow from
     /// the rate. Returns an error that names the key to correct if the controller cannot use the values.
@@ -77,10 +80,7 @@ impl Controller {
         let dither_period = state_feedback.as_ref().map_or(0.0, StateFeedback::dither_period);
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
         positive("motor.thermal_time", &[finger.motor.thermal_time])?;
-        let soft = || Unusable {
-            key: "tendon.stiffness",
-            reason: "gives at least one joint no stiffness: check that geometry.r has rank 3".into(),
-        };
+        let soft = || Unusable { key: "tendon.stiffness", reason: NO_STIFFNESS.into() };
         check_continuous_torque(finger, &motor_torque, &tendons, state_feedback.as_ref())?;
         let admissible = AdmissibleStiffness::new(finger, &tendons, rate).ok_or_else(soft)?;
         Ok(Self {
