@@ -48,8 +48,6 @@ pub(super) struct Identification {
     reference: GaugeReference,
     /// Joint angles at the beginning, rad.
     start: Vector3<f64>,
-    /// Angles at which the lower stops were found, rad.
-    stop: Vector3<f64>,
     /// Tensions and motor torques of the free finger. They are evaluated again when the moment arms are known.
     joint_friction: JointFriction,
     motor_friction: MotorFriction,
@@ -84,7 +82,6 @@ impl Identification {
             ghost: finger.geometry.ghost_row.map(RowVector4::from),
             reference: finger.gauge.reference,
             start: Vector3::zeros(),
-            stop: Vector3::zeros(),
             joint_friction: JointFriction::new(),
             motor_friction: MotorFriction::new(),
             free: FreeFinger {

@@ -41,8 +41,8 @@ static OPENED: AtomicUsize = AtomicUsize::new(0);
 /// a hand, because nothing would close it. No call may move an open hand either, because the exit handler closes it.
 static EXITING: AtomicBool = AtomicBool::new(false);
 
-/// Longest time that exit waits for a call in progress. The wait is limited because that call may be in the exiting
-/// thread itself, interrupted by a signal handler that calls exit.
+/// Longest time that exit waits for a lock of a hand, which a call in progress may hold. The wait is limited because
+/// that call may be in the exiting thread itself, interrupted by a signal handler that calls exit.
 const LONGEST_WAIT_AT_EXIT: Duration = Duration::from_millis(100);
 
 /// Interval at which a close checks whether another thread has closed the hand.

@@ -18,8 +18,8 @@ pub struct ControlInput {
     pub skipped: u64,
     /// Present if so many replies in a row were lost that the motor torques are faded to their rest value.
     pub fading: Option<Fading>,
-    /// Gravity in the finger's frame that planners have set, m/s^2. Recordings of older libraries do not have it. Their
-    /// controllers compensate the gravity with which they were constructed.
+    /// Gravity in the finger's frame, m/s^2: that of the configuration until a planner sets another. Recordings of
+    /// older libraries do not have it. Their controllers compensate the gravity with which they were constructed.
     #[serde(default)]
     pub gravity: Option<Vector3<f64>>,
     /// Whether a path begins in this cycle. Recordings of older libraries do not have it.

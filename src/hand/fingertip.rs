@@ -14,18 +14,19 @@ pub struct FingerTip {
     pub tip: [f64; 3],
     /// Force on the touched object in the finger's frame, N: J^-T R t (eqs. 1 and 13 of the report) with the Jacobian
     /// J, the moment arms R and the measured tensions t. The force includes the effects of the finger's friction,
-    /// weight and acceleration. It is never NaN: near the straight pose, the component in a direction that the joints
-    /// do not feel is zero.
+    /// weight and acceleration. It is never NaN: near singular poses, the component in a direction that the joints do
+    /// not feel is zero.
     pub force: [f64; 3],
     /// Number of directions that the joints feel: 3, or fewer near a singular pose.
     pub felt: usize,
     /// Measured tendon tensions, N.
     pub tensions: [f64; 4],
-    /// Stiffness of the tip in the present pose, in the finger's frame, N/cm. It is the part of the sent stiffness of
-    /// tip and joints that is in force. Three other springs add to it: a rotational stiffness of the contact, the soft
-    /// joint limits, and the spring of joint 0 while the tip is near the axis of this joint. (The rotational stiffness
-    /// adds, because a force that displaces the tip also turns it.) The stiffness is zero in a direction that the
-    /// joints do not feel, and while the finger is not in the stage `Running`.
+    /// Stiffness of the tip in the present pose, in the finger's frame, N/cm. It is the part of Kx, or of the joint
+    /// stiffness, that the present pose admits. Three other springs add to it: a rotational stiffness of the contact,
+    /// the soft joint limits, and the spring of joint 0 while the tip is near the axis of this joint. (The rotational
+    /// stiffness adds, because a force that displaces the tip also turns it.) After a change of Kx, this field has its
+    /// new value in the next cycle, although the stiffness of the finger itself changes over 50 ms. The stiffness is
+    /// zero in a direction that the joints do not feel, and while the finger is not in the stage `Running`.
     pub stiffness: [[f64; 3]; 3],
     /// Force on the touched object in the finger's frame, N, without the friction, weight and acceleration of the
     /// finger, and without constant errors of the gauges: from the momentum observer of docs/contact.md. It is zero

@@ -25,15 +25,19 @@ pub struct PathPose {
 }
 
 impl Hand {
-    /// Sends a path to finger 1, 2 or 3. The path begins at once where the set point is, continues its motion, passes
-    /// every pose at its time, and rests at the last one. Joint angles, rates, accelerations and jerk are continuous,
-    /// with one exception: a path that would be refused if it continued the motion first brakes for 0.15 s. It begins
-    /// with the present rates, but without acceleration and jerk. State feedback smooths this step.
-    /// The finger follows without the lag with which it follows a single set point.
+    /// Sends a path to finger 1, 2 or 3. The path begins at once at the anchor of the tip's spring, continues the
+    /// motion of the anchor, passes every pose at its time, and rests at the last one. Joint angles, rates,
+    /// accelerations and jerk are continuous, with one exception: if a path that continues the motion would be refused,
+    /// the finger first brakes for 0.15 s. The braking begins with the present rates, but without acceleration and
+    /// jerk. State feedback smooths this step in acceleration and jerk. State feedback also feeds rates, accelerations
+    /// and jerk forward, so the finger follows without the lag with which it follows a single set point.
     ///
-    /// The whole path is checked against the joint limits and the limits of `[finger.motion]` before anything moves. A
-    /// later path, or a later desired pose, replaces the path without a jump. A later Kx takes effect at once,
-    /// and the path no longer changes Kx.
+    /// The whole path is checked against the joint limits and the limits of `[finger.motion]` before anything moves. If
+    /// commands are clamped, joint angles and Kx are clamped, and a path that is too fast is made slower as a whole. A
+    /// path that is out of reach, or that is outside the joint limits between two poses, is refused nevertheless.
+    ///
+    /// A later path, or a later desired pose, replaces the path without a jump. A Kx that is sent while the path runs
+    /// takes effect at once, and the path no longer changes Kx.
     ///
     /// `valid` is how long the path stays valid after its end; none for the configured time.
     ///

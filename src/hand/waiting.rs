@@ -14,7 +14,8 @@ const POLL_INTERVAL: Duration = Duration::from_millis(1);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Until {
-    /// Every joint has been within `finger.events.arrived_degrees` of the set point that was sent last.
+    /// Since the set point that was sent last took effect, there was a cycle in which every joint was within
+    /// `finger.events.arrived_degrees` of this set point.
     Arrived,
     /// Since the set point that was sent last took effect, there was a time of `finger.events.settled_ms` in which no
     /// joint moved by more than `finger.events.settled_degrees`. A finger that an object blocks settles without

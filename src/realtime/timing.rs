@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub enum CycleStage {
     /// From the scheduled beginning of the cycle to the thread's first instruction.
     WakeUp,
-    /// Passing the commands of the port to the system.
+    /// Passing the commands of the port's fingers to the operating system.
     Write,
     /// From the end of the write until reply bytes can be read: the line in both directions, and the board.
     Wire,
@@ -17,11 +17,12 @@ pub enum CycleStage {
     Read,
     /// Decoding the bytes into the finger's reply, including the checks.
     Decode,
-    /// The control computation and the report.
+    /// Computing the command, and the state that planners read.
     Compute,
     /// From the scheduled beginning to the end of the computation.
     Whole,
-    /// Age of the newest measurement when the command computed from it takes effect, by the board's clock.
+    /// Age of the newest measurement when the command computed from it takes effect, by the board's clock. It is one
+    /// period if nothing is late.
     Age,
 }
 

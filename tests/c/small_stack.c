@@ -1,5 +1,5 @@
-/* Runs the calls of Sun2Xp.h and many calls of sun2xp.h, each in a thread of its own with a stack of 64 KiB. The stack
-   is filled with PAINT before the call. The program prints the number of bytes that each call has overwritten. */
+/* Runs all calls of Sun2Xp.h and sun2xp.h, each in a thread with a stack of 64 KiB. The stack is filled with PAINT
+   before the call. The program prints the number of bytes that each call has overwritten. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <pthread.h>
@@ -79,6 +79,8 @@ static int get_fault(void)
     return sun2xp_fault(HAND, 1, &Found);
 }
 
+#include "small_stack.h"
+
 static const struct job {
     const char *name;
     int (*call)(void);                  /* NULL for open_again, which is defined below */
@@ -87,6 +89,11 @@ static const struct job {
     {"SendPos without a hand", refused_without_hand},
     {"OpenHand", OpenHand},
     {"OpenHand again", NULL},
+    {"sun2xp_default_hand", default_hand},
+    {"sun2xp_version and others", versions},
+    {"sun2xp_error", get_error},
+    {"sun2xp_error_text", error_text},
+    {"sun2xp_set_log", set_log},
     {"SendPos", send_pos},
     {"SendPosD", send_pos_double},
     {"SendPosD beyond a limit", send_pos_beyond},
@@ -96,6 +103,27 @@ static const struct job {
     {"GetPos", get_pos},
     {"GetPosD", get_pos_double},
     {"HandError", hand_error},
+    {"sun2xp_send_position", send_position},
+    {"sun2xp_wait", wait_settled},
+    {"sun2xp_send_path", send_path},
+    {"sun2xp_send_position_for", send_position_for},
+    {"sun2xp_send_group", send_group},
+    {"sun2xp_send_joint_stiffness", send_joint_stiffness},
+    {"sun2xp_send_joint_torque", send_joint_torque},
+    {"sun2xp_send_stiffness", send_stiffness},
+    {"sun2xp_position", get_position},
+    {"sun2xp_jacobian and others", get_kinematics},
+    {"sun2xp_joint_torques", get_joint_torques},
+    {"sun2xp_palm_pose", get_palm_pose},
+    {"sun2xp_limits", get_limits},
+    {"sun2xp_touch, no element", get_touch},
+    {"sun2xp_tare_touch", tare_touch},
+    {"sun2xp_object, no object", get_object},
+    {"sun2xp_install_reflex", install_reflex},
+    {"sun2xp_remove_reflex", remove_reflex},
+    {"sun2xp_next_event and wait_event", take_events},
+    {"sun2xp_event_descriptor", event_descriptor},
+    {"sun2xp_on_event", on_event},
     {"sun2xp_send_tip", send_tip},
     {"sun2xp_tip", get_tip},
     {"sun2xp_send_contact", send_contact},
@@ -111,8 +139,19 @@ static const struct job {
     {"sun2xp_write_black_box", write_black_box},
     {"sun2xp_zero", zero_finger},
     {"sun2xp_identify, no such finger", identify_refused},
+    {"sun2xp_set_gravity", set_gravity},
+    {"sun2xp_stop", stop_finger},
     {"sun2xp_stop_all, sun2xp_recover", recover_hand},
     {"CloseHand", CloseHand},
+    {"sun2xp_open", open_simulated},
+    {"sun2xp_close", close_other},
+    {"sun2xp_open_text", open_text},
+    {"sun2xp_close", close_other},
+    {"sun2xp_open_named", open_named},
+    {"sun2xp_close", close_other},
+    {"sun2xp_open_io without functions", open_io},
+    {"sun2xp_open_io_text", open_io_text},
+    {"sun2xp_close", close_other},
 };
 
 static int open_again(void) { return OpenHand() == -1 && errno == EBUSY ? 0 : 1; }
@@ -155,6 +194,7 @@ static size_t used_by(const struct job *job)
 int main(void)
 {
     size_t number, most = 0, thread = used_by(&jobs[0]);
+    make_arguments();
     for (number = 1; number < sizeof jobs / sizeof *jobs; number++) {
         size_t used = used_by(&jobs[number]) - thread;
         printf("%-32s %6lu bytes\n", jobs[number].name, (unsigned long)used);

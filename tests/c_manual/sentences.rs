@@ -1,6 +1,8 @@
 //! Compares the chapters' statements about all calls with the entries of the calls.
 
+use super::c::root;
 use super::manual::{HANDLES, Manual, OF_1990, listed};
+use std::fs;
 
 /// The names between two parts of a sentence of a chapter.
 fn between<'a>(chapter: &'a str, before: &str, after: &str) -> Vec<&'a str> {
@@ -29,6 +31,18 @@ fn the_calls_that_signal_handlers_may_make_are_named() {
     let safe = manual.entries.iter().filter(|entry| entry.threads().contains("signal handler"));
     let safe = safe.map(|entry| entry.call.as_str()).collect();
     assert_eq!(sorted(between(&chapter, "A signal handler may call ", ", and no other")), sorted(safe));
+}
+
+/// `a_small_stack_is_enough_for_every_call` tests the sentence about the stack for the calls in these two files. The
+/// compiler refuses a function of these files that is not in the table of calls.
+#[test]
+fn the_stack_of_every_call_is_measured() {
+    let source = |name: &str| fs::read_to_string(root().join("tests/c").join(name)).expect("a source file");
+    let sources = source("small_stack.c") + &source("small_stack.h");
+    let manual = Manual::read(HANDLES);
+    let calls = manual.entries.iter().map(|entry| entry.call.as_str());
+    let missing: Vec<&str> = calls.filter(|call| !sources.contains(&format!("{call}("))).collect();
+    assert!(missing.is_empty(), "tests/c/small_stack.c does not make these calls: {missing:?}");
 }
 
 /// The entry of sun2xp_identify has no list of errnos: the list of sun2xp_zero applies to it. sun2xp_wait_event and

@@ -16,7 +16,7 @@ fn refusal(text: &str) -> String {
 #[test]
 fn the_refusals_lead_to_three_fingers_on_one_port() {
     let mut text = "[finger]\nport = '/dev/ttyUSB0'\n".to_owned();
-    for remedy in ["thread = 1", "baud = 2000000"] {
+    for remedy in ["thread = 1", "baud = 1500000"] {
         let reason = refusal(&text);
         assert!(reason.contains(&format!("et {remedy} ")), "{remedy}: {reason}");
         text += remedy;

@@ -39,7 +39,7 @@ fn a_rate_that_one_port_cannot_carry_for_three_fingers() {
     let mut configuration = on_one_port(&board.port, 1_000_000);
     configuration.hand.rate = 1000.0;
     let error = refusal(configuration.clone());
-    assert_names(&error, libc::EINVAL, &["baud", "1110 us in all", "800 us", "baud = 2000000", "hand.rate = 720"]);
+    assert_names(&error, libc::EINVAL, &["baud", "1110 us in all", "800 us", "baud = 1500000", "hand.rate = 720"]);
     // The remedy that the refusal names.
     configuration.hand.rate = 720.0;
     goes(&open(configuration), 3, TARGET);

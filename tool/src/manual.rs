@@ -140,6 +140,18 @@ mod tests {
     }
 
     #[test]
+    fn a_description_may_have_lines_and_paragraphs_that_begin_with_returns() {
+        let text = "\n/*\n rest - wait\n\n   finger   1 to 3\n\n Returns at once if the finger rests. The call\n \
+                    Returns early in no other case.\n\n Returns 0.\n\n Threads: any.\n */\nint rest(int finger);\n";
+        let header = Header { name: "fingers".into(), text: text.into() };
+        let page = calls::pages(&header).remove(0).text.render();
+        let (_, description) = page.split_once(".SH DESCRIPTION\n").expect("a description");
+        let (description, value) = description.split_once(".SH \"RETURN VALUE\"\n").expect("a return value");
+        assert!(description.contains("Returns at once") && description.contains("Returns early"), "{page}");
+        assert!(value.contains("Returns 0."), "{page}");
+    }
+
+    #[test]
     fn the_page_of_the_configuration_has_every_table_and_key() {
         let page = configuration::page(CONFIGURATION).text.render();
         let keys = CONFIGURATION.lines().filter_map(configuration::key);

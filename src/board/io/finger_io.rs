@@ -34,8 +34,8 @@ pub trait FingerIo: Send {
     /// The hand is not opened, or the finger stays faulted. The call that opens or recovers returns the error.
     fn start(&mut self, terms: &IoTerms) -> io::Result<IoSample>;
 
-    /// Applies the torques of `command`, and returns what the sensors measure at that time. An exchange that returns
-    /// after the deadline still counts, but the servo then misses the end of its period: an overrun.
+    /// Applies the torques of `command`, and returns what the sensors measure. If it returns a sample after the
+    /// deadline, the sample is used nevertheless. If the next period has begun by then, the cycle counts as an overrun.
     ///
     /// # Errors
     /// The exchange counts as a lost reply of a serial board.
@@ -81,7 +81,7 @@ pub struct IoTerms {
     pub finger: FingerNumber,
     /// Exchanges per second, Hz.
     pub rate: f64,
-    /// Time without an exchange after which the hardware enters the end state by itself, ms.
+    /// Time without an exchange after which the hardware must enter the end state by itself, ms.
     pub watchdog_ms: u16,
     /// What the motors do when exchanges stop.
     pub end_state: EndState,
@@ -99,7 +99,8 @@ pub struct IoTerms {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct IoCommand {
-    /// Number of the command since the start. An exchange that failed and is repeated has the same number again.
+    /// Number of the command, counted from the last call of [`FingerIo::start`]. An exchange that is repeated after an
+    /// error (only with [`IoProperties::in_step`]) has the same number again.
     pub number: u64,
     /// False: the motors are off, and the torques are zero.
     pub enable: bool,
@@ -130,9 +131,9 @@ pub struct IoSample {
 pub struct IoFaults(pub u32);
 
 impl IoFaults {
-    /// The watchdog of the hardware has tripped since the start.
+    /// The watchdog of the hardware has tripped since the last call of [`FingerIo::start`].
     pub const WATCHDOG: Self = Self(1 << 0);
-    /// The hardware has entered the end state for another reason.
+    /// The hardware has entered the end state, but not by its watchdog.
     pub const ENDED: Self = Self(1 << 1);
     /// The emergency stop is active.
     pub const EMERGENCY_STOP: Self = Self(1 << 2);
@@ -142,7 +143,8 @@ impl IoFaults {
     pub const DRIVER: Self = Self(1 << 4);
     /// An encoder or a gauge cannot be read.
     pub const SENSOR: Self = Self(1 << 5);
-    /// The encoder counts have lost their reference to the zero.
+    /// The encoder counts have lost their reference to the zero. In the first sample this bit does not fault the
+    /// finger: a message reports it, and the finger must be zeroed.
     pub const ZERO_LOST: Self = Self(1 << 6);
 
     /// Returns whether any of these bits is set.

@@ -76,9 +76,6 @@ impl Identification {
     ) -> Stepped {
         guide.measure(instruments, sample);
         let found = search.step(instruments, &mut guide, self.speed)?;
-        if let Some(angle) = found {
-            self.stop[joint] = angle;
-        }
         self.phase = match found {
             None => Phase::Seek { guide, joint, search },
             Some(_) if joint < 2 => self.search_of(joint + 1, guide),

@@ -72,7 +72,10 @@ impl Identification {
         elasticity: &StiffnessFound,
         instruments: &Instruments,
     ) -> Tolerances {
-        let friction = (motors.conduit + free.pulley).max().max(elasticity.rubbing / SHARE_OF_FRICTION);
+        // The friction of a conduit is a pull of the motor per tension at the gauge, so it depends on the scale. The
+        // others are ratios of values in one scale.
+        let conduit = motors.conduit / self.scale(motors);
+        let friction = (conduit + free.pulley).max().max(elasticity.rubbing / SHARE_OF_FRICTION);
         let moment_arms = self.moment_arms.map(|arms| {
             let uncertainty = arms.uncertainty(instruments, elasticity, &self.stops);
             (SIGNIFICANT + uncertainty).min(LARGEST_TOLERANCE)
@@ -118,5 +121,26 @@ impl Identification {
         };
         let counts = too_far.component_div(&instruments.radius.component_mul(&instruments.radians_per_count));
         std::array::from_fn(|motor| self.zero[motor].wrapping_add(counts[motor].round() as i32))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::configuration::ConfiguredFinger;
+
+    #[test]
+    fn the_tolerated_friction_is_in_the_scale_of_the_reference() {
+        let mut finger = ConfiguredFinger::default();
+        let instruments = Instruments::new(&finger, 1000.0).expect("usable");
+        let (coulomb, conduit, ratio) = (Vector4::zeros(), Vector4::repeat(0.1), Vector4::repeat(0.8));
+        let motors = MotorFrictionFound { coulomb, conduit, ratio };
+        for (reference, friction) in [(GaugeReference::Gauges, 0.1), (GaugeReference::Motors, 0.1 / 0.8)] {
+            finger.gauge.reference = reference;
+            let identification = Identification::new(&finger);
+            let elasticity = StiffnessFound::default();
+            let found = identification.tolerances(&identification.free, &motors, &elasticity, &instruments).friction;
+            assert!((found - friction - UNCERTAIN).abs() < 1e-12, "{found} instead of {friction} + {UNCERTAIN}");
+        }
     }
 }

@@ -41,7 +41,7 @@ pub(super) struct TendonStiffness {
 }
 
 /// The elasticity of all four tendons.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StiffnessFound {
     /// Mean stiffness in the range of tensions in which the controller works, N/cm.
     pub stiffness: Vector4<f64>,

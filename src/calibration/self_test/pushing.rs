@@ -88,14 +88,21 @@ impl Pushing {
                     if first != self.motor && moved[first] < 0.0 && risen[self.motor] > RESPONDED * minimum {
                         return Err(Obstacle::DeadEncoder { encoder: self.motor as u8 + 1 });
                     }
-                    self.enter(match first == self.motor && moved[first] > 0.0 {
-                        true => Stage::Braking,
-                        false => Stage::Pulling { encoder: first, direction: moved[first].signum() },
-                    });
+                    // `enter` restarts the time. The pull must not drop while the motor still pulls.
+                    let (stage, pull) = match first == self.motor && moved[first] > 0.0 {
+                        true => (Stage::Braking, 0.0),
+                        false => {
+                            let direction = moved[first].signum();
+                            (Stage::Pulling { encoder: first, direction }, RISE * self.seconds)
+                        }
+                    };
+                    self.enter(stage);
+                    pull
                 } else if RISE * self.seconds > HARDEST {
                     return Err(self.nothing_moved(&risen, minimum));
+                } else {
+                    RISE * self.seconds
                 }
-                RISE * self.seconds
             }
             Stage::Pulling { encoder, direction } => {
                 self.pull(encoder, direction, &moved, &risen, minimum)?;
@@ -167,5 +174,37 @@ impl Pushing {
             true => Obstacle::DeadEncoder { encoder: number },
             false => Obstacle::DeadMotor { motor: number },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::configuration::ConfiguredFinger;
+
+    /// Returns the pull of motor 1 before and after this encoder, from 0, has moved.
+    fn pulls_around_motion_of(encoder: usize) -> (f64, f64) {
+        let instruments = Instruments::new(&ConfiguredFinger::default(), 1000.0).expect("usable");
+        let zeros = Vector4::zeros();
+        let mut readings = Readings { travel: zeros, speed: zeros, tensions: zeros };
+        let mut pushing = Pushing::of(0);
+        let mut before = 0.0;
+        for _ in 0..80 {
+            before = pushing.step(&instruments, &readings).expect("nothing is wrong yet")[0];
+        }
+        readings.travel[encoder] = 2.0 * MOVED;
+        (before, pushing.step(&instruments, &readings).expect("no gauge has responded")[0])
+    }
+
+    #[test]
+    fn the_pull_continues_after_another_encoder_has_moved() {
+        let (before, after) = pulls_around_motion_of(1);
+        assert!(before > 0.0 && after >= before, "{before} N, then {after} N");
+    }
+
+    #[test]
+    fn the_pull_ends_after_the_encoder_of_the_motor_has_moved() {
+        let (before, after) = pulls_around_motion_of(0);
+        assert!(before > 0.0 && after == 0.0, "{before} N, then {after} N");
     }
 }

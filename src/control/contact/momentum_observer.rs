@@ -32,7 +32,7 @@ pub(super) struct MomentumObserver {
     /// K, 1/s.
     bandwidth: f64,
     /// R, cm.
-    r: Matrix3x4<f64>,
+    pub r: Matrix3x4<f64>,
     /// Coulomb friction of the joints, N cm.
     coulomb: Vector3<f64>,
     /// Viscous friction of the joints, N cm s/rad.

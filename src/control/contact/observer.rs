@@ -79,6 +79,11 @@ impl ContactObserver {
         }
     }
 
+    /// Returns whether both observers compute with the same moment arms.
+    pub fn has_arms_of(&self, other: &Self) -> bool {
+        self.observer.r == other.observer.r
+    }
+
     /// Advances the estimate for a finger that follows a set point to the sample in `report`, and writes the estimate
     /// to the report. `weight` returns the torques of gravity at joint angles, N cm. `elapsed` is the time since the
     /// previous sample, s.

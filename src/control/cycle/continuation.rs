@@ -38,6 +38,14 @@ impl Controller {
         {
             law.take_over(old, elastic);
         }
+        // The contact estimate has learned the error of the torques that `previous` computes. A controller that computes
+        // other torques must learn again: the difference would count as a contact, and nothing is learned during a
+        // contact, so this contact would never end.
+        let weight = |controller: &Self| controller.gravity.weight(&state.gravity, &state.report.joints);
+        let same_torques = self.contact.has_arms_of(&previous.contact) && self.sensors == previous.sensors;
+        if !same_torques || weight(self) != weight(previous) {
+            self.contact.end(&mut state.contact, &mut state.report);
+        }
         self.cycle(state, feedback, activity)
     }
 
@@ -61,5 +69,49 @@ impl Controller {
     /// Cools the motors of a finger whose motors have had no torque for a time, s.
     pub fn cool(&self, state: &mut State, time: f64) {
         self.heating.cool(&mut state.heat, time);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::configuration::{ConfiguredFinger, Scheme};
+    use nalgebra::{Matrix3, Vector3};
+
+    /// Returns whether a finger counts as touching something 1 s after an adjustment. Its sensors show constant values.
+    /// Before the adjustment, the tension of tendon 1 rises if the finger is `pushed`.
+    fn touches_after(change: fn(&mut ConfiguredFinger), pushed: bool) -> bool {
+        let mut finger = ConfiguredFinger::default();
+        finger.controller.scheme = Some(Scheme::Figure10);
+        let before = Controller::new(&finger, 1000.0).expect("usable");
+        change(&mut finger);
+        let after = Controller::new(&finger, 1000.0).expect("usable");
+        // The joint angles are about 0, 0.5 and 0.8 rad, and the tensions are along the null vector of R.
+        let free = Feedback { motor_counts: [3652, 5401, -5401, -3652], gauge_counts: [205, 360, 360, 205] };
+        let now = if pushed { Feedback { gauge_counts: [305, 360, 360, 205], ..free } } else { free };
+        let joints = Vector3::new(0.0, 0.5, 0.8);
+        let activity = Activity::Follow(SetPoint::hard_finger(joints, Matrix3::identity() * 3.0));
+        let mut state = before.start(&free);
+        for cycle in 0..1200 {
+            let feedback = if cycle < 1000 { free } else { now };
+            before.cycle(&mut state, Some(&feedback), &activity);
+        }
+        assert_eq!(state.report.contact.touching, pushed);
+        after.take_over(&before, &mut state, Some(&now), &activity);
+        for _ in 0..1000 {
+            after.cycle(&mut state, Some(&now), &activity);
+        }
+        state.report.contact.touching
+    }
+
+    #[test]
+    fn an_adjustment_of_arms_or_gauges_is_no_contact() {
+        assert!(!touches_after(|finger| finger.geometry.r.iter_mut().for_each(|joint| joint[0] *= 1.1), false));
+        assert!(!touches_after(|finger| finger.gauge.zero[0] = 100.0, false));
+    }
+
+    #[test]
+    fn a_contact_lasts_over_an_adjustment_of_something_else() {
+        assert!(touches_after(|finger| finger.tendon.minimum = 6.0, true));
     }
 }

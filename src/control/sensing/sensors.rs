@@ -7,7 +7,7 @@ use nalgebra::Vector4;
 use std::f64::consts::TAU;
 
 /// Scales, signs and zeros of the eight sensors.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SensorScales {
     /// 2 pi / 2000 of eq. 28, with the sign of the encoder.
     radians_per_count: [f64; 4],

@@ -245,8 +245,8 @@ faults! {
         "Follow the documentation of the program or of its hardware", [];
     54 WrongWiring "WRONG_WIRING" Refusal Finger Nothing "wrong wiring",
         "the self-test at open has found a part that is wired wrongly or dead; the error names it",
-        "motors, encoders, gauges or tendons are swapped, a motor or sensor is connected backwards or not at all, or a \
-         gauge has lost its scale",
+        "motors, encoders, gauges or tendons are swapped, a motor or sensor is connected backwards or not at all, or \
+         the scale of a gauge has changed",
         "Follow the remedy in the error, then open the hand again", [Open];
 }
 

@@ -79,7 +79,8 @@ pub struct Unusable {
 pub struct ConfiguredFinger {
     /// Path of the serial port, or `simulated`.
     pub port: String,
-    /// Unique number of the finger's board, instead of a port: the hand opens the port at which a board reports it.
+    /// Unique number of the finger, instead of a port: the hand opens the port at which a board reports it. Each finger
+    /// of a board has a number of its own.
     pub board: Option<BoardNumber>,
     /// Bit rate of the port, bit/s.
     pub baud: u32,

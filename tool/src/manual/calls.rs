@@ -76,10 +76,13 @@ fn page(comment: &Comment, header: &Header) -> Page {
     prototype(&mut text, &declarations);
     section(&mut text, "PARAMETERS", &comment.lines[signature..parameters]);
 
-    let find = |start: &str| rest.iter().position(|line| line.starts_with(start)).unwrap_or(rest.len());
+    let begins =
+        |index: usize, start: &str| rest[index].starts_with(start) && (index == 0 || rest[index - 1].is_empty());
+    let find = |start: &str| (0..rest.len()).find(|&index| begins(index, start)).unwrap_or(rest.len());
     let examples = find("Example");
     let notes = find("Threads:").min(examples);
-    let returned = find("Returns").min(notes);
+    // Paragraphs of the description may begin with the same word.
+    let returned = (0..notes).rfind(|&index| begins(index, "Returns")).unwrap_or(notes);
     section(&mut text, "DESCRIPTION", &rest[..returned]);
     section(&mut text, "RETURN VALUE", &rest[returned..notes]);
     section(&mut text, "NOTES", &rest[notes..examples]);
