@@ -46,10 +46,7 @@ pub enum RemoteError {
         text: String,
     },
     /// The finger does not act as a spring now.
-    #[error(
-        "finger {finger} is {stage}: {}",
-        if *stage == Stage::Limp.name() { "zero or identify it" } else { "wait until it is running" }
-    )]
+    #[error("finger {finger} is {stage}: {}", until_running(stage))]
     Busy {
         /// The finger.
         finger: Finger,
@@ -141,6 +138,17 @@ pub enum RemoteError {
         /// The error that the system reported.
         source: std::io::Error,
     },
+}
+
+/// Returns what lets a finger in this stage run again.
+fn until_running(stage: &str) -> &'static str {
+    if stage == Stage::Limp.name() {
+        "zero or identify it"
+    } else if stage == Stage::Closing.name() || stage == Stage::Closed.name() {
+        "its server is ending. Start the server again, then open or reopen the hand"
+    } else {
+        "wait until it is running"
+    }
 }
 
 /// Formats the place of an error in a configuration.
