@@ -131,7 +131,7 @@ pub enum RemoteError {
         reason: String,
     },
     /// The system has refused an operation.
-    #[error("cannot {doing}: {source}")]
+    #[error("cannot {doing}: {source}{}", more_threads(source))]
     System {
         /// The refused operation.
         doing: String,
@@ -151,10 +151,33 @@ fn until_running(stage: &str) -> &'static str {
     }
 }
 
+/// The remedy if the system has refused a thread. Its other errors tell what to change.
+fn more_threads(source: &std::io::Error) -> &'static str {
+    match source.kind() {
+        // EAGAIN, which a file never causes.
+        std::io::ErrorKind::WouldBlock => ". Raise the limit of threads (ulimit -u)",
+        _ => "",
+    }
+}
+
 /// Formats the place of an error in a configuration.
 fn place(file: &std::path::Path, line: Option<usize>) -> String {
     match line {
         Some(line) => format!("{}, line {line}: ", file.display()),
         None => format!("{}: ", file.display()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::ErrorKind;
+
+    #[test]
+    fn a_refused_thread_has_a_remedy_and_a_refused_file_has_not() {
+        let text = |kind: ErrorKind| RemoteError::System { doing: "do it".into(), source: kind.into() }.to_string();
+        let (thread, file) = (text(ErrorKind::WouldBlock), text(ErrorKind::PermissionDenied));
+        assert!(thread.starts_with("cannot do it: ") && thread.ends_with(". Raise the limit of threads (ulimit -u)"));
+        assert!(!file.contains("ulimit"), "{file}");
     }
 }
