@@ -121,7 +121,7 @@ pub enum RemoteError {
         reason: String,
     },
     /// The table `[remote]` cannot be used.
-    #[error("{}{reason}", place(file, *line))]
+    #[error("{}{}: {reason}", file.display(), line.map(|line| format!(":{line}")).unwrap_or_default())]
     Configuration {
         /// The file, or a description of the text.
         file: PathBuf,
@@ -157,14 +157,6 @@ fn more_threads(source: &std::io::Error) -> &'static str {
         // EAGAIN, which a file never causes.
         std::io::ErrorKind::WouldBlock => ". Raise the limit of threads (ulimit -u)",
         _ => "",
-    }
-}
-
-/// Formats the place of an error in a configuration.
-fn place(file: &std::path::Path, line: Option<usize>) -> String {
-    match line {
-        Some(line) => format!("{}, line {line}: ", file.display()),
-        None => format!("{}: ", file.display()),
     }
 }
 
