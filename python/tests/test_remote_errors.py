@@ -1,6 +1,8 @@
 """The errors of `sun2xp.remote`: their types, numbers and remedies, and what an interrupted call leaves behind."""
 
 import errno
+import pathlib
+import re
 import struct
 
 import pytest
@@ -113,6 +115,25 @@ def test_an_event_has_the_values_of_its_kind(server, remote):
         server._subscribers["events"](message)
     assert [len(event.values) for event in events_now(events)] == [_receiver.VALUES[kind] for kind in EventKind]
     assert _receiver.VALUES[EventKind.ARRIVED] == 3
+
+
+@pytest.mark.parametrize(
+    ("fault", "number", "part"),
+    [(10, 0, "joint 0"), (11, 2, "joint 2"), (2, 4, "tendon 4"), (9, 1, "motor 1"), (13, 0, "finger")]
+    + [(9999, 3, "part 3"), (float("nan"), 0, "finger"), (float("inf"), 1, "part 1")],
+)
+def test_the_part_of_a_fault_follows_from_its_number(server, remote, fault, number, part):
+    events = remote.events()
+    for kind in (EventKind.FAULT, EventKind.WARNING):
+        message = struct.pack("<BBBBHxxQQQ4d", 3, 1, 2, number, kind, int(kind), 7, 8 * MS, fault, 2.0, 0.0, 0.0)
+        server._subscribers["events"](message)
+    assert [event.part for event in events_now(events)] == [part, part]
+
+
+def test_the_parts_of_faults_are_those_of_the_page():
+    page = (pathlib.Path(__file__).parents[2] / "docs/faults.md").read_text()
+    rows = re.findall(r"^\| (\d+) \| `[A-Z_]+` \| [^|]+ \| (tendon|gauge|encoder|motor|joint)\b", page, re.MULTILINE)
+    assert {int(number): part for number, part in rows} == _receiver.FAULT_PARTS
 
 
 def events_now(events):

@@ -259,6 +259,27 @@ def test_a_wait_for_a_finger_without_a_command_uses_the_records_of_the_epoch(ser
     assert holds(remote, 2) and not holds(remote, 2, "settled")
 
 
+@pytest.mark.parametrize("call", [lambda hand: hand.owned, lambda hand: hand.recover(1), lambda hand: hand.zero(1)])
+def test_a_call_that_may_end_the_epoch_holds_the_lock(remote, call):
+    """Otherwise an acquire of another thread could begin an epoch that this call ends at once."""
+    free, lock = [], remote._network.sender.lock
+
+    def try_lock():
+        free.append(lock.acquire(blocking=False))
+        if free[-1]:
+            lock.release()
+
+    def silence():
+        thread = threading.Thread(target=try_lock)
+        thread.start()
+        thread.join()
+        return 0.0
+
+    remote._receiver.silence = silence
+    call(remote)
+    assert free == [False]
+
+
 def test_a_target_that_cannot_be_sent_does_not_stop_those_of_other_hands():
     class Failing:
         def publish(self, sent):

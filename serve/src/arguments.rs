@@ -70,9 +70,7 @@ pub fn run(arguments: Arguments) -> Result<(), ServeError> {
         return Ok(());
     }
     // Signals are held from here on, so that a server that is just starting ends in an orderly way too.
-    let signals = Signals::new(ending());
-    let signals =
-        signals.map_err(|error| ServeError::System { doing: "wait for signals", reason: error.to_string() })?;
+    let signals = Signals::new(ending()).map_err(|error| ServeError::refused("wait for signals", &error))?;
     let mut configured = match &arguments.config {
         Some(file) => Configured::read(file)?,
         None => find_configuration()?,

@@ -1,6 +1,8 @@
 //! The errors of the server, each with its cause and its remedy.
 
+use std::io;
 use std::path::{Path, PathBuf};
+use sun2xp::realtime::with_remedy;
 use sun2xp::{ConfigurationError, HandError};
 use thiserror::Error;
 
@@ -71,8 +73,24 @@ pub enum ServeError {
 }
 
 impl ServeError {
+    /// The error that the system refuses something that needs a thread or a descriptor.
+    pub(crate) fn refused(doing: &'static str, error: &io::Error) -> Self {
+        Self::System { doing, reason: with_remedy(error) }
+    }
+
     /// The error about this file of a certificate.
     pub(crate) fn certificate(path: &Path, reason: impl ToString) -> Self {
         Self::Certificate { path: path.into(), reason: reason.to_string() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refused_thread_has_a_remedy() {
+        let refused = ServeError::refused("start a thread", &io::Error::from_raw_os_error(libc::EAGAIN)).to_string();
+        assert!(refused.starts_with("cannot start a thread: ") && refused.contains("(ulimit -u)"), "{refused}");
     }
 }

@@ -87,9 +87,7 @@ impl Server {
     fn thread(&mut self, name: &str, body: impl FnOnce(Arc<Shared>) + Send + 'static) -> Result<(), ServeError> {
         let shared = self.shared.clone();
         let started = spawn(name, Priority::default(), move |_| body(shared));
-        let started =
-            started.map_err(|error| ServeError::System { doing: "start a thread", reason: error.to_string() })?;
-        self.threads.push(started);
+        self.threads.push(started.map_err(|error| ServeError::refused("start a thread", &error))?);
         Ok(())
     }
 

@@ -2,8 +2,9 @@
 
 use std::error::Error;
 use std::fmt::{self, Display, Formatter};
-use std::io::{self, Write};
-use sun2xp::model::one_line;
+use std::io::{self, ErrorKind, Write};
+use std::path::Path;
+use sun2xp::model::{ShownPath, one_line};
 
 /// The reason why a command failed. The tool prints its text, which names cause and remedy, in one line.
 pub type Failure = Box<dyn Error>;
@@ -43,10 +44,22 @@ pub fn wrong_usage(reason: impl Into<String>) -> Failure {
     Box::new(WrongUsage(reason.into()))
 }
 
+/// The failure of a file that cannot be written. The system's reports of other failures, such as a full disk, tell what
+/// to change.
+pub fn unwritable(path: &Path, error: &io::Error) -> Failure {
+    let remedy = match error.kind() {
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            ". This user needs permission to write the file and its folder"
+        }
+        _ => "",
+    };
+    format!("cannot write {}: {error}{remedy}", ShownPath(path)).into()
+}
+
 /// Prints a failure, and returns the exit status. A reader that closes the pipe of standard output, such as `head`,
 /// needs no message.
 pub fn report(failure: &Failure) -> ExitStatus {
-    let closed = |error: &io::Error| error.kind() == io::ErrorKind::BrokenPipe;
+    let closed = |error: &io::Error| error.kind() == ErrorKind::BrokenPipe;
     if !failure.downcast_ref().is_some_and(closed) {
         complain(&failure.to_string());
     }
@@ -57,4 +70,20 @@ pub fn report(failure: &Failure) -> ExitStatus {
 /// ended, is lost. It must not change the exit status.
 pub fn complain(text: &str) {
     let _ = writeln!(io::stderr(), "sun2xp: {}", one_line(text));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_without_permission_has_a_remedy_and_a_full_disk_tells_its_own() {
+        let text = |kind: ErrorKind| unwritable(Path::new("hand.toml"), &io::Error::from(kind)).to_string();
+        let (denied, full) = (text(ErrorKind::PermissionDenied), text(ErrorKind::StorageFull));
+        assert!(
+            denied.starts_with("cannot write hand.toml: permission denied. This user needs permission"),
+            "{denied}"
+        );
+        assert_eq!(full, "cannot write hand.toml: no storage space");
+    }
 }

@@ -12,7 +12,7 @@ mod svg;
 mod tensions;
 mod timing;
 
-use crate::failure::{Failure, wrong_usage};
+use crate::failure::{Failure, unwritable, wrong_usage};
 use crate::trace::{self, Item};
 use clap::ValueEnum;
 use figure::Figure;
@@ -125,8 +125,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let figure = plot.draw(&selection)?;
     let svg = figure.finish(arguments.width.into());
     let bytes = if as_png { png::draw(&svg)? } else { svg.into_bytes() };
-    replace_file(&output, |file| file.write_all(&bytes))
-        .map_err(|error| format!("cannot write {}: {error}", ShownPath(&output)))?;
+    replace_file(&output, |file| file.write_all(&bytes)).map_err(|error| unwritable(&output, &error))?;
     // The picture is written, also if nobody reads its name.
     let _ = writeln!(io::stdout(), "{}", output.display());
     Ok(())

@@ -99,7 +99,11 @@ class Hand(_sun2xp.Hand):
 
     def find_signs(self, finger: int, progress: Optional[Progress] = None, *, store: bool = True) -> Signs:
         """Finds the signs of motors, encoders and gauges of a finger. Afterwards the finger is limp: its motors are
-        off. Arguments and errors are those of `zero`."""
+        off. Arguments and errors are those of `zero`.
+
+        The hand was opened under tension, for which the signs must be known. So this method checks known signs. The
+        command `sun2xp calibrate` finds unknown ones.
+        """
         return self._calibrated(finger, "signs", progress, store)
 
     def _calibrated(self, finger: int, task: str, progress: Optional[Progress], store: bool) -> Any:

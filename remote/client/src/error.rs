@@ -46,10 +46,7 @@ pub enum RemoteError {
         text: String,
     },
     /// The finger does not act as a spring now.
-    #[error(
-        "finger {finger} is {stage}: {}",
-        if *stage == Stage::Limp.name() { "zero or identify it" } else { "wait until it is running" }
-    )]
+    #[error("finger {finger} is {stage}: {}", until_running(stage))]
     Busy {
         /// The finger.
         finger: Finger,
@@ -124,7 +121,7 @@ pub enum RemoteError {
         reason: String,
     },
     /// The table `[remote]` cannot be used.
-    #[error("{}{reason}", place(file, *line))]
+    #[error("{}{}: {reason}", file.display(), line.map(|line| format!(":{line}")).unwrap_or_default())]
     Configuration {
         /// The file, or a description of the text.
         file: PathBuf,
@@ -134,7 +131,7 @@ pub enum RemoteError {
         reason: String,
     },
     /// The system has refused an operation.
-    #[error("cannot {doing}: {source}")]
+    #[error("cannot {doing}: {source}{}", more_threads(source))]
     System {
         /// The refused operation.
         doing: String,
@@ -143,10 +140,36 @@ pub enum RemoteError {
     },
 }
 
-/// Formats the place of an error in a configuration.
-fn place(file: &std::path::Path, line: Option<usize>) -> String {
-    match line {
-        Some(line) => format!("{}, line {line}: ", file.display()),
-        None => format!("{}: ", file.display()),
+/// Returns what lets a finger in this stage run again.
+fn until_running(stage: &str) -> &'static str {
+    if stage == Stage::Limp.name() {
+        "zero or identify it"
+    } else if stage == Stage::Closing.name() || stage == Stage::Closed.name() {
+        "its server is ending. Start the server again, then open or reopen the hand"
+    } else {
+        "wait until it is running"
+    }
+}
+
+/// The remedy if the system has refused a thread. Its other errors tell what to change.
+fn more_threads(source: &std::io::Error) -> &'static str {
+    match source.kind() {
+        // EAGAIN, which a file never causes.
+        std::io::ErrorKind::WouldBlock => ". Raise the limit of threads (ulimit -u)",
+        _ => "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::ErrorKind;
+
+    #[test]
+    fn a_refused_thread_has_a_remedy_and_a_refused_file_has_not() {
+        let text = |kind: ErrorKind| RemoteError::System { doing: "do it".into(), source: kind.into() }.to_string();
+        let (thread, file) = (text(ErrorKind::WouldBlock), text(ErrorKind::PermissionDenied));
+        assert!(thread.starts_with("cannot do it: ") && thread.ends_with(". Raise the limit of threads (ulimit -u)"));
+        assert!(!file.contains("ulimit"), "{file}");
     }
 }

@@ -1,11 +1,10 @@
 //! Writes what a step has found into the configuration file, each key with a comment.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, unwritable};
 use std::path::Path;
 use sun2xp::control::Controller;
 use sun2xp::files::{UpdateError, update_file, with_line_ends_of};
 use sun2xp::hand::parse_configuration;
-use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{ConfiguredFinger, Unusable};
 use toml_edit::{Array, DocumentMut, Formatted, Item, Table, Value};
 
@@ -32,7 +31,7 @@ pub fn store(
     }
     let change = |text: &str| with(text, finger, &changed, comment).map(Some);
     update_file(path, LARGEST, change).map_err(|error| match error {
-        UpdateError::File(error) => format!("cannot write {}: {error}", ShownPath(path)).into(),
+        UpdateError::File(error) => unwritable(path, &error),
         UpdateError::Change(error) => error,
     })
 }

@@ -2,7 +2,7 @@
 
 use super::configuration_file::{LARGEST, table, with_layout_of};
 use super::port_search::{Answer, Taken, search};
-use crate::failure::{Failure, wrong_usage};
+use crate::failure::{Failure, unwritable, wrong_usage};
 use std::io::{self, Write};
 use std::path::Path;
 use sun2xp::files::{UpdateError, update_file, with_line_ends_of};
@@ -21,7 +21,7 @@ pub fn add(file: &Path, hand: &Configuration, finger: FingerNumber, ports: &[Str
         .map_err(|reason| wrong_usage(format!("{} has no finger {finger}, and {reason}", ShownPath(file))))?;
     let change = |text: &str| with(text, finger, &chosen.answer, ports).map(Some);
     update_file(file, LARGEST, change).map_err(|error| match error {
-        UpdateError::File(error) => format!("cannot write {}: {error}", ShownPath(file)).into(),
+        UpdateError::File(error) => unwritable(file, &error),
         UpdateError::Change(error) => error,
     })?;
     writeln!(io::stdout(), "{} Added finger {finger} to {}.", chosen.text(), ShownPath(file))?;

@@ -3,7 +3,7 @@
 use super::outcome::Outcome;
 use super::step::Step;
 use super::vitals::Vitals;
-use crate::failure::Failure;
+use crate::failure::{Failure, unwritable};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::OpenOptions;
@@ -72,7 +72,7 @@ impl ProgressFile {
     /// Reads, changes and replaces the file under a lock, so that several processes can commission fingers of one hand
     /// at the same time.
     pub fn update(path: &Path, mut change: impl FnMut(&mut Self)) -> Result<(), Failure> {
-        let file = |error: io::Error| Failure::from(format!("cannot write {}: {error}", ShownPath(path)));
+        let file = |error: io::Error| unwritable(path, &error);
         match OpenOptions::new().write(true).create_new(true).open(path) {
             Err(error) if error.kind() != ErrorKind::AlreadyExists => return Err(file(error)),
             _ => {}

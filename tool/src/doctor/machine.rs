@@ -5,10 +5,12 @@ use std::fs::read_to_string;
 use std::path::Path;
 use sun2xp::model::configuration::Configuration;
 
-/// Memory that three servo threads lock for stacks, mailboxes and reserves, bytes.
+/// Memory that three servo threads lock for stacks, mailboxes and events, at most 3.3 MiB, with a reserve for the
+/// planner's thread-local variables, which are locked with the stacks, bytes.
 const LOCKED: u64 = 4 << 20;
 
-/// Memory that they also lock for each Hz of the rate, because their rings have room for a time, bytes.
+/// Memory that they also lock for each Hz of the rate, with a reserve, bytes. Their rings hold the records of 0.5 s and
+/// the timings of 0.8 s, which are 1750 bytes for each Hz.
 const LOCKED_PER_HZ: f64 = 2048.0;
 
 const CAP_IPC_LOCK: u32 = 14;
@@ -127,7 +129,7 @@ fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> F
         "When memory is short, a servo may have to wait for its own pages. Write `@realtime - memlock unlimited` into \
          {LIMITS}, join the group (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
     );
-    let found = format!("the memlock limit is {kilobytes} kB, but the servos need {} kB", needed / 1024);
+    let found = format!("the memlock limit is {kilobytes} kB, but the servos need {} kB with a reserve", needed / 1024);
     lacking(configuration, subject, found, advice)
 }
 

@@ -1,6 +1,6 @@
 //! Where rows of CSV go: to standard output, or to a file that gets its name when all rows are written.
 
-use crate::failure::{Failure, wrong_usage};
+use crate::failure::{Failure, unwritable, wrong_usage};
 use std::fs;
 use std::io::{self, BufWriter, ErrorKind, Stdout, Write};
 use std::path::{Path, PathBuf};
@@ -76,8 +76,4 @@ impl Output {
 
 fn exists(path: &Path) -> Failure {
     wrong_usage(format!("{} exists: replace it with --force", ShownPath(path)))
-}
-
-fn unwritable(path: &Path, error: &io::Error) -> Failure {
-    format!("cannot write {}: {error}", ShownPath(path)).into()
 }

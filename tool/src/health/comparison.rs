@@ -42,19 +42,33 @@ pub fn compare(
 ) -> Vec<Complaint> {
     let mut all = Vec::new();
     zeros(&mut all, before, configured, today);
-    let relative = |limit: f64| move |before: f64, today: f64| (today / before - 1.0).abs() > limit;
-    let softer = "The tendon ages, frays or slips in its clamp: inspect it, and replace it";
-    each(
-        &mut all,
-        ("tendon_stiffness", "tendon", "N/cm"),
-        (before.tendon_stiffness, today.tendon_stiffness),
-        relative(STIFFNESS),
-        softer,
-    );
+    stiffnesses(&mut all, before, today);
     frictions(&mut all, before, today);
     gauges_and_tensions(&mut all, before, today, found);
     noise_and_heat(&mut all, (before, configured), (today, found));
     all
+}
+
+/// Compares the stiffness of the tendons.
+fn stiffnesses(all: &mut Vec<Complaint>, before: &Vitals, today: &Vitals) {
+    let values = (before.tendon_stiffness, today.tendon_stiffness);
+    let softer = "The tendon ages, frays or slips in its clamp: inspect it, and replace it";
+    each(
+        all,
+        ("tendon_stiffness", "tendon", "N/cm"),
+        values,
+        |before, today| today < (1.0 - STIFFNESS) * before,
+        softer,
+    );
+    let stiffer = "A tendon becomes stiffer when it is replaced or shortened: commission the finger again: sun2xp \
+                   commission --config FILE --finger N --again";
+    each(
+        all,
+        ("stiffer_tendon", "tendon", "N/cm"),
+        values,
+        |before, today| today > (1.0 + STIFFNESS) * before,
+        stiffer,
+    );
 }
 
 /// Compares the frictions.
@@ -248,6 +262,8 @@ mod tests {
         );
         let soft = named(|today| today.tendon_stiffness = Some([300.0, 240.0, 300.0, 300.0]));
         assert_eq!(soft, only("tendon_stiffness", "tendon 2"));
+        let replaced = named(|today| today.tendon_stiffness = Some([300.0, 300.0, 360.0, 300.0]));
+        assert_eq!(replaced, only("stiffer_tendon", "tendon 3"));
         let slipped = named(|today| today.encoder_zero = Some([1000, 1000, 1000, 400]));
         assert_eq!(slipped, only("encoder_slip", "zero of encoder 4"));
         let longer = named(|today| today.encoder_zero = Some([1600, 1000, 1000, 1000]));

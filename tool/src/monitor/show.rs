@@ -103,10 +103,7 @@ fn take_snapshot(view: &mut View, screen: &mut Screen, palette: &Palette, folder
     let picture = screen.terminal.draw(|frame| draw(frame, view, palette))?.buffer;
     let notice = match snapshot::write(folder, hand, picture) {
         Ok([json, ..]) => format!("wrote {}, and the screen beside it as .txt and .svg", absolute(json)),
-        Err(error) => format!(
-            "cannot write a snapshot into {}: {error}. Start the command again with --snapshots and a writable folder",
-            absolute(folder.into())
-        ),
+        Err(error) => snapshot::refusal(&absolute(folder.into()), &error),
     };
     view.notify(notice);
     Ok(())

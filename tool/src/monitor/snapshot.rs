@@ -21,20 +21,34 @@ pub fn write(folder: &Path, hand: &HandState, screen: &Buffer) -> io::Result<[Pa
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
     let time = utc(seconds).replace([':', '-'], "");
     let contents = [serde_json::to_vec_pretty(hand)?, text(screen).into_bytes(), svg(screen).into_bytes()];
+    write_new(folder, &format!("sun2xp-{}-{time}", hand.name), &contents)
+}
+
+/// Writes the files to the first number of this name that is free.
+fn write_new(folder: &Path, name: &str, contents: &[Vec<u8>; 3]) -> io::Result<[PathBuf; 3]> {
     for number in 0..MOST {
         let suffix = if number == 0 { String::new() } else { format!("-{number}") };
-        let name = format!("sun2xp-{}-{time}{suffix}", hand.name);
-        let paths = ["json", "txt", "svg"].map(|extension| folder.join(format!("{name}.{extension}")));
+        let paths = ["json", "txt", "svg"].map(|extension| folder.join(format!("{name}{suffix}.{extension}")));
         let taken = |path: &PathBuf| path.symlink_metadata().is_ok();
         if paths.iter().any(taken) {
             continue;
         }
-        for (path, content) in paths.iter().zip(&contents) {
+        for (path, content) in paths.iter().zip(contents) {
             OpenOptions::new().write(true).create_new(true).open(path)?.write_all(content)?;
         }
         return Ok(paths);
     }
-    Err(io::Error::other(format!("there are already {MOST} snapshots of this second")))
+    Err(io::Error::other(format!("there are already {MOST} snapshots of this second: try again in a second")))
+}
+
+/// Describes why a snapshot was not written into this folder, and what to do.
+pub fn refusal(folder: &str, error: &io::Error) -> String {
+    // Another folder helps only if the system has refused this one.
+    let remedy = match error.raw_os_error() {
+        Some(_) => ". Start the command again with --snapshots and a writable folder",
+        None => "",
+    };
+    format!("cannot write a snapshot into {folder}: {error}{remedy}")
 }
 
 /// Returns the characters of a screen: a line of text for each row, without spaces at the ends of the lines.
@@ -47,4 +61,25 @@ pub fn text(buffer: &Buffer) -> String {
         text.push('\n');
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_folder_is_the_remedy_only_if_the_system_has_refused_this_one() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let contents = [Vec::new(), Vec::new(), Vec::new()];
+        for _ in 0..MOST {
+            write_new(folder.path(), "same-second", &contents).expect("written");
+        }
+        let many = write_new(folder.path(), "same-second", &contents).expect_err("too many");
+        let text = "cannot write a snapshot into F: there are already 100 snapshots of this second: try again in a \
+                    second";
+        assert_eq!(refusal("F", &many), text);
+        let missing = write_new(&folder.path().join("none"), "name", &contents).expect_err("no such folder");
+        let text = refusal("F", &missing);
+        assert!(text.ends_with(". Start the command again with --snapshots and a writable folder"), "{text}");
+    }
 }

@@ -1,11 +1,15 @@
 //! A headless Chromium, driven over the WebDriver protocol of chromedriver.
 
+use super::browser::alone;
 use super::http::{WAIT, request};
+use super::tools::available;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader};
 use std::net::SocketAddr;
+use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
-use std::time::Instant;
+use std::time::{Duration, Instant};
+use std::{fs, thread};
 use tempfile::TempDir;
 
 /// A browser with one page. The browser ends when this value is dropped.
@@ -23,6 +27,8 @@ impl Browser {
             .arg("--port=0")
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
+            // Chromedriver starts its browser in this group too.
+            .process_group(0)
             .spawn()
             .expect("chromedriver starts");
         let lines = BufReader::new(driver.stdout.take().expect("a pipe")).lines().map_while(Result::ok);
@@ -110,11 +116,43 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        if !self.session.is_empty() && !std::thread::panicking() {
+        if !self.session.is_empty() && !thread::panicking() {
             self.call("DELETE", &self.session, &json!({}));
         }
-        // Chromium ends with its driver.
-        let _ = self.driver.kill();
+        // After a panic the session still exists, and its browser does not end with chromedriver.
+        // SAFETY: kill does not touch memory. The group exists, because nothing has waited for its first process.
+        unsafe { libc::kill(-(self.driver.id() as i32), libc::SIGKILL) };
         let _ = self.driver.wait();
+    }
+}
+
+/// Returns the number of processes whose command line contains this text.
+fn processes(text: &str) -> usize {
+    let entries = fs::read_dir("/proc").expect("Linux").filter_map(Result::ok);
+    let lines = entries.filter_map(|entry| fs::read(entry.path().join("cmdline")).ok());
+    lines.filter(|line| String::from_utf8_lossy(line).contains(text)).count()
+}
+
+#[test]
+fn a_test_that_panics_leaves_no_browser() {
+    if !available("chromium", "the page in a browser") {
+        return;
+    }
+    let _alone = alone();
+    let (sender, receiver) = std::sync::mpsc::channel();
+    let ended: thread::Result<()> = thread::spawn(move || {
+        let browser = Browser::start(500, 500);
+        let argument = format!("--user-data-dir={}", browser._profile.path().display());
+        assert!(processes(&argument) > 0, "the browser runs");
+        sender.send(argument).expect("the test waits");
+        panic!("this test fails on purpose");
+    })
+    .join();
+    let argument = receiver.recv().expect("the browser has started");
+    assert!(ended.is_err());
+    let end = Instant::now() + WAIT;
+    while processes(&argument) > 0 {
+        assert!(Instant::now() < end, "the browser still runs");
+        thread::sleep(Duration::from_millis(10));
     }
 }

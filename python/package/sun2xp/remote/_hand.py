@@ -66,7 +66,7 @@ class RemoteHand(Reading):
     @property
     def owned(self) -> bool:
         """Whether this client commands the hand, as far as it knows."""
-        return self._owner.epoch != 0
+        return self._epoch() != 0
 
     def acquire(self, *, take_over: bool = False, recover: bool = False) -> None:
         """Makes this client the one that commands the hand.
@@ -224,7 +224,7 @@ class RemoteHand(Reading):
         Raises:
             Fault: the cause of the fault is still there.
         """
-        self._request("recover", finger, self._owner.epoch, timeout=_RECOVERY_TIME)
+        self._request("recover", finger, self._epoch(), timeout=_RECOVERY_TIME)
 
     def stop(self, finger: Optional[int] = None) -> None:
         """Brings a finger, or every finger, to its end state at once, whoever commands the hand."""
@@ -237,12 +237,16 @@ class RemoteHand(Reading):
             Error: the calibration failed. The previous calibration is in force.
         """
         self._check(finger)
-        self._request("calibrate", finger, self._owner.epoch, timeout=_CALIBRATION_TIME)
+        self._request("calibrate", finger, self._epoch(), timeout=_CALIBRATION_TIME)
 
     def identify(self, finger: int) -> None:
         """Measures gauge gains, friction and tendon stiffness of a finger. Errors are those of `zero`."""
         self._check(finger)
-        self._request("identify", finger, self._owner.epoch, timeout=_CALIBRATION_TIME)
+        self._request("identify", finger, self._epoch(), timeout=_CALIBRATION_TIME)
+
+    def _epoch(self) -> int:
+        with self._network.sender.lock:
+            return self._owner.epoch
 
     def _hold(self, fingers: List[int], bits: int) -> bool:
         with self._network.sender.lock:

@@ -46,7 +46,7 @@ class Owner:
 
     @property
     def epoch(self) -> int:
-        """The epoch; 0 if this client is not the owner."""
+        """The epoch; 0 if this client is not the owner. A long silence of the server ends the epoch here."""
         self._notice_silence()
         return self._epoch
 

@@ -4,9 +4,10 @@ messages of docs/remote-protocol.md."""
 from __future__ import annotations
 
 import collections
+import math
 import threading
 import time
-from typing import Callable, Deque, Dict, List, Optional
+from typing import Callable, Deque, Dict, List, Optional, Tuple
 
 import numpy
 import numpy.typing
@@ -52,15 +53,35 @@ VALUES = {
     EventKind.TOUCH_INVALID: 1,
 }
 
+#: The kind of part that a fault or warning concerns, if it does not concern the whole finger (docs/faults.md).
+FAULT_PARTS = {
+    1: "tendon",
+    2: "tendon",
+    3: "tendon",
+    4: "gauge",
+    5: "gauge",
+    6: "gauge",
+    7: "encoder",
+    8: "motor",
+    9: "motor",
+    10: "joint",
+    11: "joint",
+    12: "tendon",
+    45: "motor",
+}
+
 Records = numpy.typing.NDArray[numpy.void]
 
 
-def _part(kind: EventKind, number: int) -> str:
-    if kind == EventKind.TENSION_BOUND:
-        return f"tendon {number}"
-    if kind == EventKind.JOINT_AT_LIMIT:
-        return f"joint {number}"
-    # The meaning of the number of the part depends on the fault (docs/faults.md).
+def _part(kind: EventKind, number: int, values: Tuple[float, ...]) -> str:
+    parts = {EventKind.TENSION_BOUND: "tendon", EventKind.JOINT_AT_LIMIT: "joint"}
+    part = parts.get(kind)
+    if kind in (EventKind.FAULT, EventKind.WARNING):
+        part = FAULT_PARTS.get(int(values[0])) if math.isfinite(values[0]) else None
+    # The number 0 means joint 0 or the whole finger. The other parts are numbered from 1.
+    if part == "joint" or (part and number):
+        return f"{part} {number}"
+    # A fault of a newer server has a part of unknown kind.
     return f"part {number}" if number else "finger"
 
 
@@ -151,7 +172,7 @@ class Receiver:
             kind = EventKind(message.kind)
         except ValueError:
             return
-        part = _part(kind, message.part)
+        part = _part(kind, message.part, message.values)
         text = f"finger {message.finger}, {part}: {kind.name.lower().replace('_', ' ')}"
         values = message.values[: VALUES[kind]]
         event = Event(message.finger, message.cycle, message.time, kind, part, values, text)

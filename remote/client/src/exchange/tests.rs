@@ -182,6 +182,13 @@ fn paths_are_checked() {
     exchange.take_state(&state(3, 12 * MS, Stage::Limp), 12 * MS);
     let (kind, text) = refused(exchange.admit_path(1, &[pose(1.0, 0.5)], 12 * MS).map(drop));
     assert_eq!((kind, text.as_str()), (RemoteErrorKind::Busy, "finger 1 is limp: zero or identify it"));
+    for (number, stage) in [(4, Stage::Closing), (5, Stage::Closed)] {
+        let now = (9 + number) * MS;
+        exchange.take_state(&state(number, now, stage), now);
+        let (kind, text) = refused(exchange.admit_path(1, &[pose(1.0, 0.5)], now).map(drop));
+        let remedy = "its server is ending. Start the server again, then open or reopen the hand";
+        assert_eq!((kind, text), (RemoteErrorKind::Busy, format!("finger 1 is {}: {remedy}", stage.name())));
+    }
 }
 
 #[test]
