@@ -1,7 +1,6 @@
 """A running node, a planner that talks to it, and what the planner sends and expects."""
 
 import os
-import pathlib
 import signal
 import subprocess
 import sys
@@ -24,11 +23,6 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 #: Longest time of a wait, s. The machine may be busy.
 LONGEST = 30.0
-
-#: A recovery is repeated at most so often, and only if the machine kept a thread of the hand from running for so long,
-#: s.
-MOST_REPEATED = 3
-PAUSE = 0.05
 
 #: The prefix of names with which the node runs.
 PREFIX = "left_"
@@ -62,24 +56,10 @@ def refused(*words):
     return lambda line: line.level == 40 and all(word in line.msg for word in words)
 
 
-def waits(process):
-    """How long each thread of the library in a process was ready to run but had no core, s, as the kernel counts it."""
-    found = {}
-    for task in pathlib.Path(f"/proc/{process}/task").iterdir():
-        try:
-            name = f"{(task / 'comm').read_text().strip()} ({task.name})"
-            found[name] = int((task / "schedstat").read_text().split()[1]) / 1e9
-        except OSError:  # The thread has ended.
-            continue
-    return {name: waited for name, waited in found.items() if name.startswith("sun2xp")}
-
-
 class Planner:
     """A node that keeps what it receives."""
 
-    def __init__(self, process, report):
-        """`process` is the number of the node's process. `report` prints a line that pytest does not capture."""
-        self.process, self.report = process, report
+    def __init__(self):
         self.node = rclpy.create_node("planner")
         self.received = {}
         self.changed = threading.Condition()
@@ -165,21 +145,6 @@ class Planner:
     def call(self, service):
         return self.finish(self.begin(service))
 
-    def recover(self):
-        """Recovers all fingers. The threads of the node are not real-time, so the machine may pause a simulated board
-        so long that it does not answer in time. Only then the call is repeated."""
-        for attempt in range(MOST_REPEATED + 1):
-            before = waits(self.process)
-            response = self.call("recover")
-            paused = {name: waited - before.get(name, 0.0) for name, waited in waits(self.process).items()}
-            longest = max(paused, key=paused.get, default="no thread of the hand")
-            text = f"{longest} waited for a core for {1000 * paused.get(longest, 0.0):.0f} ms"
-            silent = not response.success and "the board does not answer" in response.message
-            if not silent or paused.get(longest, 0.0) < PAUSE or attempt == MOST_REPEATED:
-                assert response.success, f"{response.message} ({text})"
-                return response
-            self.report(f"recovery {attempt + 1} is repeated: {text}; {response.message}")
-
     def ready(self):
         """Waits until the node has subscribed to the publishers of this planner, and a message of the node arrives."""
         deadline = time.monotonic() + LONGEST
@@ -211,10 +176,10 @@ def ros():
 
 
 @pytest.fixture(scope="module")
-def planner(ros, request):
+def planner(ros):
     """A planner, while the node with a simulated hand runs."""
     process = start("simulated:=nominal", f"prefix:={PREFIX}", "diagnostics_rate:=2.0")
-    one = Planner(process.pid, request.config.get_terminal_writer().line)
+    one = Planner()
     try:
         one.ready()
         yield one

@@ -33,7 +33,8 @@ def test_a_fault_is_in_diagnostics_and_recover_ends_it(planner):
     planner.trajectories.publish(trajectory(2, (1.0, [0.0, 0.5, 0.9])))
     planner.wait("/rosout", refused("finger 2 is faulted"))
 
-    response = planner.recover()
+    response = planner.call("recover")
+    assert response.success, response
     assert response.message == "finger 1 has no fault; finger 2 has recovered; finger 3 has no fault"
     assert planner.wait("/diagnostics", in_stage(2, "running")).status[1].level < b"\x02"
     assert list(planner.wait("joint_states").name) == JOINTS
@@ -49,5 +50,5 @@ def test_a_zeroing_does_not_delay_the_node_and_stop_ends_it(planner):
     assert not zeroing.done() and planner.call("stop").success
     response = planner.finish(zeroing)
     assert not response.success and "finger 3" in response.message
-    planner.recover()
+    assert planner.call("recover").success
     planner.wait("/diagnostics", in_stage(3, "running"))

@@ -5,16 +5,21 @@ use std::path::Path;
 use std::process::Command;
 
 /// Runs the arguments that follow in a network namespace with nothing but the loopback interface.
-const ALONE: [&str; 6] = ["unshare", "--net", "--map-root-user", "sh", "-c", "ip link set lo up && exec \"$0\" \"$@\""];
+const ALONE: [&str; 4] = ["--net", "sh", "-c", "ip link set lo up && exec \"$0\" \"$@\""];
 
 /// Returns a command that runs a program alone, or beside the other nodes of this machine if that is not permitted.
 fn command(program: &Path) -> Command {
-    let mut alone = Command::new(ALONE[0]);
-    alone.args(&ALONE[1..]);
-    if alone.arg("true").output().is_ok_and(|probe| probe.status.success()) {
-        let mut alone = Command::new(ALONE[0]);
-        alone.args(&ALONE[1..]).arg(program);
-        return alone;
+    // Root keeps its own user namespace. In another one the servos would not get real-time priorities, and a busy machine
+    // would stop the fingers.
+    for options in [&[][..], &["--map-root-user"]] {
+        let alone = |program: &Path| {
+            let mut alone = Command::new("unshare");
+            alone.args(options).args(ALONE).arg(program);
+            alone
+        };
+        if alone(Path::new("true")).output().is_ok_and(|probe| probe.status.success()) {
+            return alone(program);
+        }
     }
     println!("This process cannot make a network namespace. The nodes use the loopback interface of the machine.");
     let mut beside = Command::new(program);
