@@ -9,8 +9,8 @@ const ALONE: [&str; 4] = ["--net", "sh", "-c", "ip link set lo up && exec \"$0\"
 
 /// Returns a command that runs a program alone, or beside the other nodes of this machine if that is not permitted.
 fn command(program: &Path) -> Command {
-    // Root keeps its own user namespace. In another one the servos would not get real-time priorities, and a busy machine
-    // would stop the fingers.
+    // Root keeps its own user namespace. In another one the servos would not get real-time priorities, and a busy
+    // machine would stop the fingers.
     for options in [&[][..], &["--map-root-user"]] {
         let alone = |program: &Path| {
             let mut alone = Command::new("unshare");
