@@ -130,9 +130,9 @@
    grow. The program gets no SIGPIPE and no SIGXFSZ for messages. A call that prints a message waits until
    the message is written. A servo never waits for that.
 
-   Stack: a call needs up to 16 KiB of its thread's stack. The stack of each thread of the library contains
-   a copy of the program's thread-local data (__thread). Large thread-local data therefore enlarge the
-   locked memory of each servo.
+   Stack: a call needs up to 16 KiB of its thread's stack, but sun2xp_send_path and sun2xp_send_group need
+   up to 48 KiB. The stack of each thread of the library contains a copy of the program's thread-local data
+   (__thread). Large thread-local data therefore enlarge the locked memory of each servo.
 
    Sandbox: install a sandbox (seccomp) before a hand is opened. If it forbids a system call that threads,
    waits, ports or pseudo-terminals need, opening is refused with the errno of the sandbox.
