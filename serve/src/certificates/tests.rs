@@ -68,7 +68,7 @@ fn an_authority_that_others_can_use_is_refused() {
     make(folder, &client("screen")).expect("made");
     let moved = folder.join("moved");
     std::fs::rename(&key, &moved).expect("moved");
-    assert!(refusal(folder).contains("is missing"));
+    assert!(refusal(folder).contains("restore the missing file"));
     symlink(&moved, &key).expect("a link");
     assert!(refusal(folder).contains("not a regular file"));
 }

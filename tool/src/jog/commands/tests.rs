@@ -210,7 +210,10 @@ fn a_real_finger_beyond_its_limits_does_not_jump_to_them() {
             refused(command.execute(&hand, &configuration, &|| false));
         }
         let text = refused(Command::Close.execute(&hand, &configuration, &|| false));
-        assert!(text.starts_with("joint 1 of finger 1 is at ") && text.contains("move the finger into"), "{text}");
+        assert!(
+            text.starts_with("the set point of joint 1 of finger 1 is ") && text.contains("move the finger into"),
+            "{text}"
+        );
         assert_eq!(desired_joints(&hand, 1).expect("there"), before);
     }
 }
