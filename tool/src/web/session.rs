@@ -8,7 +8,7 @@ use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
 use serde::Deserialize;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
@@ -17,10 +17,6 @@ use tokio::time::{MissedTickBehavior, interval, timeout};
 /// Number of batches that a page may have received without an acknowledgement: one second. A page with this many
 /// unacknowledged batches gets no further batch until it acknowledges one.
 const AHEAD: u64 = 20;
-
-/// Number of commands whose answers a page may not have taken yet. A page with more does not read, and its answers
-/// would need more and more memory.
-const UNANSWERED: usize = 256;
 
 /// Largest message from a page, bytes. Commands have some 200.
 pub const LARGEST_MESSAGE: usize = 1024;
@@ -67,7 +63,6 @@ struct Reader {
     socket: SplitStream<WebSocket>,
     control: Option<Arc<Control>>,
     answers: UnboundedSender<Answer>,
-    unanswered: Arc<AtomicUsize>,
     batches: Arc<Batches>,
     /// The fingers that this page pushes.
     pushed: Vec<i32>,
@@ -78,8 +73,6 @@ struct Writer {
     socket: SplitSink<WebSocket, Message>,
     hub: Arc<Hub>,
     answers: UnboundedReceiver<Answer>,
-    /// Number of commands whose answers were not sent yet.
-    unanswered: Arc<AtomicUsize>,
     batches: Arc<Batches>,
 }
 
@@ -91,16 +84,10 @@ impl Session {
     pub fn new(socket: WebSocket, hub: Arc<Hub>, control: Option<Arc<Control>>) -> Self {
         let (to_page, from_page) = socket.split();
         let (sender, receiver) = unbounded_channel();
-        let (batches, unanswered) = (Arc::<Batches>::default(), Arc::<AtomicUsize>::default());
-        let reader = Reader {
-            socket: from_page,
-            control,
-            answers: sender,
-            unanswered: unanswered.clone(),
-            batches: batches.clone(),
-            pushed: Vec::new(),
-        };
-        Self { reader, writer: Writer { socket: to_page, hub, answers: receiver, unanswered, batches } }
+        let batches = Arc::<Batches>::default();
+        let reader =
+            Reader { socket: from_page, control, answers: sender, batches: batches.clone(), pushed: Vec::new() };
+        Self { reader, writer: Writer { socket: to_page, hub, answers: receiver, batches } }
     }
 
     /// Serves the page until it leaves.
@@ -153,14 +140,7 @@ impl Reader {
             match serde_json::from_str(&text) {
                 Ok(Request::Received(Received { received: 1.. })) => self.batches.acknowledge(),
                 Ok(Request::Received(_)) => return Some("an acknowledgement of no batch"),
-                Ok(Request::Command(command)) if self.control.is_some() => {
-                    let unanswered = self.unanswered.fetch_add(1, Ordering::Relaxed);
-                    // The last command is carried out too, because it may be a stop.
-                    self.order(command);
-                    if unanswered >= UNANSWERED {
-                        return Some("too many commands whose answers the page does not read");
-                    }
-                }
+                Ok(Request::Command(command)) if self.control.is_some() => self.order(command),
                 Ok(Request::Command(_)) => return Some("a command, but sun2xp runs without --control"),
                 Err(_) => return Some("a message that is neither a command nor an acknowledgement"),
             }
@@ -197,10 +177,7 @@ impl Writer {
                     }
                     Err(RecvError::Closed) => return Ok(()),
                 },
-                Some(answer) = self.answers.recv() => {
-                    self.send(answer.json().into()).await?;
-                    self.unanswered.fetch_sub(1, Ordering::Relaxed);
-                }
+                Some(answer) = self.answers.recv() => self.send(answer.json().into()).await?,
                 _ = ping.tick() => self.write(Message::Ping(Vec::new().into())).await?,
             }
         }
