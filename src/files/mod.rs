@@ -19,6 +19,17 @@ pub use update::{UpdateError, update_file};
 
 use std::io::{Error, ErrorKind};
 
+/// Returns the remedy of an error in writing a file, as a sentence after its text. Returns no text if the error itself
+/// tells what to change: errors of [`update_file`], and the system's reports of a full disk and others.
+pub fn write_remedy(error: &Error) -> &'static str {
+    match error.kind() {
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            ". This user needs permission to write the file and its folder"
+        }
+        _ => "",
+    }
+}
+
 /// Returns the errno of an error of this module. If the system has not reported one, returns the errno whose meaning is
 /// closest.
 pub(crate) fn errno(error: &Error) -> i32 {

@@ -4,6 +4,7 @@ use std::error::Error;
 use std::fmt::{self, Display, Formatter};
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
+use sun2xp::files::write_remedy;
 use sun2xp::model::{ShownPath, one_line};
 
 /// The reason why a command failed. The tool prints its text, which names cause and remedy, in one line.
@@ -44,16 +45,9 @@ pub fn wrong_usage(reason: impl Into<String>) -> Failure {
     Box::new(WrongUsage(reason.into()))
 }
 
-/// The failure of a file that cannot be written. The system's reports of other failures, such as a full disk, tell what
-/// to change.
+/// The failure of a file that cannot be written.
 pub fn unwritable(path: &Path, error: &io::Error) -> Failure {
-    let remedy = match error.kind() {
-        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            ". This user needs permission to write the file and its folder"
-        }
-        _ => "",
-    };
-    format!("cannot write {}: {error}{remedy}", ShownPath(path)).into()
+    format!("cannot write {}: {error}{}", ShownPath(path), write_remedy(error)).into()
 }
 
 /// Prints a failure, and returns the exit status. A reader that closes the pipe of standard output, such as `head`,

@@ -1,10 +1,9 @@
 //! The errors of a configuration.
 
-use crate::files::errno;
+use crate::files::{errno, write_remedy};
 use crate::model::FingerNumber;
 use crate::model::configuration::Unusable;
 use crate::model::{Shown, ShownPath, UnusableConfiguration};
-use std::io::ErrorKind;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -85,7 +84,7 @@ pub enum ConfigurationError {
         key: String,
     },
     /// The configuration file cannot be written.
-    #[error("cannot write to the configuration file {}: {source}{}", ShownPath(path), permission(source))]
+    #[error("cannot write to the configuration file {}: {source}{}", ShownPath(path), write_remedy(source))]
     Unwritable {
         /// The configuration file.
         path: PathBuf,
@@ -126,17 +125,6 @@ impl ConfigurationError {
             Self::Permanent { .. } => libc::EBUSY,
             Self::Unwritable { source, .. } => errno(source),
         }
-    }
-}
-
-/// The remedy of a file that may not be written. The system's reports of other failures, such as a full disk, tell what
-/// to change. [`update_file`](crate::files::update_file) adds the remedies to its own errors.
-fn permission(source: &std::io::Error) -> &'static str {
-    match source.kind() {
-        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            ". This user needs permission to write the file and its folder"
-        }
-        _ => "",
     }
 }
 
