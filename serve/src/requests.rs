@@ -12,7 +12,7 @@ use crate::shared::Shared;
 use recovering::recover;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use sun2xp::realtime::{Priority, now, spawn};
+use sun2xp::realtime::{Priority, now, spawn, with_remedy};
 use sun2xp::{Hand, HandError};
 use sun2xp_remote_protocol::{Action, Answer, ClientName, Code, DecodeError, Finger, Request};
 
@@ -246,7 +246,7 @@ fn run(
         }
         Err(error) => {
             shared.busy.store(false, Ordering::Release);
-            complain(&format!("cannot start a thread for a request: {error}. Raise the limit of threads (ulimit -u)"));
+            complain(&format!("cannot start a thread for a request: {}", with_remedy(&error)));
             false
         }
     }

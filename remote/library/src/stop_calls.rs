@@ -6,7 +6,7 @@ use std::thread::{self, Builder};
 use std::time::Duration;
 use sun2xp::capi::RemoteRefusal;
 use sun2xp::finger::stop_calls;
-use sun2xp::realtime::SignalsBlocked;
+use sun2xp::realtime::{SignalsBlocked, with_remedy};
 
 use crate::refusals::system;
 
@@ -42,9 +42,7 @@ impl StopCalls {
                 thread::sleep(INTERVAL);
             }
         });
-        started
-            .map(|_| Self(ended))
-            .map_err(|error| system(&format!("cannot start a thread: {error}. Raise the limit of threads (ulimit -u)")))
+        started.map(|_| Self(ended)).map_err(|error| system(&format!("cannot start a thread: {}", with_remedy(&error))))
     }
 }
 
