@@ -81,6 +81,8 @@ impl Pushing {
                 0.0
             }
             Stage::Rising => {
+                // `enter` restarts the time, so the pull is computed before.
+                let pull = RISE * self.seconds;
                 let first = moved.iamax();
                 if moved[first].abs() > MOVED {
                     // The motor's gauge shows the pull, and the pull has unwound another motor, but the motor's own
@@ -88,20 +90,17 @@ impl Pushing {
                     if first != self.motor && moved[first] < 0.0 && risen[self.motor] > RESPONDED * minimum {
                         return Err(Obstacle::DeadEncoder { encoder: self.motor as u8 + 1 });
                     }
-                    // `enter` restarts the time. The pull must not drop while the motor still pulls.
-                    let (stage, pull) = match first == self.motor && moved[first] > 0.0 {
-                        true => (Stage::Braking, 0.0),
-                        false => {
-                            let direction = moved[first].signum();
-                            (Stage::Pulling { encoder: first, direction }, RISE * self.seconds)
-                        }
-                    };
-                    self.enter(stage);
-                    pull
-                } else if RISE * self.seconds > HARDEST {
+                    if first == self.motor && moved[first] > 0.0 {
+                        self.enter(Stage::Braking);
+                        0.0
+                    } else {
+                        self.enter(Stage::Pulling { encoder: first, direction: moved[first].signum() });
+                        pull
+                    }
+                } else if pull > HARDEST {
                     return Err(self.nothing_moved(&risen, minimum));
                 } else {
-                    RISE * self.seconds
+                    pull
                 }
             }
             Stage::Pulling { encoder, direction } => {
