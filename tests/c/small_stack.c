@@ -45,42 +45,129 @@ static int zero_finger(void) { return sun2xp_zero(HAND, 1); }
 static int identify_refused(void) { return sun2xp_identify(HAND, 7) + SUN2XP_ERROR_ARGUMENT; }
 static int recover_hand(void) { sun2xp_stop_all(); PAUSE_MS(50); return sun2xp_recover(HAND, 1); }
 
-static int get_tip(void)
+/* A function that gets a struct with a call. */
+#define GETTER(function, type, call) \
+    static int function(void) \
+    { \
+        struct type Found; \
+        Found.size = sizeof Found; \
+        return call; \
+    }
+
+GETTER(get_tip, sun2xp_tip, sun2xp_tip(HAND, 1, &Found))
+GETTER(get_status, sun2xp_status, sun2xp_status(HAND, 1, &Found))
+GETTER(get_timing, sun2xp_timing, sun2xp_timing(HAND, 1, SUN2XP_STAGE_COMPUTE, &Found) + sun2xp_reset_timing(HAND, 0))
+GETTER(get_record, sun2xp_record, sun2xp_record(HAND, 1, 0, &Found))
+GETTER(get_fault, sun2xp_fault, sun2xp_fault(HAND, 1, &Found))
+
+static double Kj[9] = {60, 0, 0, 0, 60, 0, 0, 0, 40}, Zero[3];
+static struct sun2xp_set_point Group[3];
+static struct sun2xp_path_pose Path[128];
+static struct sun2xp_reflex Rule;
+static struct sun2xp_io Io[3];
+static sun2xp_hand *Other;
+
+/* Runs in the main thread, which has a large stack. */
+static void make_arguments(void)
 {
-    struct sun2xp_tip Found;
-    Found.size = sizeof Found;
-    return sun2xp_tip(HAND, 1, &Found);
+    int place;
+
+    for (place = 0; place < 3; place++) {
+        Group[place].size = sizeof Group[place];
+        Group[place].finger = Io[place].finger = place + 1;
+        Group[place].position = Pos;
+        Group[place].stiffness = &Kx[0][0];
+        Group[place].damping = 1.0;
+        Io[place].size = sizeof Io[place];
+    }
+    for (place = 0; place < 128; place++) {
+        Path[place].size = sizeof Path[place];
+        Path[place].time = 1.0 + 0.1 * place;
+        memcpy(Path[place].place, Pos, sizeof Pos);
+        Path[place].stiffness = &Kx[0][0];
+    }
+    Rule.size = sizeof Rule;
+    Rule.condition = SUN2XP_WHEN_FORCE_ABOVE;
+    Rule.bound = 1000;
+    Rule.reaction = SUN2XP_THEN_HOLD;
 }
 
-static int get_status(void)
+static void ignore_message(int severity, const char *text, void *user)
 {
-    struct sun2xp_status Found;
-    Found.size = sizeof Found;
-    return sun2xp_status(HAND, 1, &Found);
+    (void)severity;
+    (void)text;
+    (void)user;
 }
 
-static int get_timing(void)
+static void ignore_event(const struct sun2xp_event *event, void *context)
 {
-    struct sun2xp_timing Found;
-    Found.size = sizeof Found;
-    return sun2xp_timing(HAND, 1, SUN2XP_STAGE_COMPUTE, &Found) + sun2xp_reset_timing(HAND, 0);
+    (void)event;
+    (void)context;
 }
 
-static int get_record(void)
+static int default_hand(void) { return sun2xp_default_hand() == NULL; }
+static int error_text(void) { return sun2xp_error_text(HAND) == NULL; }
+static int set_log(void) { return sun2xp_set_log(ignore_message, NULL) != 0 || sun2xp_set_log(NULL, NULL) != 0; }
+static int send_position(void) { return sun2xp_send_position(HAND, 1, Pos); }
+static int wait_settled(void) { return sun2xp_wait(HAND, 1, SUN2XP_WAIT_SETTLED, 20.0); }
+static int send_path(void) { return sun2xp_send_path(HAND, 1, 128, Path, 0); }
+static int send_position_for(void) { return sun2xp_send_position_for(HAND, 1, Pos, 60.0); }
+static int send_group(void) { return sun2xp_send_group(HAND, 3, Group); }
+static int send_joint_stiffness(void) { return sun2xp_send_joint_stiffness(HAND, 1, Kj); }
+static int send_joint_torque(void) { return sun2xp_send_joint_torque(HAND, 1, Zero); }
+static int send_stiffness(void) { return sun2xp_send_stiffness(HAND, 1, &Kx[0][0]); }
+static int tare_touch(void) { return sun2xp_tare_touch(HAND, 1); }
+static int install_reflex(void) { return sun2xp_install_reflex(HAND, 1, &Rule) <= 0; }
+static int remove_reflex(void) { return sun2xp_remove_reflex(HAND, 1, 0); }
+static int event_descriptor(void) { return sun2xp_event_descriptor(HAND) < 0; }
+static int on_event(void) { return sun2xp_on_event(HAND, ignore_event, NULL) || sun2xp_on_event(HAND, NULL, NULL); }
+static int set_gravity(void) { return sun2xp_set_gravity(HAND, Zero); }
+static int stop_finger(void) { return sun2xp_stop(HAND, 2); }
+static int open_simulated(void) { return sun2xp_open(NULL, &Other); }
+static int close_other(void) { return sun2xp_close(Other); }
+static int open_text(void) { return sun2xp_open_text("[hand]\nfingers = [1]\n", &Other); }
+static int open_named(void) { return sun2xp_open_named("nominal", &Other); }
+/* The functions of the hardware are missing. */
+static int open_io(void) { return sun2xp_open_io(NULL, 3, Io, &Other) + SUN2XP_ERROR_ARGUMENT; }
+static int open_io_text(void) { return sun2xp_open_io_text("[hand]\nfingers = [1]\n", 0, NULL, &Other); }
+
+static int versions(void)
 {
-    struct sun2xp_record Found;
-    Found.size = sizeof Found;
-    return sun2xp_record(HAND, 1, 0, &Found);
+    return sun2xp_version() == NULL || sun2xp_version_number() != SUN2XP_VERSION_NUMBER
+        || sun2xp_abi_version() != SUN2XP_ABI_VERSION;
 }
 
-static int get_fault(void)
+GETTER(get_error, sun2xp_error, sun2xp_error(HAND, &Found))
+
+static int get_position(void)
 {
-    struct sun2xp_fault Found;
-    Found.size = sizeof Found;
-    return sun2xp_fault(HAND, 1, &Found);
+    double Found[3];
+    return sun2xp_position(HAND, 1, Found);
 }
 
-#include "small_stack.h"
+static int get_kinematics(void)
+{
+    double Found[3], Jacobian[9];
+    return sun2xp_jacobian(HAND, 1, NULL, Jacobian) || sun2xp_forward_kinematics(HAND, 1, Pos, Found)
+        || sun2xp_inverse_kinematics(HAND, 1, Tip, Found);
+}
+
+GETTER(get_joint_torques, sun2xp_joint_torques, sun2xp_joint_torques(HAND, 1, &Found))
+GETTER(get_palm_pose, sun2xp_palm_pose, sun2xp_palm_pose(HAND, 1, &Found))
+GETTER(get_limits, sun2xp_limits, sun2xp_limits(HAND, 1, &Found))
+GETTER(get_touch, sun2xp_touch, sun2xp_touch(HAND, 1, 0, &Found) + SUN2XP_ERROR_ARGUMENT)
+GETTER(get_object, sun2xp_object, sun2xp_object(HAND, &Found) + SUN2XP_ERROR_NOT_SUPPORTED)
+
+/* sun2xp_wait_event waits, because no event is left. */
+static int take_events(void)
+{
+    struct sun2xp_event Found;
+    int result;
+    Found.size = sizeof Found;
+    while ((result = sun2xp_next_event(HAND, &Found)) == 1)
+        ;
+    return result < 0 || sun2xp_wait_event(HAND, &Found, 0.01) < 0;
+}
 
 static const struct job {
     const char *name;
