@@ -60,6 +60,14 @@ class HandNode(Node):
         super().__init__("sun2xp", **options)
         self._handler = _ToRos(self)
         logging.getLogger("sun2xp").addHandler(self._handler)
+        try:
+            self._start()
+        except BaseException:
+            # Otherwise the node outlives its context, and the process may not end.
+            self.destroy_node()
+            raise
+
+    def _start(self) -> None:
         # A parameter that is wrong ends the node before the hand moves.
         self._prefix: str = self._parameter("prefix", "", "prefix of the names of joints and frames")
         rate = self._parameter("rate", 100.0, "rate of joint states and wrenches, Hz", (1.0, 1000.0))

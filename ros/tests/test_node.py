@@ -12,10 +12,12 @@ from xml.etree import ElementTree
 
 import numpy
 import pytest
+import rclpy
 import sun2xp
 from conftest import JOINTS, LONGEST, PREFIX, near, refused, start, trajectory
 from geometry_msgs.msg import PointStamped
 from std_msgs.msg import Float64MultiArray
+from sun2xp_ros.node import HandNode
 from trajectory_msgs.msg import JointTrajectory
 
 #: Environment of a second node, whose topics have the same names. Its ROS domain separates it from the first node.
@@ -195,6 +197,17 @@ def test_a_hand_that_cannot_be_opened_ends_the_node_with_the_reason(ros, paramet
         process.kill()
         raise
     assert process.returncode == 1 and "the hand was not opened" in said and text in said and "Traceback" not in said
+
+
+def test_a_node_without_a_hand_destroys_itself(ros):
+    observer = rclpy.create_node("observer")
+    try:
+        with pytest.raises(sun2xp.Error) as refusal:
+            HandNode(namespace="/broken", parameter_overrides=[rclpy.Parameter("simulated", value="broken")])
+        # The traceback of the refusal still refers to the node.
+        assert ("sun2xp", "/broken") not in observer.get_node_names_and_namespaces(), refusal
+    finally:
+        observer.destroy_node()
 
 
 def test_a_hand_with_one_finger_has_only_its_topics(ros, tmp_path):
