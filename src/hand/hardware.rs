@@ -125,6 +125,16 @@ pub(super) fn warn_of_lost_zero(number: FingerNumber, finger: &ConfiguredFinger,
     }
 }
 
+/// Prints a notice if hardware of the program, which was opened without a reference for its encoder counts, still has
+/// none when it starts for a recovery. The library cannot see whether the hardware has counted on.
+pub(super) fn warn_of_doubtful_zero(number: FingerNumber) {
+    print_notice(&format!(
+        "the hardware of finger {number} starts again without a reference for its encoder counts \
+         (SUN2XP_IO_ZERO_LOST). If its counts have begun again since the finger was zeroed, its joint angles are \
+         wrong: zero the finger again"
+    ));
+}
+
 /// Prints a notice if a USB adapter delays bytes, because then every cycle loses its reply.
 fn warn_of_latency(port: &Port) {
     if let Some(milliseconds) = port.latency_timer_ms().filter(|&milliseconds| milliseconds > 1) {

@@ -3,6 +3,7 @@
 use crate::board::protocol::{Capabilities, Configured, Identity, Status};
 use crate::board::{Connection, Link, LinkError, Port, Terms, Transport};
 use crate::finger::{Fault, FaultKind, LinkRepairEnd, RepairedLink, RestoredBoard, RestoredFinger, StopCounts};
+use crate::hand::hardware::warn_of_doubtful_zero;
 use crate::hand::{HandError, RecoveryError};
 use crate::model::FingerNumber;
 use crate::model::configuration::FINGERS;
@@ -236,10 +237,17 @@ impl KnownBoard {
         let configured = link.agree(self.address, &self.terms, &self.identity, deadline);
         let configured = configured.map_err(|error| self.failed(error))?;
         let status = configured.status;
-        match (self.zero_valid || self.restarts > 0) && !status.has(Status::ZERO_VALID) {
-            true => Err(self.faulted(Fault::of(FaultKind::ZeroLost, f64::from(status.0)))),
-            false => Ok(configured),
+        if status.has(Status::ZERO_VALID) {
+            return Ok(configured);
         }
+        // Hardware of the program that has lost its counts since it was opened is not *configured*.
+        if self.zero_valid || self.restarts > 0 || self.has_io && !status.has(Status::CONFIGURED) {
+            return Err(self.faulted(Fault::of(FaultKind::ZeroLost, f64::from(status.0))));
+        }
+        if self.has_io {
+            warn_of_doubtful_zero(self.finger);
+        }
+        Ok(configured)
     }
 
     /// The board after its handshake, for its servo.

@@ -146,7 +146,7 @@ static void count_notices(int severity, const char *text, void *user)
         ++*(int *)user;
 }
 
-/* Hardware that starts without a zero is opened with a message. */
+/* Hardware that starts without a zero is opened with a message, and recovers with another one. */
 static void starts_without_zero(const struct sun2xp_io *io)
 {
     static const char Text[] = "[hand]\nfingers = [1]\nwatchdog_ms = 200\nend_state = \"release\"\n";
@@ -156,8 +156,10 @@ static void starts_without_zero(const struct sun2xp_io *io)
     CHECK(sun2xp_set_log(count_notices, &notices) == 0);
     Hardware[0].faults = SUN2XP_IO_ZERO_LOST;
     CHECK(sun2xp_open_io_text(Text, 1, io, &hand) == 0);
+    CHECK(sun2xp_stop(hand, 1) == 0 && fault_of(hand, 1) == SUN2XP_FAULT_STOP_CALL);
+    CHECK(sun2xp_recover(hand, 1) == 0);
     CHECK(sun2xp_close(hand) == 0 && sun2xp_set_log(NULL, NULL) == 0);
-    CHECK(notices == 1);
+    CHECK(notices == 2);
     memset(&Hardware[0], 0, sizeof Hardware[0]);
     begin_physics(&Hardware[0].physics);
 }

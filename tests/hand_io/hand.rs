@@ -155,6 +155,40 @@ fn a_recovery_reports_the_error_of_a_stop_although_the_zeros_were_lost() {
     assert_eq!(starts_and_stops(&switches), (2, 1));
 }
 
+/// Hardware that was opened without a reference for its encoder counts, and then loses its counts.
+#[test]
+fn counts_that_are_lost_after_an_opening_without_a_zero_fault_the_finger_and_refuse_its_recovery() {
+    let configuration = patient();
+    let hardware = PlantIo::new(&configuration, FingerNumber::ONE, true);
+    let switches = hardware.switches.clone();
+    let report = |faults: io::IoFaults| switches.lock().faults = faults;
+    report(io::IoFaults::ZERO_LOST);
+    let hand = Hand::open_with_io(configuration, [Some(Box::new(hardware) as Box<dyn FingerIo>), None, None]);
+    let hand = hand.expect("open");
+    let refused = |why: &str| match hand.recover(1) {
+        Err(HandError::Faulted { fault, .. }) => assert_eq!(fault.kind, FaultKind::ZeroLost, "{why}"),
+        other => panic!("{why}: {other:?}"),
+    };
+
+    report(io::IoFaults::default());
+    let (exchanges, begun) = (switches.lock().exchanges, Instant::now());
+    while switches.lock().exchanges == exchanges {
+        assert!(begun.elapsed() < PATIENCE, "no exchange");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    report(io::IoFaults::ZERO_LOST);
+    assert_eq!(fault(&hand, 1), FaultKind::ZeroLost);
+    refused("lost in a sample");
+    refused("the start before has not brought the counts back");
+
+    report(io::IoFaults::default());
+    hand.recover(1).unwrap_or_else(|error| panic!("{error}"));
+    hand.stop(1).expect("finger 1");
+    assert_eq!(fault(&hand, 1), FaultKind::FingerStopCall);
+    report(io::IoFaults::ZERO_LOST);
+    refused("lost before the start");
+}
+
 #[test]
 fn faults_of_the_hardware_fault_the_finger() {
     let (hand, switches) = open(&patient(), &[1, 2, 3], false).expect("open");

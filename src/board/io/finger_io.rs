@@ -126,7 +126,8 @@ pub struct IoSample {
     pub faults: IoFaults,
 }
 
-/// Faults that the hardware reports. Each bit faults the finger, except [`IoFaults::ZERO_LOST`] in the first sample.
+/// Faults that the hardware reports. Each bit faults the finger, except an [`IoFaults::ZERO_LOST`] that is set since
+/// opening.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct IoFaults(pub u32);
 
@@ -143,8 +144,10 @@ impl IoFaults {
     pub const DRIVER: Self = Self(1 << 4);
     /// An encoder or a gauge cannot be read.
     pub const SENSOR: Self = Self(1 << 5);
-    /// The encoder counts have lost their reference to the zero. In the first sample this bit does not fault the
-    /// finger: a message reports it, and the finger must be zeroed.
+    /// The encoder counts have lost their reference to the zero. In the first sample at opening this bit does not fault
+    /// the finger: a message reports it, and the finger must be zeroed. A bit that stays set does not fault it either.
+    /// Once a sample has come without the bit, the next sample with the bit reports a loss: it faults the finger, or
+    /// refuses its recovery.
     pub const ZERO_LOST: Self = Self(1 << 6);
 
     /// Returns whether any of these bits is set.

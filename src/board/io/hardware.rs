@@ -39,6 +39,11 @@ pub(super) struct Hardware {
     /// Status bits that stay set until the next Configure.
     latched: Status,
     zero_lost: bool,
+    /// Whether the last sample reported that the zero is lost. True before the first sample, because a zero that is
+    /// missing at opening was not lost on an open hand.
+    reports_lost_zero: bool,
+    /// Whether the zero was lost after opening, and no start has reported it valid since.
+    lost_since_open: bool,
     /// The last sample that could be converted.
     encoders: [i32; 4],
     gauges: [u16; 4],
@@ -70,6 +75,8 @@ impl Hardware {
             terms: Configure::default(),
             latched: Status::default(),
             zero_lost: false,
+            reports_lost_zero: true,
+            lost_since_open: false,
             encoders: [0; 4],
             gauges: [0; 4],
             sampled_at: 0,
@@ -91,13 +98,15 @@ impl Hardware {
         self.properties.in_step
     }
 
-    /// Returns the status of a Reply.
+    /// Returns the status of a Reply. *Zero valid* cannot tell of a loss if it was clear at opening. A serial board
+    /// whose counts begin again has also lost its terms, so *configured* is clear after a loss.
     pub fn status(&self) -> Status {
+        let configured = if self.lost_since_open { Status::default() } else { Status::CONFIGURED };
         let state = match self.state {
             State::Idle => Status::default(),
-            State::Ready => Status::CONFIGURED,
-            State::Enabled => Status::CONFIGURED | Status::ENABLED,
-            State::Ended => Status::CONFIGURED | Status::ENDED,
+            State::Ready => configured,
+            State::Enabled => configured | Status::ENABLED,
+            State::Ended => configured | Status::ENDED,
         };
         let zero = if self.zero_lost { Status::default() } else { Status::ZERO_VALID };
         state | zero | self.latched
@@ -129,6 +138,7 @@ impl Hardware {
         (self.last_sequence, self.number) = (None, 0);
         self.exchanged_at = realtime::now();
         self.note(&first, true);
+        self.lost_since_open &= self.zero_lost;
         // The board protocol refuses terms while a fault is present.
         if self.latched != Status::default() {
             let detail = self.latched.0;
@@ -200,7 +210,9 @@ impl Hardware {
                 self.latched |= status;
             }
         }
-        self.zero_lost |= sample.faults.has(IoFaults::ZERO_LOST);
+        let zero_lost = sample.faults.has(IoFaults::ZERO_LOST);
+        self.lost_since_open |= zero_lost && !self.reports_lost_zero;
+        (self.reports_lost_zero, self.zero_lost) = (zero_lost, self.zero_lost || zero_lost);
         let counts = sample.tensions.map(|tension| self.scale.count(tension));
         // A Reply has only the low 16 bits of a count.
         let moved_too_far = |motor: usize| {

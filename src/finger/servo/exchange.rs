@@ -120,7 +120,9 @@ impl FingerServo {
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
         self.supervision.note_reply(reply.status, counted, clocked);
-        let zero_lost = self.status.has(Status::ZERO_VALID) && !reply.status.has(Status::ZERO_VALID);
+        // A board that had no valid zero at opening loses its counts together with its terms.
+        let lost = |bit: Status| self.status.has(bit) && !reply.status.has(bit);
+        let zero_lost = !reply.status.has(Status::ZERO_VALID) && (lost(Status::ZERO_VALID) || lost(Status::CONFIGURED));
         self.status = reply.status;
         if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
             let fault = Fault::stopped(reply.status);
