@@ -1,6 +1,7 @@
 //! One motor pulls alone, with a force that rises until an encoder moves. If the encoder of another motor moves first,
-//! or if the motor's own encoder moves backward, the motor pulls until a gauge shows what is wrong. The unit t_min of
-//! some forces is `tendon.minimum`.
+//! or if the motor's own encoder moves backward, the motor pulls on. This pull ends when a gauge responds, and at the
+//! latest after the time [`LONGEST`] or the travel [`FARTHEST`]. It is left out if the motor's gauge has already shown
+//! that the motor's own encoder is dead. The unit t_min of some forces is `tendon.minimum`.
 
 use super::readings::Readings;
 use crate::calibration::average::Average;
