@@ -177,3 +177,28 @@ fn a_table_of_a_finger_that_does_not_exist_is_refused() {
         assert!(reason == known || shown == "2 " && reason.contains(&unknown), "{reason}");
     }
 }
+
+/// A surface has several numbers with the same range, so the error names the part.
+#[test]
+fn a_wrong_surface_is_refused_with_the_key_of_its_wrong_part() {
+    let wall = |point: &str, normal: &str, stiffness: &str| {
+        format!("wall = {{ point = [4, {point}, 0], normal = [{normal}, 0, 0], stiffness = {stiffness} }}")
+    };
+    let ball = |centre: &str, radius: &str, stiffness: &str| {
+        format!("ball = {{ centre = [0, {centre}, 6], radius = {radius}, stiffness = {stiffness} }}")
+    };
+    for (surface, key) in [
+        (wall("2000", "1", "5"), "wall.point"),
+        (wall("2", "0", "5"), "wall.normal"),
+        (wall("2", "nan", "5"), "wall.normal"),
+        (wall("2", "1", "-5"), "wall.stiffness"),
+        (ball("-2000", "2", "5"), "ball.centre"),
+        (ball("2", "0", "5"), "ball.radius"),
+        (ball("2", "2", "1e6"), "ball.stiffness"),
+    ] {
+        let text = format!("[finger.3.simulation]\nsurface = {{ {surface} }}\n");
+        let (line, reason) = read(&text).expect_err(&text);
+        assert_eq!(line, Some(2), "{reason}");
+        assert!(reason.contains(&format!("finger.3.simulation.surface.{key}")), "{text}: {reason}");
+    }
+}

@@ -53,20 +53,21 @@ fn check_surface(surface: Option<&Surface>) -> Result<(), Unusable> {
     match surface {
         None => Ok(()),
         Some(&Surface::Wall { point, normal, stiffness }) => {
-            each("simulation.surface", &point, -1000.0, 1000.0, "cm")?;
+            each("simulation.surface.wall.point", &point, -1000.0, 1000.0, "cm")?;
             if let Some(part) = normal.iter().find(|part| !part.is_finite()) {
                 let reason = format!("the wall's normal has the component {part}: set finite numbers");
-                return unusable("simulation.surface", reason);
+                return unusable("simulation.surface.wall.normal", reason);
             }
             if normal.iter().all(|&part| part == 0.0) {
-                return unusable("simulation.surface", "the wall's normal is zero: set its direction".into());
+                let reason = "the wall's normal is zero: set its direction";
+                return unusable("simulation.surface.wall.normal", reason.into());
             }
-            within("simulation.surface", stiffness, 0.0, 1e4, "N/cm")
+            within("simulation.surface.wall.stiffness", stiffness, 0.0, 1e4, "N/cm")
         }
         Some(&Surface::Ball { centre, radius, stiffness }) => {
-            each("simulation.surface", &centre, -1000.0, 1000.0, "cm")?;
-            within("simulation.surface", radius, 1e-3, 1000.0, "cm")?;
-            within("simulation.surface", stiffness, 0.0, 1e4, "N/cm")
+            each("simulation.surface.ball.centre", &centre, -1000.0, 1000.0, "cm")?;
+            within("simulation.surface.ball.radius", radius, 1e-3, 1000.0, "cm")?;
+            within("simulation.surface.ball.stiffness", stiffness, 0.0, 1e4, "N/cm")
         }
     }
 }
