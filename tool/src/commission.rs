@@ -191,7 +191,7 @@ fn measure(desk: &mut Desk, steps: &[Step]) -> Result<(), Failure> {
     for &step in steps {
         let outcome = desk.complete(step, |_| Ok(()))?;
         if let Some(wrong) = outcome.wrong.iter().find(|wrong| !wrong.compensated()) {
-            return Err(format!("the step {step} stopped: {wrong}").into());
+            return Err(format!("the step {step} stopped: {}", wrong.with_remedy()).into());
         }
     }
     Ok(())

@@ -3,6 +3,7 @@
 use super::outcome::Outcome;
 use super::step::Step;
 use super::vitals::Vitals;
+use super::wrong::Wrong;
 use crate::failure::{Failure, unwritable};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -121,9 +122,8 @@ impl CommissionedFinger {
     /// Adds a step that has not passed. It no longer counts as passed, even if it had passed before.
     pub fn fail(&mut self, step: Step, outcome: &Outcome, when: &str) {
         let wrong = outcome.wrong.iter().filter(|wrong| !wrong.compensated());
-        let text = wrong.map(|wrong| format!("{wrong}. {}", wrong.remedy()).trim_end_matches([' ', '.']).to_owned());
         self.steps.remove(&step);
-        self.failed.insert(step, Done { when: when.into(), found: text.collect() });
+        self.failed.insert(step, Done { when: when.into(), found: wrong.map(Wrong::with_remedy).collect() });
     }
 
     /// Why a step must not be done: it moves the finger, and an earlier step has found a fault that is still open.

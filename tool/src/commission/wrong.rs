@@ -98,6 +98,11 @@ impl Wrong {
         )
     }
 
+    /// What is wrong and what to do, without a full stop at the end.
+    pub fn with_remedy(&self) -> String {
+        format!("{self}. {}", self.remedy()).trim_end_matches([' ', '.']).to_owned()
+    }
+
     /// Whether it is compensated, but probably has a cause that should be removed.
     pub fn suspect(&self) -> bool {
         match self {

@@ -188,6 +188,18 @@ fn health_repeats_only_what_has_failed() {
     assert_eq!(person.questions.len(), 1);
 }
 
+/// With --json, this text is all that the user sees.
+#[test]
+fn health_stops_with_the_cause_and_its_remedy() {
+    let (world, belief) = world(|_| ());
+    let (mut machine, mut person) = (Bench(world.clone()), Helper::new(&world));
+    person.loses_supply = true;
+    let (weights, vitals) = (Vec::new(), Vitals::default());
+    let mut desk = Desk { machine: &mut machine, person: &mut person, finger: belief, weights, vitals };
+    let text = measure(&mut desk, &[Step::Board]).expect_err("no supply").to_string();
+    assert!(text.contains("the step board stopped: the motors have no supply. Switch the supply on"), "{text}");
+}
+
 /// The person turns motor 2 twice, or hangs a weight on tendon 2 twice.
 #[test]
 fn a_part_that_answers_twice_is_no_exchange() {
