@@ -82,6 +82,15 @@ def test_the_number_of_a_refusal_is_its_reason(server, remote, code, number):
     assert (refused.value.number, refused.value.remedy) == (number, "recover it")
 
 
+def test_the_refusals_of_several_fingers_are_separated(server, remote):
+    for finger in (1, 2):
+        remote.send_position(finger, HOME)
+        server.refuse(server.targets[-1][0], f"finger {finger} is faulted: recover finger {finger}")
+    with pytest.raises(sun2xp.Refused) as refused:
+        remote.wait(timeout=0)
+    assert refused.value.text == "finger 1 is faulted: recover finger 1; finger 2 is faulted: recover finger 2"
+
+
 @pytest.mark.parametrize(
     ("call", "number"),
     [

@@ -8,6 +8,10 @@ use thiserror::Error;
 /// Smallest difference between the times of two consecutive poses, s.
 const LEAST_STEP: f64 = 1e-3;
 
+/// Rounding error of the difference of two times, s. Poses that are exactly [`LEAST_STEP`] apart are accepted, as the
+/// library on the server's machine accepts them.
+const TIME_ROUNDING: f64 = 1e-9;
+
 /// Longest path, s.
 const LONGEST: f64 = 3600.0;
 
@@ -168,7 +172,7 @@ pub fn admit_path(status: &FingerStatus, finger: Finger, poses: &[PathPose]) -> 
     let mut before = 0.0;
     for (pose, &PathPose { time, ref joints }) in poses.iter().enumerate() {
         // This form of the comparison rejects NaN.
-        if !(time >= before + LEAST_STEP && time <= LONGEST) {
+        if !(time >= before + (LEAST_STEP - TIME_ROUNDING) && time <= LONGEST) {
             return Err(AdmissionError::Time { finger, pose, time, before });
         }
         before = time;

@@ -141,7 +141,6 @@ impl CommissionedFinger {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::commission::wrong::Wrong;
     use std::thread;
 
     /// Each process has its own copy of the whole file, and notes the steps of its own finger.

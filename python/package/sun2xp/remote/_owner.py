@@ -117,7 +117,7 @@ class Owner:
         refusals = [self._refusals.pop(finger) for finger in fingers if finger in self._refusals]
         texts = sorted({refusal.text for refusal in refusals})
         if texts:
-            raise Refused(" ".join(texts), number=refusals[0].number)
+            raise Refused("; ".join(texts), number=refusals[0].number)
 
     def command(self, changes: List[Part]) -> None:
         """Accepts new set points. Each contains only the values that shall change. All other values stay the same."""

@@ -176,6 +176,8 @@ fn paths_are_checked() {
         assert!(refused_kind == kind && text.starts_with(beginning), "{refused_kind:?}: {text}");
     }
     assert!(exchange.admit_path(1, &[pose(1.0, 0.5)], 10 * MS).is_ok());
+    // The difference of these two times is rounded below 1 ms.
+    assert!(exchange.admit_path(1, &[pose(0.008, 0.5), pose(0.009, 0.5)], 10 * MS).is_ok());
     exchange.take_state(&state(2, 11 * MS, Stage::Calibrating), 11 * MS);
     let (kind, text) = refused(exchange.admit_path(1, &[pose(1.0, 0.5)], 11 * MS).map(drop));
     assert_eq!((kind, text.as_str()), (RemoteErrorKind::Busy, "finger 1 is calibrating: wait until it is running"));
