@@ -1,14 +1,17 @@
 //! The files of a recording. Each can be read by itself: a new file begins with the description and the controllers.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, unwritable};
 use crate::monitor::words::utc;
 use crate::recording::RecordingWriter;
 use std::collections::{BTreeMap, VecDeque};
+use std::error::Error;
 use std::fmt::{self, Display, Formatter};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind};
+use std::iter::successors;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use sun2xp::files::write_remedy;
 use sun2xp::model::{FingerNumber, ShownPath};
 use sun2xp::telemetry::{Description, Message};
 
@@ -179,9 +182,7 @@ impl Files {
         let path = superfluous.then(|| self.paths.pop_front()).flatten()?;
         match fs::remove_file(&path) {
             // The user may have moved or deleted the file.
-            Err(error) if error.kind() != ErrorKind::NotFound => {
-                Some(format!("cannot delete {}: {error}. The file stays", ShownPath(&path)))
-            }
+            Err(error) if error.kind() != ErrorKind::NotFound => Some(undeleted(&path, &error)),
             _ => None,
         }
     }
@@ -204,7 +205,7 @@ impl OpenFile {
             Err(error) => {
                 // The file has no cycle, and would be in the way of the next attempt.
                 let _ = fs::remove_file(&path);
-                Err(format!("cannot write {}: {error}", ShownPath(&path)).into())
+                Err(unwritten(&path, &*error))
             }
         }
     }
@@ -215,7 +216,7 @@ impl OpenFile {
         write: impl FnOnce(&mut RecordingWriter<BufWriter<File>>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let path = &self.path;
-        write(&mut self.writer).map_err(|error| format!("cannot write {}: {error}", ShownPath(path)).into())
+        write(&mut self.writer).map_err(|error| unwritten(path, &*error))
     }
 
     /// The size of the file now, bytes. The messages of the last half second are not written yet.
@@ -226,25 +227,39 @@ impl OpenFile {
     /// Ends the file, and returns its size.
     fn finish(self) -> Result<u64, Failure> {
         let Self { path, writer, .. } = self;
-        let unwritable = |error: &dyn Display| format!("cannot write {}: {error}", ShownPath(&path));
-        let file = writer.finish().map_err(|error| unwritable(&error))?;
-        let file = file.into_inner().map_err(|error| unwritable(&error))?;
-        Ok(file.metadata().map_err(|error| unwritable(&error))?.len())
+        let file = writer.finish().map_err(|error| unwritten(&path, &*error))?;
+        let file = file.into_inner().map_err(|error| unwritable(&path, error.error()))?;
+        Ok(file.metadata().map_err(|error| unwritable(&path, &error))?.len())
     }
 }
 
 impl Display for Written {
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}", ShownPath(&self.last))?;
-        if self.count > 1 {
-            write!(formatter, ", the last of {} files", self.count)?;
+        let megabytes = self.bytes as f64 * 1e-6;
+        match self.count {
+            1 => write!(formatter, ", {megabytes:.1} MB"),
+            count => write!(formatter, ", the last of {count} files, together {megabytes:.1} MB"),
         }
-        write!(formatter, ", {:.1} MB", self.bytes as f64 * 1e-6)
     }
 }
 
 fn create_new(path: &Path) -> io::Result<File> {
     OpenOptions::new().write(true).create_new(true).open(path)
+}
+
+/// The failure of a file to which the writer of recordings cannot write. The text of this writer's error says only that
+/// writing failed, so the error of the system is taken, which is behind it.
+fn unwritten(path: &Path, error: &(dyn Error + 'static)) -> Failure {
+    match successors(Some(error), |&error| error.source()).find_map(|error| error.downcast_ref::<io::Error>()) {
+        Some(of_system) => unwritable(path, of_system),
+        None => format!("cannot write {}: {error}", ShownPath(path)).into(),
+    }
+}
+
+/// The message about a file that cannot be deleted.
+fn undeleted(path: &Path, error: &io::Error) -> String {
+    format!("cannot delete {}: {error}{}. The file stays", ShownPath(path), write_remedy(error))
 }
 
 fn uncreated(path: &Path, error: &io::Error) -> Failure {

@@ -9,8 +9,8 @@ use tempfile::TempDir;
 /// Every call of [`Files::turn`] begins a new file.
 const AT_ONCE: Limits = Limits { bytes: Some(0), age: None, keep: Some(2) };
 
-fn begin(folder: &TempDir) -> Files {
-    let description = Description {
+fn description() -> Description {
+    Description {
         name: "hand".into(),
         process: 1,
         library: "test".into(),
@@ -18,8 +18,11 @@ fn begin(folder: &TempDir) -> Files {
         clock_offset: 1_000_000_000_000,
         fingers: vec![FingerNumber::ONE],
         configuration: Configuration::default(),
-    };
-    Files::begin(Some(folder.path().join("hand.mcap")), &description, AT_ONCE, 7_000).expect("begun")
+    }
+}
+
+fn begin(folder: &TempDir) -> Files {
+    Files::begin(Some(folder.path().join("hand.mcap")), &description(), AT_ONCE, 7_000).expect("begun")
 }
 
 fn names(folder: &TempDir) -> Vec<String> {
@@ -47,7 +50,8 @@ fn files_of_an_earlier_recording_are_kept_and_their_numbers_skipped() {
         assert!(files.turn().expect("a file").begun);
     }
     assert_eq!(names(&folder), ["hand-2.mcap", "hand-4.mcap", "hand-5.mcap", "hand-6.mcap"]);
-    assert!(files.finish().expect("finished").to_string().contains("the last of 4 files"));
+    let written = files.finish().expect("finished").to_string();
+    assert!(written.contains("hand-6.mcap, the last of 4 files, together "), "{written}");
 }
 
 #[test]
@@ -64,6 +68,21 @@ fn an_old_file_that_cannot_be_deleted_does_not_end_the_recording() {
     fs::create_dir(folder.path().join("hand-2.mcap")).expect("made");
     let turn = files.turn().expect("a file");
     assert!(turn.begun && turn.undeleted.is_some_and(|reason| reason.contains("hand-2.mcap")));
+}
+
+#[test]
+fn a_file_that_cannot_be_written_or_deleted_is_named_with_the_cause_and_the_remedy() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hand.mcap");
+    let full = OpenOptions::new().write(true).open("/dev/full").expect("a full disk");
+    let failure = OpenFile::begin(path.clone(), full, &description(), 0).err().expect("a full disk").to_string();
+    assert!(failure.starts_with("cannot write ") && failure.contains("No space left on device"), "{failure}");
+    let denied = io::Error::from(ErrorKind::PermissionDenied);
+    let remedy = ": permission denied. This user needs permission to write the file and its folder";
+    let failure = unwritten(&path, &denied).to_string();
+    assert!(failure.starts_with("cannot write ") && failure.ends_with(remedy), "{failure}");
+    let message = undeleted(&path, &denied);
+    assert!(message.ends_with(&format!("{remedy}. The file stays")), "{message}");
 }
 
 #[test]
