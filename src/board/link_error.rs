@@ -88,6 +88,20 @@ pub enum LinkError {
 }
 
 impl LinkError {
+    /// Returns the cause and the remedy in few words, for a list of ports at which no board was found.
+    pub fn in_short(&self) -> String {
+        match self {
+            LinkError::Port(error) => error.in_short(),
+            LinkError::Silent { .. } => "nothing answers: check power and cable".into(),
+            LinkError::Unintelligible { .. } => "no valid frame: check the bit rate, and that it is a board".into(),
+            LinkError::WrongVersion { lowest, highest } => {
+                format!("protocol versions {lowest} to {highest}, not {VERSION}: update board or library")
+            }
+            // A search for boards sends only Hello, which every board must answer.
+            _ => "faulty firmware, or several boards: update it, or connect one".into(),
+        }
+    }
+
     /// Returns the closest errno.
     pub fn errno(&self) -> i32 {
         match self {
@@ -111,4 +125,35 @@ fn listed(addresses: u16) -> String {
         .map(|address| address.to_string())
         .collect();
     if names.is_empty() { "none at all".into() } else { names.join(", ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io;
+    use std::path::PathBuf;
+
+    #[test]
+    fn every_port_without_a_board_has_its_cause_and_a_remedy_in_short() {
+        let path = || PathBuf::from("/dev/ttyUSB0");
+        let broken = || io::Error::from_raw_os_error(libc::EPROTO);
+        let errors: [(LinkError, &str); 11] = [
+            (PortError::Missing(path()).into(), "does not exist"),
+            (PortError::Forbidden(path()).into(), "no permission"),
+            (PortError::Busy(path()).into(), "in use by another program"),
+            (PortError::NotASerialPort(path()).into(), "not a serial port"),
+            (PortError::Baud { path: path(), wanted: 2_000_000, offered: 9600 }.into(), "not at 2000000 bit/s"),
+            (PortError::Opening { path: path(), source: broken() }.into(), "Protocol error"),
+            (PortError::Vanished.into(), "disappeared"),
+            (LinkError::Silent { milliseconds: 160 }, "nothing answers"),
+            (LinkError::Unintelligible { bytes: 9, damaged: 1 }, "no valid frame"),
+            (LinkError::WrongVersion { lowest: 2, highest: 3 }, "protocol versions 2 to 3"),
+            (LinkError::Unanswered { address: 1, request: Kind::Hello }, "faulty firmware"),
+        ];
+        for (error, cause) in errors {
+            let text = error.in_short();
+            let (before, remedy) = text.split_once(": ").expect("a remedy");
+            assert!(before.starts_with(cause) && !remedy.is_empty() && text.len() <= 80, "{text}");
+        }
+    }
 }

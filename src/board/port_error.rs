@@ -84,6 +84,22 @@ pub enum PortError {
 }
 
 impl PortError {
+    /// Returns the cause and the remedy in few words, for a list of ports at which no board was found.
+    pub(super) fn in_short(&self) -> String {
+        match self {
+            PortError::Missing(_) => "does not exist: check the cable".into(),
+            PortError::Forbidden(_) => "no permission: join the port's group (usually dialout)".into(),
+            PortError::Busy(_) => "in use by another program: end it".into(),
+            PortError::NotASerialPort(_) => "not a serial port: name another port".into(),
+            PortError::Baud { wanted, .. } => format!("not at {wanted} bit/s: choose another bit rate"),
+            PortError::Opening { source, .. }
+            | PortError::SetUp { source, .. }
+            | PortError::Hardware { source, .. }
+            | PortError::Failed(source) => format!("{source}: check the adapter"),
+            PortError::Vanished | PortError::Closed => "disappeared: check the cable".into(),
+        }
+    }
+
     /// Returns the errno that the system reported, or the closest one if it reported none.
     pub fn errno(&self) -> i32 {
         match self {

@@ -114,10 +114,7 @@ fn listed(searched: &[SearchedPort]) -> String {
                 let numbers = fingers.iter().map(|found| BoardNumber(found.identity.unique_number).to_string());
                 format!("{path} has {}", numbers.collect::<Vec<_>>().join(" and "))
             }
-            Err(LinkError::Silent { .. }) => format!("{path} is silent"),
-            Err(LinkError::Port(PortError::Busy(_))) => format!("{path} is in use"),
-            Err(LinkError::Port(_)) => format!("{path} cannot be opened"),
-            Err(_) => format!("{path} has no board of this protocol"),
+            Err(error) => format!("{path}: {}", error.in_short()),
         }
     };
     match searched {

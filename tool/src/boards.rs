@@ -6,7 +6,6 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::path::PathBuf;
-use sun2xp::board::{LinkError, PortError};
 use sun2xp::hand::{self, SearchedPort, search_boards};
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{BoardNumber, Configuration};
@@ -43,9 +42,9 @@ struct Port {
     fingers: Vec<Finger>,
     /// Why no finger was found.
     error: Option<String>,
-    /// The error in a few words, for the table.
+    /// The error and its remedy in a few words, for the table.
     #[serde(skip)]
-    why: &'static str,
+    why: String,
 }
 
 /// A finger that answers at a port.
@@ -69,24 +68,16 @@ impl Port {
                     firmware: found.identity.firmware.0.map(|part| part.to_string()).join("."),
                     board_kind: found.identity.board_kind,
                 });
-                Self { port, fingers: fingers.collect(), error: None, why: "" }
+                Self { port, fingers: fingers.collect(), error: None, why: String::new() }
             }
-            Err(error) => {
-                let why = match error {
-                    LinkError::Port(PortError::Busy(_)) => "in use by another program",
-                    LinkError::Port(_) => "cannot be opened",
-                    LinkError::Silent { .. } => "nothing answers",
-                    _ => "no board of this protocol",
-                };
-                Self { port, fingers: Vec::new(), error: Some(error.to_string()), why }
-            }
+            Err(error) => Self { port, fingers: Vec::new(), error: Some(error.to_string()), why: error.in_short() },
         }
     }
 
     fn add_to(&self, table: &mut Table) {
         let path = ShownPath(&self.port).to_string();
         if self.fingers.is_empty() {
-            table.row([path.clone().into(), Cell::new(Look::Dim, self.why), "".into(), "".into(), "".into()]);
+            table.row([path.clone().into(), Cell::new(Look::Dim, self.why.as_str()), "".into(), "".into(), "".into()]);
         }
         for finger in &self.fingers {
             table.row([
@@ -131,4 +122,25 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     report.ports.iter().for_each(|port| port.add_to(&mut table));
     write!(output, "{}", table.text(&Screen::stdout()))?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sun2xp::board::{LinkError, PortError};
+
+    #[test]
+    fn the_table_says_why_a_port_has_no_board_and_what_to_do() {
+        let path = PathBuf::from("/dev/ttyUSB0");
+        for (error, shown) in [
+            (PortError::Forbidden(path.clone()).into(), "no permission: join the port's group (usually dialout)"),
+            (LinkError::WrongVersion { lowest: 2, highest: 3 }, "protocol versions 2 to 3, not 1: update board"),
+            (LinkError::Unintelligible { bytes: 9, damaged: 1 }, "no valid frame: check the bit rate"),
+        ] {
+            let mut table = Table::new(["port", "unique number", "address", "firmware", "kind"]);
+            Port::new(SearchedPort { path: path.clone(), answer: Err(error) }).add_to(&mut table);
+            let text = table.text(&Screen { width: None, lines: false, coloured: false });
+            assert!(text.contains("/dev/ttyUSB0") && text.contains(shown), "{text}");
+        }
+    }
 }
