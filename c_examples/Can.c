@@ -22,6 +22,9 @@
 /* Longest wait for the simulated drives in an exchange, s. With real drives, wait until the deadline in the command. */
 #define PATIENCE 0.08
 
+/* Largest sum of the differences between the joint angles of a finger at rest and its target, rad. */
+#define FARTHEST 0.03
+
 struct drives {
     struct can_bus bus;
     int finger;
@@ -120,6 +123,19 @@ static int stop(void *user)
     return can_send(&drives->bus, 0, CAN_CONTROL + drives->finger, Control) == 0 ? 0 : errno;
 }
 
+/* Returns whether a finger rests at the target. If it does not, prints how far away it is. */
+static int is_there(int finger, const double position[3], const double target[3])
+{
+    double distance = fabs(position[0] - target[0]) + fabs(position[1] - target[1]) + fabs(position[2] - target[2]);
+
+    if (distance <= FARTHEST)
+        return 1;
+    fprintf(stderr, "finger %d rests %.3f rad from its target: look for what keeps it from moving\n", finger, distance);
+    return 0;
+}
+
+/* Moves every finger to the target. Returns 0 if all of them arrive, 1 if one rests elsewhere, and -1 if a call is
+   refused. */
 static int move(sun2xp_hand *hand)
 {
     double target[3] = {0.2, 0.6, 1.1}, position[3];
@@ -138,8 +154,8 @@ static int move(sun2xp_hand *hand)
             return -1;
         printf("finger %d rests at %.3f %.3f %.3f rad, exchange: median %.0f us\n", finger, position[0], position[1],
             position[2], (double)timing.median / 1000);
-        if (fabs(position[0] - target[0]) + fabs(position[1] - target[1]) + fabs(position[2] - target[2]) > 0.03)
-            return -1;
+        if (!is_there(finger, position, target))
+            return 1;
     }
     return 0;
 }
@@ -194,7 +210,7 @@ int main(int count, char **arguments)
     result = sun2xp_open_io_text(CONFIGURATION, 3, io, &hand);
     if (result == 0) {
         result = move(hand);
-        if (result != 0)
+        if (result < 0)
             fprintf(stderr, "%s\n", sun2xp_error_text(hand));
         sun2xp_close(hand);
     } else {

@@ -53,8 +53,13 @@ int main(void)
         give_up("setting the stiffness");
 
     /* A pose beyond the joint limits is refused. The set point stays as it was, and the program continues. */
-    if (SendPos(FINGER, (double[]){0.0, 0.0, 3.0}) == 0 || errno != ERANGE)
-        give_up("expecting a refusal");
+    if (SendPos(FINGER, (double[]){0.0, 0.0, 3.0}) == 0) {
+        fprintf(stderr, "a pose beyond the joint limits was accepted: set hand.out_of_range = \"refuse\"\n");
+        CloseHand();
+        return EXIT_FAILURE;
+    }
+    if (errno != ERANGE)
+        give_up("expecting a refusal with ERANGE");
     printf("as expected: %s\n", HandError());
 
     const double target[3] = {0.2, 0.6, 1.0};

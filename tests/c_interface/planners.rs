@@ -120,6 +120,23 @@ fn late_frames_of_a_can_bus_make_no_sample() {
 }
 
 #[test]
+fn a_finger_with_a_drive_at_a_can_bus_that_does_not_arrive_is_reported() {
+    let examples = c::root().join("c_examples");
+    succeed(&strict(&["-std=gnu99", "-I", examples.to_str().expect("the path is text")]), &["off_target.c"]);
+}
+
+#[test]
+fn the_example_in_c17_says_why_the_pose_that_must_be_refused_was_accepted() {
+    let bench = Bench::new();
+    bench.write("named.toml", "[hand]\nfingers = [2]\nout_of_range = \"clamp\"\n[finger]\nport = \"simulated\"\n");
+    let source = c::root().join("c_examples/Modern.c");
+    let modern = bench.build(c_compiler(), &["-std=c17"], &[source.to_str().expect("the path is text")]);
+    let run = bench.run(Command::new(modern));
+    assert_eq!(run.status.code(), Some(1), "{}", said(&run));
+    assert!(said(&run).contains("was accepted: set hand.out_of_range = \"refuse\""), "{}", said(&run));
+}
+
+#[test]
 fn null_pointers_are_refused() {
     succeed(&strict(&["-ansi"]), &["null.c"]);
 }
