@@ -100,7 +100,7 @@ impl Hand {
     }
 
     /// Brings every finger to its configured end state (`hand.end_state`), and closes the ports. Waits until this is
-    /// done, 0.2 s by default. Does nothing if the hand is closed.
+    /// done, 0.2 s by default, also after Ctrl-C. Does nothing if the hand is closed.
     fn close(&self, py: Python<'_>) {
         py.detach(|| self.0.close());
     }

@@ -20,8 +20,8 @@ class Hand(_sun2xp.Hand):
     """An open hand of up to three fingers, whose numbers are in `fingers`. The servo threads run without Python.
 
     `sun2xp.open()` and `sun2xp.simulated()` open a hand. A process can open several hands. All methods may be called
-    from several threads. Methods that wait release the interpreter lock, and Ctrl-C ends them. Leaving a `with` block
-    closes the hand.
+    from several threads. Methods that wait release the interpreter lock, and Ctrl-C ends them, except `close`: it
+    closes the hand before KeyboardInterrupt is raised. Leaving a `with` block closes the hand.
 
     All methods except `close` raise Closed if the hand is closed, Refused if there is no such finger or if an argument
     is wrong, and Fault if the finger is faulted and the method needs it to run. They raise TypeError if an argument
