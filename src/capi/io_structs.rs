@@ -23,8 +23,8 @@ pub const SUN2XP_IO_DRIVER: c_uint = 16;
 /// An encoder or a gauge cannot be read.
 pub const SUN2XP_IO_SENSOR: c_uint = 32;
 
-/// The encoder counts have lost their reference to the zero. In the first sample this bit does not fault the finger: a
-/// message reports it, and the finger must be zeroed (sun2xp_zero).
+/// The encoder counts have lost their reference to the zero. A bit that is set since the first sample at opening does
+/// not fault the finger: a message reports it, and the finger must be zeroed (sun2xp_zero).
 pub const SUN2XP_IO_ZERO_LOST: c_uint = 64;
 
 /// The terms under which the motors of a finger may move. The library sets all members.
@@ -82,8 +82,8 @@ pub struct sun2xp_io_sample {
     pub tensions: [f64; 4],
     /// Counts of the motor encoders.
     pub encoders: [c_int; 4],
-    /// Sum of the SUN2XP_IO_... bits of all present faults. Each bit stops the finger with a fault, except
-    /// SUN2XP_IO_ZERO_LOST in the first sample.
+    /// Sum of the SUN2XP_IO_... bits of all present faults. Each bit stops the finger with a fault, except a
+    /// SUN2XP_IO_ZERO_LOST that is set since the first sample at opening.
     pub faults: c_uint,
 }
 

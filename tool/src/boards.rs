@@ -133,7 +133,10 @@ mod tests {
     fn the_table_says_why_a_port_has_no_board_and_what_to_do() {
         let path = PathBuf::from("/dev/ttyUSB0");
         for (error, shown) in [
-            (PortError::Forbidden(path.clone()).into(), "no permission: join the port's group (usually dialout)"),
+            (
+                LinkError::from(PortError::Forbidden(path.clone())),
+                "no permission: join the port's group (usually dialout)",
+            ),
             (LinkError::WrongVersion { lowest: 2, highest: 3 }, "protocol versions 2 to 3, not 1: update board"),
             (LinkError::Unintelligible { bytes: 9, damaged: 1 }, "no valid frame: check the bit rate"),
         ] {

@@ -205,7 +205,7 @@ impl OpenFile {
             Err(error) => {
                 // The file has no cycle, and would be in the way of the next attempt.
                 let _ = fs::remove_file(&path);
-                Err(unwritten(&path, &*error))
+                Err(unwritten(&path, error.as_ref()))
             }
         }
     }
@@ -216,7 +216,7 @@ impl OpenFile {
         write: impl FnOnce(&mut RecordingWriter<BufWriter<File>>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let path = &self.path;
-        write(&mut self.writer).map_err(|error| unwritten(path, &*error))
+        write(&mut self.writer).map_err(|error| unwritten(path, error.as_ref()))
     }
 
     /// The size of the file now, bytes. The messages of the last half second are not written yet.
@@ -227,7 +227,7 @@ impl OpenFile {
     /// Ends the file, and returns its size.
     fn finish(self) -> Result<u64, Failure> {
         let Self { path, writer, .. } = self;
-        let file = writer.finish().map_err(|error| unwritten(&path, &*error))?;
+        let file = writer.finish().map_err(|error| unwritten(&path, error.as_ref()))?;
         let file = file.into_inner().map_err(|error| unwritable(&path, error.error()))?;
         Ok(file.metadata().map_err(|error| unwritable(&path, &error))?.len())
     }
