@@ -6,7 +6,7 @@
    its contact or that of another finger is about to slip. A call that moves the anchors removes the force that the
    reflexes have added, and the reflexes must add it again. The exit status is 0 if the grasp tightens, and if the ball
    is lifted, does not creep while it is held, and is back on the table at the end. The program works with a simulated
-   hand only, because sun2xp_object reads the pose of a simulated ball. C99. */
+   hand only, because sun2xp_object reads the pose of a simulated ball. It is C99 with functions of POSIX. */
 
 #include <math.h>
 #include <stdio.h>

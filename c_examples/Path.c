@@ -9,7 +9,7 @@
 
 #define FINGER 1
 #define RADIUS 1.0                      /* cm */
-#define TURNS 3.0                       /* full speed is one turn a second */
+#define TURNS 3.0                       /* number of turns; at full speed, a turn takes 1 s */
 #define RAMP 0.5                        /* time in which the speed rises, and time in which it falls, s */
 #define POSES 70
 #define PI 3.14159265358979323846

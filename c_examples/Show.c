@@ -2,7 +2,8 @@
 
    The hand is that of grasp.toml, as in Grasp.c. The fingers lift the ball, move it along a circle while they change
    their stiffness, and put it down. The argument is the time for which the ball moves along the circle, s; 10 by
-   default. The exit status is 0 if the fingers still hold the ball at the end of the circle. C99. */
+   default. The exit status is 0 if the fingers still hold the ball at the end of the circle. The program is C99
+   with functions of POSIX. */
 
 #include <math.h>
 #include <stdio.h>

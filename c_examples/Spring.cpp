@@ -18,7 +18,7 @@ int main()
             finger.send_stiffness(stiffness);
             finger.send_position({0.1, 0.6, finger.limits().joint_maximum[2] / 2});
             if (!finger.wait(sun2xp::until::settled, 10s))
-                throw std::runtime_error("the finger does not come to rest");
+                throw std::runtime_error("finger 1 has not come to rest within 10 s: run this on a less busy machine");
             const auto [j0, j1, j2] = finger.position();
             std::printf("finger 1 rests at %.3f %.3f %.3f rad\n", j0, j1, j2);
         }

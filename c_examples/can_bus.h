@@ -74,8 +74,8 @@ static int can_open(struct can_bus *bus, const char *place, int finger)
     return bind(bus->socket, (struct sockaddr *)&can, sizeof can);
 }
 
-/* Sends four numbers of 16 bits without waiting. to is the finger for which Can.c receives the frame, or 0 if
-   CanDrives.c receives it. */
+/* Sends four numbers of 16 bits without waiting. The argument to is the finger for which Can.c receives the frame, or 0
+   if CanDrives.c receives it. */
 static int can_send(const struct can_bus *bus, int to, unsigned identifier, const int numbers[4])
 {
     struct can_frame frame = {.can_id = identifier, .can_dlc = 8};

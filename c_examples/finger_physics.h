@@ -40,7 +40,7 @@ static int count_of(const struct finger_physics *finger, int motor)
 }
 
 /* Sets the initial state of the built-in simulated hand: joint angles of 0, 30 and 60 degrees, the tendons at the
-   homing pretension, and the motors braked. */
+   homing pretension (the member home), and the motors braked. */
 static void begin_physics(struct finger_physics *finger)
 {
     static const double Pose[3] = {0, 0.5235987755982988, 1.0471975511965976};

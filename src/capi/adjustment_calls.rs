@@ -27,12 +27,11 @@ use std::ffi::{CStr, c_char, c_int};
 /// default bound applies. If the bound is lowered while a path changes Kx, the Kx of the end of the path
 /// takes effect at once.
 ///
-/// If the path that was sent last has not ended, the call checks the whole path against the new limits,
-/// including the part that the finger has already followed. The new limits of finger.motion are not checked,
-/// because they apply only to later paths. With hand.out_of_range = "clamp" a path outside the new joint
-/// limits ends, and the finger moves to the end of the path at once. A finger that was beyond a joint limit
-/// when it became a spring may still hold its pose there. The call accepts this pose, unless the new limit is
-/// narrower.
+/// If the path that was sent last has not ended, the call checks the whole path against the new limits, except
+/// those of finger.motion, which apply only to later paths. The check includes the part that the finger has
+/// already followed. With hand.out_of_range = "clamp" a path outside the new joint limits ends, and the finger
+/// moves to the end of the path at once. A finger that was beyond a joint limit when it became a spring may
+/// still hold its pose there. The call accepts this pose, unless the new limit is narrower.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -20,8 +20,9 @@ use std::path::PathBuf;
 /// Result of sun2xp_record: one cycle of a finger, from the black box.
 ///
 /// The library stores all cycles from the member oldest to the member newest. The controller does not run
-/// in a cycle in which the finger faults before the controller's turn, or in which a simulated finger does
-/// not answer. The member computed is then 0, and so are all members after it.
+/// in a cycle in which the finger faults before the controller's turn, or in which a built-in simulated
+/// finger or hardware with in_step does not answer. The member computed is then 0, and so are all members
+/// after it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_record {

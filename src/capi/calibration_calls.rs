@@ -13,12 +13,13 @@ use std::ffi::c_int;
 ///
 ///   finger   1 to 3
 ///
-/// Slackens the tendons and reads the gauges. Then finds the zero of the encoders by finger.zeroing.method:
+/// Slackens the tendons and reads the gauges. Finds the zero of the encoders by finger.zeroing.method:
 ///
 ///   "pose"   The finger must be in the pose finger.zeroing.pose_degrees, and must stand still there from
 ///            the start of the call until its encoders have been read. This takes 0.3 s for a finger
-///            that is a spring, and some seconds for a limp finger. A jig or a person must hold a limp
-///            finger. A finger that moves is refused, and so is a limp finger that nothing holds.
+///            that is a spring, whose encoders are read before its tendons are slackened, and some
+///            seconds for a limp finger. A jig or a person must hold a limp finger. A finger that moves
+///            is refused, and so is a limp finger that nothing holds.
 ///   "stops"  Each joint moves slowly against both of its stops. The finger needs room for that.
 ///   "kept"   The configured zero stays, if the board reports that its counts are still valid.
 ///
@@ -52,8 +53,8 @@ use std::ffi::c_int;
 ///              had been found before the fault, they are in force
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
 ///   EACCES, ENOSPC, EBUSY ...  the configuration file cannot be written, or another process has kept it
-///              locked for 30 s; the zeros are in force until sun2xp_close, and the next calibration of the
-///              finger that can be stored stores them
+///              locked for 30 s. The zeros are in force until sun2xp_close. If the results of a later
+///              calibration of this finger can be stored, these zeros are stored with them
 ///
 /// Threads: any.
 ///

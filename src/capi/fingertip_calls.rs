@@ -91,8 +91,9 @@ pub unsafe extern "C" fn sun2xp_tip(hand: *mut sun2xp_hand, finger: c_int, tip: 
 ///                3   hard finger with friction: three forces; the same as sun2xp_send_stiffness
 ///                4   soft finger: three forces and a moment about the normal
 ///   stiffness    a matrix of dimensions x dimensions, row by row. 1: N/cm along the normal. 3 and 4: rows
-///                and columns 0 to 2 are x, y, z of the finger's frame, N/cm. 4: row and column 3 are the
-///                rotation about the normal: N cm/rad on the diagonal, N/rad elsewhere
+///                and columns 0 to 2 are x, y, z of the finger's frame, N/cm. 4: row 3 and column 3 belong
+///                to the rotation about the normal: the entry on the diagonal is in N cm/rad, the other
+///                entries of this row and column are in N/rad
 ///   normal       normal[3]: the contact normal in the finger's frame, of any length but zero. Not used
 ///                for 3 dimensions, and may be null there
 ///

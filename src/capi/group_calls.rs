@@ -55,8 +55,9 @@ pub struct sun2xp_set_point {
 /// refused, no finger gets its command.
 ///
 /// If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
-/// "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
-/// This happens about once for every period by which two of the clocks drift apart.
+/// "board" the periods of the threads follow different clocks. Then a finger may follow a single group one
+/// period later. This happens at most about once in the time in which the drift between two of the clocks
+/// grows by one period.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -117,14 +118,14 @@ pub unsafe extern "C" fn sun2xp_send_group(
 ///   seconds   longest time to wait
 ///
 /// If the condition holds already, the call returns at once. With SUN2XP_ALL_FINGERS the condition must hold
-/// for all fingers at the same time. A finger that an object blocks settles without arriving. If the set
-/// point is a position of the tip, the finger arrives at the joint angles that were computed for it. If a
-/// reflex has replaced the set point that was sent last, the condition must hold for the set point of the
-/// reflex. The same applies if the finger ignored the set point because a reflex inhibits set points for
-/// some time. The wait then returns only after this time. If the set point that was sent last has expired,
-/// the condition must hold for the pose that the finger holds since then. The events
-/// SUN2XP_EVENT_REFLEX_FIRED and SUN2XP_EVENT_EXPIRED say that this has happened. Other calls work during
-/// the wait. sun2xp_close works too, and then the wait is refused.
+/// for each finger and its own set point. The fingers may arrive or settle in different cycles. A finger that
+/// an object blocks settles without arriving. If the set point is a position of the tip, the finger arrives
+/// at the joint angles that were computed for it. If a reflex has replaced the set point that was sent last,
+/// the condition must hold for the set point of the reflex. The same applies if the finger ignored the set
+/// point because a reflex inhibits set points for some time. The wait then returns only after this time. If
+/// the set point that was sent last has expired, the condition must hold for the pose that the finger holds
+/// since then. The events SUN2XP_EVENT_REFLEX_FIRED and SUN2XP_EVENT_EXPIRED say that this has happened.
+/// Other calls work during the wait. sun2xp_close works too, and then the wait is refused.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -28,8 +28,9 @@ use std::ffi::{c_char, c_int};
 ///             after the deadline, the sample is used nevertheless. If the next period has begun by then,
 ///             the cycle counts as an overrun.
 ///   stop      in the servo thread. At a recovery, or when opening is refused, it may be called in a thread
-///             that is not real-time. After a failure, the library calls stop again, at least twice if the
-///             failures persist. Every start that has succeeded is followed by a stop.
+///             that is not real-time. If stop fails, the library calls it again. If it keeps failing, the
+///             library calls it at least three times in all. Every start that has succeeded is followed by
+///             a stop.
 ///
 /// Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a
 /// servo thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery,

@@ -5,7 +5,7 @@
 
 use std::ffi::{c_int, c_uint, c_ulong, c_void};
 
-/// The watchdog of the hardware has tripped since the last call of start.
+/// The watchdog of the hardware has tripped since the library last called start (struct sun2xp_io).
 pub const SUN2XP_IO_WATCHDOG: c_uint = 1;
 
 /// The hardware has entered the end state, but not by its watchdog.
@@ -23,8 +23,8 @@ pub const SUN2XP_IO_DRIVER: c_uint = 16;
 /// An encoder or a gauge cannot be read.
 pub const SUN2XP_IO_SENSOR: c_uint = 32;
 
-/// The encoder counts have lost their reference to the zero. A bit that is set since the first sample at opening does
-/// not fault the finger: a message reports it, and the finger must be zeroed (sun2xp_zero).
+/// The encoder counts have lost their reference to the zero. If start sets this bit when the hand is opened, the finger
+/// does not fault while the bit stays set: a message reports it, and the finger must be zeroed (sun2xp_zero).
 pub const SUN2XP_IO_ZERO_LOST: c_uint = 64;
 
 /// The terms under which the motors of a finger may move. The library sets all members.
@@ -35,7 +35,7 @@ pub struct sun2xp_io_terms {
     pub size: usize,
     /// Finger, 1 to 3.
     pub finger: c_int,
-    /// 1: the end state is "hold"; 0: it is "release".
+    /// 1: the end state is "hold"; 0: it is "release". sun2xp_stop_all explains both.
     pub hold: c_int,
     /// Exchanges per second, Hz.
     pub rate: f64,
@@ -57,8 +57,8 @@ pub struct sun2xp_io_terms {
 pub struct sun2xp_io_command {
     /// sizeof (struct sun2xp_io_command) in the library.
     pub size: usize,
-    /// Number of the command, counted from the last call of start. An exchange that is repeated after an error (only
-    /// with in_step) has the same number again.
+    /// Number of the command, counted from the last call of start. If an exchange fails and the member in_step of
+    /// struct sun2xp_io is 1, the library repeats the exchange with the same number.
     pub number: c_ulong,
     /// 0: the motors must be off, and the torques are zero.
     pub enable: c_int,
@@ -82,8 +82,8 @@ pub struct sun2xp_io_sample {
     pub tensions: [f64; 4],
     /// Counts of the motor encoders.
     pub encoders: [c_int; 4],
-    /// Sum of the SUN2XP_IO_... bits of all present faults. Each bit stops the finger with a fault, except a
-    /// SUN2XP_IO_ZERO_LOST that is set since the first sample at opening.
+    /// Sum of the SUN2XP_IO_... bits of all present faults. Each bit stops the finger with a fault, except
+    /// SUN2XP_IO_ZERO_LOST if it has been set since start was called at opening.
     pub faults: c_uint,
 }
 

@@ -123,8 +123,9 @@ pub unsafe extern "C" fn sun2xp_open_named(name: *const c_char, hand: *mut *mut 
 /// sun2xp_close - stop a hand
 ///
 /// Brings every finger to the configured end state (hand.end_state) and stops the servos, as CloseHand does.
-/// Afterwards the handle does not belong to an open hand, and no later hand has the same handle. At exit the
-/// library closes all hands that are still open.
+/// Afterwards the handle does not belong to an open hand. No later hand has the same handle, except on 32-bit
+/// machines, where a handle can occur again after 65536 further hands. At exit the library closes all hands
+/// that are still open.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -60,7 +60,7 @@ pub const SUN2XP_THEN_RETRACT: c_int = 4;
 /// member largest, both in N. This needs a Kx without an eigenvalue of 0.
 pub const SUN2XP_THEN_GRIP: c_int = 5;
 
-/// The tip gets the damping ratio value, or the nearest admitted ratio.
+/// The tip gets the damping ratio in the member value, or the nearest admitted ratio.
 pub const SUN2XP_THEN_DAMP: c_int = 6;
 
 /// A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.

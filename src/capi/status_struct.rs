@@ -68,10 +68,9 @@ pub struct sun2xp_status {
     pub damaged_replies: c_ulong,
     /// Progress of a calibration, 0 to 1. It is 0 if no calibration runs.
     pub calibration: f64,
-    /// 1: sun2xp_open has locked the memory of every servo thread, so that no servo thread waits for a page. 0: the
-    /// memory of at least one servo thread is not locked. If the planner calls munlockall later, this memory is
-    /// unlocked too, and this member stays 1. If the hand is closed and opened again, sun2xp_open locks the memory
-    /// again.
+    /// 1: sun2xp_open has locked the memory of every servo thread, so that no servo thread waits for a page. If the
+    /// planner calls munlockall later, this memory is unlocked too, and this member stays 1. If the hand is closed and
+    /// opened again, sun2xp_open locks the memory again. 0: the memory of at least one servo thread is not locked.
     pub memory_locked: c_int,
     /// 1: each servo thread with a configured core runs on this core.
     pub on_core: c_int,

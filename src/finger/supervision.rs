@@ -26,7 +26,8 @@ const DAMAGED: f64 = 0.25;
 /// A late cycle that is followed immediately by the next one gives one such sample.
 const STOPPED: u32 = 16;
 
-/// Smallest time between two samples that a running clock shows, periods.
+/// Least advance of the board's clock between two samples, periods. After a smaller one, the clock counts as not having
+/// advanced.
 const LEAST_AGE: f64 = 0.1;
 
 /// State of the monitors of one finger.

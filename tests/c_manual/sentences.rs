@@ -88,7 +88,7 @@ fn the_entries_say_what_else_a_result_depends_on() {
         ("sun2xp_recover", "one after the other, up to the first that does not recover"),
         ("sun2xp_install_reflex", "SUN2XP_WHEN_LINK_LOST never becomes true for it"),
         ("sun2xp_install_reflex", "expires when the one that was sent last would have expired"),
-        ("sun2xp_adjust", "The new limits of finger.motion are not checked, because they apply only to later paths"),
+        ("sun2xp_adjust", "against the new limits, except those of finger.motion, which apply only to later paths"),
     ] {
         let entry = manual.entry(call);
         assert!(entry.contains(sentence), "{sentence:?} is not in {entry}");

@@ -1,5 +1,5 @@
-//! Tests of the reported reference while the anchor moves toward a set point at a limited speed, and of paths that
-//! begin during this motion.
+//! Tests of the reported reference while the anchor (rest position) of the finger's spring moves toward a set point at
+//! a limited speed, and of paths that begin during this motion.
 
 use crate::motion::{Track, joints, send};
 use crate::rig::{Bench, TARGET};
@@ -32,7 +32,8 @@ fn a_slewing_anchor_is_reported_with_its_rates() {
     }
 }
 
-/// If a path of one polynomial of 30 s continued the motion of the anchor, it would lead far beyond the joint limits.
+/// A path of one polynomial of 30 s that began with the acceleration of the anchor would lead far beyond the joint
+/// limits. The finger therefore first brakes to rest.
 #[test]
 fn a_slow_path_begins_smoothly_while_the_finger_settles() {
     for cycles in [5, 20, 50, 100] {
@@ -51,9 +52,9 @@ fn a_slow_path_begins_smoothly_while_the_finger_settles() {
     }
 }
 
-/// The acceleration and the jerk of an interpolated set point are fed forward. A step lasts three periods of the
-/// planner. With the default largest tension of 60 N, a step of 3 or 6 ms would cause the fault OVER_TENSION. A period
-/// below 10 ms therefore acts as 10 ms.
+/// The acceleration and the jerk of an interpolated set point are fed forward. The motion to a set point lasts three
+/// times `interpolate_ms`. With the default largest tension of 60 N, a motion of 3 or 6 ms would cause the fault
+/// OVER_TENSION. An `interpolate_ms` below 10 ms therefore acts as 10 ms.
 #[test]
 fn a_far_set_point_with_a_short_interpolation_does_not_overload_the_tendons() {
     for interpolate_ms in [1.0, 2.0] {

@@ -20,12 +20,12 @@ class Hand(_sun2xp.Hand):
     """An open hand of up to three fingers, whose numbers are in `fingers`. The servo threads run without Python.
 
     `sun2xp.open()` and `sun2xp.simulated()` open a hand. A process can open several hands. All methods may be called
-    from several threads. Methods that wait release the interpreter lock, and Ctrl-C ends them, except `close`: it
-    closes the hand before KeyboardInterrupt is raised. Leaving a `with` block closes the hand.
+    from several threads. Methods that wait release the interpreter lock. Ctrl-C ends `wait`, `recover`, calibrations
+    and the waits for events, but not `close`. Leaving a `with` block closes the hand.
 
     All methods except `close` raise Closed if the hand is closed, Refused if there is no such finger or if an argument
-    is wrong, and Fault if the finger is faulted and the method needs it to run. They raise TypeError if an argument
-    that is no array has a wrong type.
+    is wrong, and Fault if the method needs a running finger and the finger is faulted. They raise TypeError if an
+    argument has a wrong type. But if the argument should be an array, they raise Refused.
     """
 
     def events(self) -> Events:
@@ -46,7 +46,7 @@ class Hand(_sun2xp.Hand):
         condition: str = "arrived",
         timeout: Optional[float] = None,
     ) -> None:
-        """Waits until the condition holds for these fingers at the same time, for the set points that were sent last.
+        """Waits until the condition holds for each of these fingers, for the set point that was sent to it last.
 
         Args:
             fingers: a finger, or several. The default is all fingers of the hand.
@@ -138,7 +138,8 @@ def simulated(name: str = "nominal", *, rate: float = 1000.0, text: str = "") ->
     """Opens a simulated hand, which needs no hardware.
 
     Args:
-        name: "nominal", or a hand that differs from its configuration: "worn", "sheathed" or "cheap".
+        name: "nominal": the tendons, motors and gauges are as the controller assumes. "worn", "sheathed" or "cheap":
+            they differ from what the controller assumes (docs/real-tendons.md).
         rate: rate of the servos, Hz, 500 to 5000.
         text: further keys of the configuration. The keys `simulation.hand`, `hand.rate`, `port` and `board` and the
             table `[remote]` are ignored.

@@ -44,7 +44,7 @@ pub trait FingerIo: Send {
     /// Enters the end state of the terms.
     ///
     /// # Errors
-    /// The library calls `stop` again, at least twice if the errors persist.
+    /// The library calls `stop` again. If `stop` keeps failing, the library calls it at least three times in all.
     fn stop(&mut self) -> io::Result<()>;
 }
 
@@ -99,8 +99,8 @@ pub struct IoTerms {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct IoCommand {
-    /// Number of the command, counted from the last call of [`FingerIo::start`]. An exchange that is repeated after an
-    /// error (only with [`IoProperties::in_step`]) has the same number again.
+    /// Number of the command, counted from the last call of [`FingerIo::start`]. If an exchange fails and
+    /// [`IoProperties::in_step`] is true, the library repeats the exchange with the same number.
     pub number: u64,
     /// False: the motors are off, and the torques are zero.
     pub enable: bool,
@@ -126,8 +126,8 @@ pub struct IoSample {
     pub faults: IoFaults,
 }
 
-/// Faults that the hardware reports. Each bit faults the finger, except an [`IoFaults::ZERO_LOST`] that is set since
-/// opening.
+/// Faults that the hardware reports. Each bit faults the finger, except [`IoFaults::ZERO_LOST`] if it has been set
+/// since [`FingerIo::start`] was called at opening.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct IoFaults(pub u32);
 
@@ -144,8 +144,8 @@ impl IoFaults {
     pub const DRIVER: Self = Self(1 << 4);
     /// An encoder or a gauge cannot be read.
     pub const SENSOR: Self = Self(1 << 5);
-    /// The encoder counts have lost their reference to the zero. In the first sample at opening this bit does not fault
-    /// the finger: a message reports it, and the finger must be zeroed. A bit that stays set does not fault it either.
+    /// The encoder counts have lost their reference to the zero. If [`FingerIo::start`] sets this bit when the hand is
+    /// opened, the finger does not fault while the bit stays set: a message reports it, and the finger must be zeroed.
     /// Once a sample has come without the bit, the next sample with the bit reports a loss: it faults the finger, or
     /// refuses its recovery.
     pub const ZERO_LOST: Self = Self(1 << 6);

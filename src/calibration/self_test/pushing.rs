@@ -182,7 +182,7 @@ mod tests {
     use super::*;
     use crate::model::configuration::ConfiguredFinger;
 
-    /// Returns the pull of motor 1 before and after this encoder, from 0, has moved.
+    /// Returns the pull of motor 1 before and after the encoder with this index, 0 to 3, has moved.
     fn pulls_around_motion_of(encoder: usize) -> (f64, f64) {
         let instruments = Instruments::new(&ConfiguredFinger::default(), 1000.0).expect("usable");
         let zeros = Vector4::zeros();

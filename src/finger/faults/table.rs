@@ -20,7 +20,8 @@ faults! {
         "Repair the tendon and recover the finger; if a sign or zero is wrong, close the hand and run sun2xp calibrate",
         [Recover, Close];
     2 BrokenTendon "BROKEN_TENDON" Fault Tendon Tension "broken tendon",
-        "a tendon has lost its tension while its motor turns, and the finger cannot keep the other tendons tight",
+        "a tendon shows almost no tension although the encoders and the other gauges indicate that it is stretched, or \
+         shows almost none for half a second",
         "the tendon is torn or has come off",
         "Replace the tendon, then recover and zero the finger", [Recover, Zero];
     3 OverTension "OVER_TENSION" Fault Tendon Tension "over-tension",
@@ -68,7 +69,7 @@ faults! {
         "a motion or an impact that is faster than the motors can follow",
         "Move more slowly, or raise finger.tendon.minimum", [];
     13 LostReplies "LOST_REPLIES" Fault Finger Time "lost replies",
-        "the board has sent no valid reply for this time",
+        "the board has sent no valid reply for too long; the value is this time",
         "the cable is unplugged, the board has no power, the line is too noisy, the board sends without a pause, or \
          this computer is too busy to receive in time",
         "Check the cable, the power and the firmware of the board, and the load of this computer (run sun2xp doctor); \
@@ -157,7 +158,7 @@ faults! {
     33 Unanswered "UNANSWERED" Refusal Finger Nothing "finger silent",
         "the board sends valid frames, but no answer to the request",
         "the firmware of the board is faulty, or several boards answer",
-        "Update the firmware; connect one board to a port", [];
+        "Update the firmware; connect only one board to each port", [];
     34 WrongVersion "WRONG_VERSION" Refusal Finger Nothing "wrong protocol version",
         "the board and the library have no protocol version in common",
         "one of them is older",
@@ -197,7 +198,7 @@ faults! {
         "the limits of the board are lower than finger.motor.torque_limit",
         "Lower finger.motor.torque_limit", [];
     43 TorqueNotAdmitted "TORQUE_NOT_ADMITTED" Warning Finger Share "torque not admitted",
-        "the tension limits permit only this part of the desired joint torque",
+        "the tension limits permit only a part of the desired joint torque; the value is this part",
         "the set point is far away, or the stiffness or the load is more than the tendons can carry",
         "Send set points that are nearer, or a softer Kx", [];
     44 CalibrationFailed "CALIBRATION_FAILED" Warning Finger Nothing "calibration failed",

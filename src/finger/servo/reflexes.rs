@@ -64,8 +64,8 @@ impl FingerServo {
     /// Begins a spring phase (`FingerReport::springs`) with the set point in force. Planners count their next set
     /// points from its number. They may already have given the next numbers to set points that the finger has not
     /// followed, so these numbers can occur again. The renewal of the previous phase is therefore discarded: it could
-    /// renew a new set point with the same number. Until now, the finger also accepted set points of a phase that ended
-    /// because a set point expired (`FingerReport::expired_phase`). From now on they are discarded.
+    /// renew a new set point with the same number. Before this call, the finger may also accept set points of a phase
+    /// that ended because a set point expired (`FingerReport::expired_phase`). After it they are discarded.
     fn begin_phase(&mut self) {
         self.report.springs += 1;
         self.report.expired_phase = None;

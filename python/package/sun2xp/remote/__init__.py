@@ -67,8 +67,9 @@ def open(
 
     Raises:
         ConfigurationError: no hand or client can have this name, or a certificate cannot be read.
-        NoAnswer: there is no connection or no such hand, or this client may not use the hand.
-        NotOwner: another client commands the hand.
+        NoAnswer: there is no connection or no such hand, or, with TLS, this client may not use the hand.
+        NotOwner: another client commands the hand, or, without TLS, this client may not command it ([serve.clients] of
+            the server).
         Fault: a finger has a fault whose cause is still there.
     """
     network = Network(endpoint, client=client, tls=tls)

@@ -37,8 +37,9 @@ _FAILURES = {
 
 
 class NotOwner(Error):
-    """This client does not own the hand: another client commands it, or this client was silent for too long.
-    `hand.acquire()` makes this client the owner again."""
+    """This client does not own the hand. It has not acquired the hand, has released it, was silent for too long, lost
+    the hand to another client, or may not command it ([serve.clients] of the server). `hand.acquire()` makes a client
+    that may command the hand its owner. It needs `take_over=True` if another client owns the hand."""
 
 
 class Stale(TimedOut):
@@ -46,8 +47,8 @@ class Stale(TimedOut):
 
 
 class NoAnswer(TimedOut):
-    """The server has not answered: there is no such hand, there is no connection, or this client may not use the
-    hand."""
+    """The server has not answered: there is no such hand, there is no connection, or, with TLS, this client may not use
+    the hand."""
 
 
 def forked() -> Error:

@@ -38,8 +38,8 @@ class RemoteHand(Reading):
     the next call that sends to this finger or waits for it raises Refused with the reason. The fingers then keep the
     set points that they had before.
 
-    If this process ends, is stopped or loses the line, the server holds the fingers after 0.1 s and brings them to
-    their end states after 1 s, unless it is configured otherwise.
+    If this process is killed, is stopped or loses the line, the server holds the fingers after 0.1 s and brings them to
+    their end states after 1 s, unless it is configured otherwise. A process that ends normally closes the hand.
 
     All methods may be called from several threads. Leaving a `with` block closes the hand.
     """
@@ -76,7 +76,8 @@ class RemoteHand(Reading):
             recover: whether to recover the fingers that have stopped.
 
         Raises:
-            NotOwner: another client commands the hand.
+            NotOwner: another client commands the hand, or, without TLS, this client may not command it
+                ([serve.clients] of the server).
             Fault: a finger has a fault whose cause is still there.
         """
         # The server may have been started again with other limits.

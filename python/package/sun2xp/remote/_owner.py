@@ -46,7 +46,8 @@ class Owner:
 
     @property
     def epoch(self) -> int:
-        """The epoch; 0 if this client is not the owner. A long silence of the server ends the epoch here."""
+        """The epoch; 0 if this client is not the owner. If the server is silent for a long time, this client counts the
+        epoch as ended."""
         self._notice_silence()
         return self._epoch
 
@@ -105,7 +106,7 @@ class Owner:
         return slot.holds(bits)
 
     def check(self, fingers: Iterable[int]) -> None:
-        """Checks that this client commands these fingers, and that none of its commands was refused.
+        """Checks that this client owns the hand, and that the server has refused no command to these fingers.
 
         Raises:
             NotOwner: this client is not the owner.

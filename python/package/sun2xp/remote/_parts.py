@@ -12,7 +12,8 @@ from .._types import Array, SetPoint
 from ._messages import JOINTS, MOST_POSES, NO_PLACE, PATH, TIP, Part
 from ._types import FingerStatus
 
-#: Largest excess over a limit that counts as rounding to `float32`, relative to the limit. The hand accepts it too.
+#: Relative rounding of `float32`. A joint angle may exceed its limits by this fraction of the larger of their two
+#: magnitudes. Kx may exceed its bound by eight times this fraction.
 _ROUNDING = float(numpy.finfo(numpy.float32).eps)
 
 #: The asymmetry of Kx that counts as rounding, relative to its largest entry. The hand has the same tolerance.

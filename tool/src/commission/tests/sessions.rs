@@ -31,7 +31,7 @@ fn a_repaired_finger_goes_on() {
     }
 }
 
-/// The largest mass that a refusal permits is accepted.
+/// The refusal of a mass that is too heavy names the heaviest mass that `commission` accepts.
 #[test]
 fn the_heaviest_mass_of_a_refusal_does_not_pull_too_much() {
     for maximum in [20.0, 45.0, 60.0, 100.0] {
