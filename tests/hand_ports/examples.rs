@@ -1,5 +1,5 @@
-//! Every configuration that the documentation prints, exactly as printed: it is opened on boards, and all fingers
-//! of the hand are moved.
+//! Every configuration that the documentation prints is opened on boards, and all fingers of the hand are moved. Only
+//! the ports, the folders and `hand.watchdog_ms` differ from the printed text.
 
 use crate::rig::{Board, PATIENT, close, settles, turn};
 use std::collections::BTreeMap;

@@ -1,5 +1,5 @@
-//! `sun2xp schedule`: computes whether every cycle of a configured hand meets its deadline, the highest possible rate,
-//! and the cost of another sensor.
+//! `sun2xp schedule`: computes whether every cycle of a configured hand meets its deadline, and the highest possible
+//! rate, both for the hand as it is and with an additional sensor on each finger.
 
 mod fastest;
 mod measured;
