@@ -195,8 +195,8 @@ fn stream(interpolate_ms: Option<f64>) {
     let most = steady.iter().map(|velocity| velocity.norm()).fold(0.0, f64::max);
     let how = interpolate_ms.map_or("no interpolation".into(), |time| format!("interpolate_ms = {time}"));
     println!(
-        "| 10 Hz stream along the circle, {how}: largest change of the velocity in a period, and range of the speed \
-         | {:.1} %, and {:.0} % to {:.0} % of the mean speed |",
+        "| 10 Hz stream along the circle, {how}: largest change of the velocity from one cycle to the next, and \
+         range of the speed | {:.1} %, and {:.0} % to {:.0} % of the mean speed |",
         100.0 * jump / mean,
         100.0 * least / mean,
         100.0 * most / mean

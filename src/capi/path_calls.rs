@@ -76,8 +76,8 @@ pub struct sun2xp_path_pose {
 ///            tip positions are mixed; an entry is NaN or infinite
 ///   EDOM     a Kx is not symmetric, or has a negative eigenvalue
 ///   ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is too
-///            stiff, or the path is too fast; sun2xp_error_text names the pose, and the factor by which the
-///            path must be slower
+///            stiff, or the path is too fast; sun2xp_error_text names the pose. If the path is too
+///            fast, the text also gives the factor by which it must be slower
 ///   EIO      the finger is faulted
 ///   EBUSY    the finger is being recovered or calibrated, or is limp
 ///   EAGAIN   during the call the finger has left its pose, because it was recovered or calibrated, its set

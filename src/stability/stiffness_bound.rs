@@ -1,4 +1,4 @@
-//! The largest Kx with which a finger is stable in every pose.
+//! The largest Kx with which a finger is stable in the sampled poses.
 
 use super::Rest;
 use super::plant_set::Variant;

@@ -20,7 +20,7 @@ use sun2xp::model::FingerNumber;
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RATES, Scheme};
 
-/// Finds the bound on the eigenvalues of Kx up to which a finger is stable in every pose.
+/// Finds the bound on the eigenvalues of Kx up to which a finger is stable in the sampled poses.
 ///
 /// The search simulates the configured controller, links, tendons and motors, with viscous friction, without Coulomb
 /// friction, with exact measurements and one cycle of delay. At a wall, the configured Coulomb friction of the joints
