@@ -117,7 +117,8 @@ pub enum SetPointError {
     #[error(
         "the tendons of finger {finger} can make only {part:.3} of the joint torque: send less torque, or set \
          `hand.out_of_range = \"clamp\"`. If the other joints have no torque, joint 0 may have {:.2} to {:.2} N cm, \
-         joint 1 {:.2} to {:.2} N cm, or joint 2 {:.2} to {:.2} N cm", least[0], most[0], least[1], most[1], least[2], most[2]
+         joint 1 {:.2} to {:.2} N cm, or joint 2 {:.2} to {:.2} N cm",
+        least[0], most[0], least[1], most[1], least[2], most[2]
     )]
     TooMuchTorque {
         /// The finger.
