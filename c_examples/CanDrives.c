@@ -9,6 +9,7 @@
    releases its motors. The program ends after 10 s without a frame. */
 
 #define _GNU_SOURCE
+#include <errno.h>
 #include <stdlib.h>
 #include "can_bus.h"
 #include "finger_physics.h"
@@ -83,7 +84,8 @@ int main(int count, char **arguments)
 
     if (count != 2 || can_open(&bus, arguments[1], 0) != 0) {
         if (count == 2)
-            perror(arguments[1]);
+            fprintf(stderr, "%s: %s: name a CAN interface (ip link shows them), or an empty folder with a slash in its "
+                "path\n", arguments[1], strerror(errno));
         else
             fprintf(stderr, "usage: CanDrives INTERFACE | FOLDER\n");
         return 1;

@@ -199,7 +199,7 @@ int main(int count, char **arguments)
     int i, result;
 
     if (count > 1 && memory == NULL) {
-        perror(arguments[1]);
+        fprintf(stderr, "%s: %s: start simulation.py with the same file\n", arguments[1], strerror(errno));
         return 1;
     }
     memset(io, 0, sizeof io);

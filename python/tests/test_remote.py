@@ -11,6 +11,7 @@ from remote_double import Double
 
 import sun2xp
 import sun2xp.remote
+import sun2xp.remote.__main__
 
 HOME = [0.0, 0.6, 0.9]
 
@@ -221,6 +222,14 @@ def test_the_module_lists_the_hands(double):
     assert found.stdout == "hand: finger 1 running, finger 2 running, finger 3 running; owner: planner\n", found
     nobody = subprocess.run([*command, free_endpoint()], capture_output=True, text=True, timeout=60)
     assert nobody.returncode == 1 and "no connection" in nobody.stderr
+
+
+def test_the_module_says_that_no_hand_answers(monkeypatch, capsys):
+    monkeypatch.setattr(sun2xp.remote.__main__, "discover", lambda endpoint: {})
+    monkeypatch.setattr(sys, "argv", ["sun2xp.remote", "tcp/127.0.0.1:1"])
+    assert sun2xp.remote.__main__.main() == 1
+    output, error = capsys.readouterr()
+    assert output == "" and error.startswith("no hand answers at tcp/127.0.0.1:1: start `sun2xp serve` there"), error
 
 
 def test_two_hands_get_one_time_stamp():

@@ -71,7 +71,7 @@ pub enum RecordingError {
     #[error("cannot read {0}: {1}")]
     Unreadable(String, io::Error),
     /// The file is not a black box.
-    #[error("{0} is not a black box of sun2xp: {1}")]
+    #[error("{0} is not a black box of sun2xp: {1}. Use a file that a hand has written as its black box")]
     Foreign(String, String),
     /// The file has another version of the format.
     #[error(
@@ -109,7 +109,7 @@ pub enum RecordingError {
         expected: usize,
     },
     /// The file has more cycles than its first line announces, or than a black box can have.
-    #[error("{file} has more than {most} cycles: the file was altered after it was written")]
+    #[error("{file} has more than {most} cycles: the file was altered after it was written, copy it again")]
     Long {
         /// The file.
         file: String,
@@ -118,10 +118,10 @@ pub enum RecordingError {
     },
 }
 
-/// Returns a hint if another version of the library wrote the file, because versions record different data.
+/// Returns the cause and the remedy of a wrong line. Versions of the library record different data.
 fn written_by(library: &str) -> String {
     match env!("CARGO_PKG_VERSION") {
-        own if own == library => String::new(),
+        own if own == library => ". The file was altered or damaged after it was written: copy it again".into(),
         own => format!(". Library {library} wrote it, and this is library {own}: replay it with library {library}"),
     }
 }

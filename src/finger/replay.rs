@@ -56,7 +56,10 @@ pub enum NotReplayable {
         reason: String,
     },
     /// A cycle names a controller that the recording does not describe.
-    #[error("cycle {cycle} names controller {number}, which the recording does not describe")]
+    #[error(
+        "cycle {cycle} names controller {number}, which the recording does not describe: the file was altered or \
+         damaged after it was written, copy it again"
+    )]
     UnknownController {
         /// Number of the cycle.
         cycle: u64,

@@ -18,7 +18,10 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SimulatedBoardError {
     /// The address is not between 1 and 15, or two fingers have it.
-    #[error("finger address {0} is not between 1 and {HIGHEST_ADDRESS}, or two fingers of one port have it")]
+    #[error(
+        "finger address {0} is not between 1 and {HIGHEST_ADDRESS}, or two fingers of one port have it: name each \
+         finger once, and leave finger.address out or give each finger of the port an address of its own"
+    )]
     Address(u8),
     /// The tendons of a finger are unusable.
     #[error("finger address {address}: {source}")]

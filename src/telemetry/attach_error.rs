@@ -2,6 +2,7 @@
 
 use super::readers::MOST_READERS;
 use crate::model::Shown;
+use crate::realtime::with_remedy;
 use std::io;
 use thiserror::Error;
 
@@ -28,7 +29,8 @@ pub enum AttachError {
     Several(Vec<String>),
     /// Another user's process has the name.
     #[error(
-        "the socket of the hand \"{0}\" belongs to a process of another user: give the hand another `telemetry.name`"
+        "the socket of the hand \"{0}\" belongs to a process of another user: give your own hand another \
+         `telemetry.name`, and use that name"
     )]
     Foreign(String),
     /// The hand's process does not answer.
@@ -59,8 +61,13 @@ pub enum AttachError {
         /// What is wrong with the answer.
         reason: String,
     },
+    /// The table of the system that lists the open hands cannot be read.
+    #[error(
+        "cannot read the names of the open hands: {0}. Mount /proc, and permit this process to read /proc/net/unix"
+    )]
+    Names(io::Error),
     /// The system refuses a call.
-    #[error("cannot {doing}: {source}")]
+    #[error("cannot {doing}: {}", with_remedy(source))]
     System {
         /// What is not possible.
         doing: &'static str,
@@ -71,7 +78,9 @@ pub enum AttachError {
 
 fn listed(open: &[String]) -> String {
     match open {
-        [] => "no hand is open".into(),
+        [] => "no hand is open. Start the program that opens it, as the same user and in the same container, with \
+               `telemetry.enabled = true` in its configuration"
+            .into(),
         names => format!("the open hands are {}", names.join(", ")),
     }
 }

@@ -43,7 +43,8 @@ pub(super) fn listen(name: &str) -> io::Result<(Socket, String)> {
 /// # Errors
 /// Returns an error if the system's table of sockets cannot be read.
 pub fn hands() -> io::Result<Vec<String>> {
-    let names = listed(&fs::read_to_string(SOCKETS)?, &prefix());
+    // Other programs may use names that are not UTF-8.
+    let names = listed(&String::from_utf8_lossy(&fs::read(SOCKETS)?), &prefix());
     Ok(names.into_iter().filter(|name| is_open(name)).collect())
 }
 

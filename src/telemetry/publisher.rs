@@ -11,7 +11,7 @@ use crate::board::descriptor::Descriptor;
 use crate::finger::{Outlet, Stage};
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, FINGERS};
-use crate::realtime::clock_offset;
+use crate::realtime::{clock_offset, with_remedy};
 use std::io;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -90,7 +90,8 @@ impl Publisher {
             match prepare().and_then(|()| self.create_ring()) {
                 Ok(ring) => self.ring = Some(ring),
                 Err(error) => {
-                    let reason = format!("the process of the hand cannot provide the shared memory: {error}");
+                    let reason =
+                        format!("the process of the hand cannot provide the shared memory: {}", with_remedy(&error));
                     requests.iter().for_each(|socket| refuse(socket, &reason));
                     return Serving::Nobody;
                 }

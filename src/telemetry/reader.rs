@@ -53,7 +53,10 @@ pub enum Ended {
     #[error("the hand was closed, or its program has ended")]
     Closed,
     /// The memory contains something that no hand writes.
-    #[error("the shared memory of the hand is damaged: {0}")]
+    #[error(
+        "the shared memory of the hand is damaged ({0}): close the hand and open it again, and use the sun2xp program \
+         of the same version as the library of the hand"
+    )]
     Damaged(String),
 }
 
@@ -64,10 +67,9 @@ impl Reader {
     /// Returns an error if there is no such hand, if there are several and none is named, or if the hand does not
     /// answer.
     pub fn attach(name: Option<&str>) -> Result<Self, AttachError> {
-        let listed = |source| AttachError::System { doing: "read the names of the open hands", source };
         let name = match name {
             Some(name) => name.to_owned(),
-            None => match <[String; 1]>::try_from(hands().map_err(listed)?) {
+            None => match <[String; 1]>::try_from(hands().map_err(AttachError::Names)?) {
                 Ok([only]) => only,
                 Err(names) if names.is_empty() => return Err(AttachError::NoHand),
                 Err(names) => return Err(AttachError::Several(names)),

@@ -1,6 +1,8 @@
 //! The names of hands, and which processes may attach.
 
 use crate::support::{OtherProcess, configuration, name, open, read_for, reader};
+use std::os::linux::net::SocketAddrExt;
+use std::os::unix::net::{SocketAddr, UnixListener};
 use std::time::Duration;
 use sun2xp::hand::Hand;
 use sun2xp::telemetry::{AttachError, Reader, hands};
@@ -26,6 +28,22 @@ fn several_hands_have_names() {
     other.end();
     let error = Reader::attach(Some(&name)).err().expect("closed");
     assert!(matches!(&error, AttachError::Unknown { wanted, .. } if *wanted == name), "{error}");
+}
+
+#[test]
+fn a_socket_of_another_program_whose_name_is_not_utf_8_hides_no_hand() {
+    let name = name("beside");
+    let hand = open(&name);
+    let other = SocketAddr::from_abstract_name([&b"\xff"[..], name.as_bytes()].concat()).expect("a name");
+    let _socket = UnixListener::bind_addr(&other).expect("a socket");
+    assert!(hands().expect("names").contains(&name));
+    drop(hand);
+}
+
+#[test]
+fn a_table_of_sockets_that_cannot_be_read_has_a_remedy() {
+    let text = AttachError::Names(std::io::ErrorKind::NotFound.into()).to_string();
+    assert!(text.starts_with("cannot read the names of the open hands: ") && text.contains("Mount /proc"), "{text}");
 }
 
 #[test]

@@ -148,15 +148,19 @@ fn say(line: &str) -> io::Result<()> {
 }
 
 fn make_link(port: &Path, link: &Path) -> Result<(), Failure> {
+    let cannot = |what: &str, error: io::Error| -> Failure {
+        format!("cannot {what} the symbolic link {}: {error}: choose another --link", ShownPath(link)).into()
+    };
     match std::fs::symlink_metadata(link) {
-        Ok(there) if there.is_symlink() => std::fs::remove_file(link)?,
+        Ok(there) if there.is_symlink() => {
+            std::fs::remove_file(link).map_err(|error| cannot("replace", error))?;
+        }
         Ok(_) => {
             return Err(format!("{} exists and is not a symbolic link: choose another --link", ShownPath(link)).into());
         }
         Err(_) => {}
     }
-    std::os::unix::fs::symlink(port, link)
-        .map_err(|error| format!("cannot make the symbolic link {}: {error}", ShownPath(link)).into())
+    std::os::unix::fs::symlink(port, link).map_err(|error| cannot("make", error))
 }
 
 /// A running board, and what is needed to execute orders.
@@ -225,4 +229,21 @@ fn rate(text: &str) -> Result<f64, String> {
     let rate: f64 = text.parse().map_err(|_| format!("{text} is not a number"))?;
     let sensible = (1.0..=100_000.0).contains(&rate);
     sensible.then_some(rate).ok_or_else(|| format!("{rate} is not between 1 and 100 000 Hz"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nobody may change the folder of a process in /proc.
+    #[test]
+    fn a_link_that_cannot_be_made_is_named_with_a_remedy() {
+        for (link, begin) in [
+            ("/proc/self/exe", "cannot replace the symbolic link /proc/self/exe: "),
+            ("/proc/self/port", "cannot make the symbolic link /proc/self/port: "),
+        ] {
+            let text = make_link(Path::new("port"), Path::new(link)).expect_err("refused").to_string();
+            assert!(text.starts_with(begin) && text.ends_with(": choose another --link"), "{text}");
+        }
+    }
 }

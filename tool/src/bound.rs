@@ -31,10 +31,11 @@ use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RAT
 /// pose whose tendons support less than the bound, the servo scales Kx down, and so does the search. The bound is low
 /// enough that no pose needs a scale below one half.
 ///
-/// The bound of the finger is the least bound of all plants. The number in brackets counts the samples that are
-/// unstable even with a spring of 1 N/cm. A plant with such samples is reported, but does not limit the bound, because
-/// no bound makes it stable. The only exception is the nominal plant without walls, which limits the bound in any case.
-/// With the default number of samples, the search takes one to two minutes on two cores for each kind of finger.
+/// The bound of the finger is the least bound of all plants. In the printed table, the number in brackets counts the
+/// samples that are unstable even with a spring of 1 N/cm. A plant with such samples is reported, but does not limit
+/// the bound, because no bound makes it stable. The only exception is the nominal plant without walls, which limits the
+/// bound in any case. With the default number of samples, the search takes one to two minutes on two cores for each
+/// kind of finger.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file. The default is the file that OpenHand would use.

@@ -9,12 +9,11 @@ mod xml;
 
 pub use geometry::geometry;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, unwritable};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use sun2xp::files::replace_file;
 use sun2xp::hand;
-use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::Configuration;
 
 /// Writes a model of the configured hand for other programs: palm, fingers, joints with their stops, masses, tendons
@@ -65,8 +64,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     match &arguments.output {
         None => io::stdout().lock().write_all(text.as_bytes())?,
-        Some(path) => replace_file(path, |file| file.write_all(text.as_bytes()))
-            .map_err(|error| format!("{}: {error}", ShownPath(path)))?,
+        Some(path) => {
+            replace_file(path, |file| file.write_all(text.as_bytes())).map_err(|error| unwritable(path, &error))?;
+        }
     }
     Ok(())
 }

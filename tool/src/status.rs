@@ -8,7 +8,7 @@ use crate::print::{self, Cell, Look, Screen, Table, painted};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
-use sun2xp::telemetry::{self, Reader};
+use sun2xp::telemetry::{self, AttachError, Reader};
 
 /// Time over which the rate is measured.
 const MEASURING: Duration = Duration::from_millis(500);
@@ -43,7 +43,7 @@ struct Hands {
 /// # Errors
 /// Returns an error if there is no such hand.
 pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
-    let names = telemetry::hands()?;
+    let names = telemetry::hands().map_err(AttachError::Names)?;
     let mut hands = Vec::new();
     let mut failed = false;
     if arguments.name.is_some() || names.is_empty() {

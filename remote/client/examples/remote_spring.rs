@@ -9,7 +9,8 @@ use sun2xp_remote_client::{RemoteConfiguration, RemoteHand};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let file = std::env::args().nth(1).unwrap_or("sun2xp.toml".into());
-    let configuration = RemoteConfiguration::read(Path::new(&file))?.ok_or("the file has no table [remote]")?;
+    let configuration = RemoteConfiguration::read(Path::new(&file))?
+        .ok_or("the file has no table [remote]: add it (docs/remote.md)")?;
     let hand = RemoteHand::open(&configuration)?;
     hand.send_stiffness(1, [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5]])?;
     hand.send_position(1, [0.0, 0.6, 0.9])?;

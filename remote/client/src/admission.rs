@@ -106,7 +106,7 @@ pub enum AdmissionError {
     #[error(
         "the time of pose {pose} of the path of finger {finger} is {time} s, and the time before it is {before} s: \
          times count from the beginning of the path. Each must be at least {LEAST_STEP} s later than the one before, \
-         and at most {LONGEST} s"
+         and no time may exceed {LONGEST} s"
     )]
     Time {
         /// The finger.

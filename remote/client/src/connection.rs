@@ -19,8 +19,12 @@ const LARGEST: u64 = 131_072;
 
 /// Opens a session.
 pub fn open(configuration: &RemoteConfiguration) -> Result<Session, RemoteError> {
-    let config = session_configuration(configuration)
-        .map_err(|error| RemoteError::NotConnected(format!("Zenoh refuses its configuration: {}", short(&error))))?;
+    let config = session_configuration(configuration).map_err(|error| {
+        RemoteError::NotConnected(format!(
+            "Zenoh refuses its configuration ({}): check remote.endpoint and the paths of remote.tls",
+            short(&error)
+        ))
+    })?;
     zenoh::open(config).wait().map_err(|error| RemoteError::NotConnected(unreachable(configuration, &short(&error))))
 }
 
@@ -80,7 +84,8 @@ fn unreachable(configuration: &RemoteConfiguration, error: &str) -> String {
                     .into()
             }
             Ok(_) => {
-                "a program answers there, but not as `sun2xp serve` without TLS: check the port, or use `tls/`".into()
+                "a program answers there, but it is not `sun2xp serve`, or it needs TLS: check the port, or use `tls/`"
+                    .into()
             }
         },
     };

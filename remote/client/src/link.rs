@@ -118,8 +118,9 @@ impl Link {
     fn first_status(&self) -> Result<(), RemoteError> {
         let Some(payload) = self.get(&self.keys.status(), None, FIRST)? else {
             return Err(self.not_connected(
-                "nobody answers for it. Check remote.hand, whether the server lists this client in [serve.clients], \
-                 and whether `sun2xp serve` of this hand is connected to this router",
+                "nobody answers for it. Check remote.hand, and whether the server lists this client in \
+                 [serve.clients]. If remote.endpoint leads to a router, check whether `sun2xp serve` of this hand is \
+                 connected to that router",
             ));
         };
         let status = Status::decode(&payload).map_err(|error| self.protocol(&error))?;

@@ -85,7 +85,7 @@ pub enum Reason {
     #[error("must be higher than the one before")]
     NotRising,
     /// The bytes of a value that is not given are not zero.
-    #[error("must be zero, because it is not given")]
+    #[error("is not given, so its bytes must be zero")]
     NotZero,
     /// Bits are set that have no meaning, or that this message must not have.
     #[error("has the value {0:#x}, with bits that have no meaning or that this message must not have")]

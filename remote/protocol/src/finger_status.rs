@@ -41,7 +41,7 @@ impl FingerStatus {
         let text = std::str::from_utf8(bytes.from(105, length).0)
             .map_err(|_| FieldError::new("text of the fault", Reason::NotText))?;
         if bytes.from(105 + length, FaultText::LONGEST - length).0.iter().any(|&byte| byte != 0) {
-            return Err(FieldError::new("padding of the text of the fault", Reason::NotZero));
+            return Err(FieldError::new("text of the fault beyond its length", Reason::NotZero));
         }
         let status = Self {
             stage: Stage::decode(bytes.u8(0), bytes.u16(2))?,
@@ -72,9 +72,9 @@ impl FingerStatus {
         if self.stiffness_bound < 0.0 {
             return Err(FieldError::new("largest eigenvalue", Reason::Negative(self.stiffness_bound)));
         }
-        finite("part of a calibration", &[self.calibration])?;
+        finite("completed part of a calibration", &[self.calibration])?;
         if !(0.0..=1.0).contains(&self.calibration) {
-            return Err(FieldError::new("part of a calibration", Reason::Contradicts("the range 0 to 1")));
+            return Err(FieldError::new("completed part of a calibration", Reason::Contradicts("the range 0 to 1")));
         }
         match self.stage {
             Stage::Faulted(_) => Ok(()),

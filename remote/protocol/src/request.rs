@@ -55,9 +55,11 @@ impl Request {
     }
 
     fn check(&self) -> Result<(), FieldError> {
-        let finger = |reason| Err(FieldError::new("finger", reason));
+        let finger = |reason| Err::<(), _>(FieldError::new("finger", reason));
         match (self.action, self.finger) {
-            (Action::Calibrate | Action::Identify, None) => finger(Reason::Contradicts("the action, which needs one"))?,
+            (Action::Calibrate | Action::Identify, None) => {
+                finger(Reason::Contradicts("the action, which needs the number of a finger"))?;
+            }
             (Action::Acquire | Action::Release, Some(_)) => {
                 finger(Reason::Contradicts("the action, which is for every finger"))?;
             }

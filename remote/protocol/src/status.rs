@@ -78,7 +78,7 @@ impl Status {
                 let decoded = FingerStatus::decode(record);
                 fingers[finger.index()] = Some(decoded.map_err(|error| error.within("record", finger.index()))?);
             } else if record.0.iter().any(|&byte| byte != 0) {
-                return Err(FieldError::new("everything", Reason::NotZero).within("record", finger.index()));
+                return Err(FieldError::new("status of the finger", Reason::NotZero).within("record", finger.index()));
             }
         }
         let owner = match name {

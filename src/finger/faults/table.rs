@@ -13,8 +13,8 @@ use super::table_macro::faults;
 
 faults! {
     1 SlackTendon "SLACK_TENDON" Fault Tendon Tension "slack tendon",
-        "a tendon is not at rest under tension within hand.open_timeout_ms, or loses its tension although its motor \
-         pulls",
+        "a tendon does not come to rest under tension within hand.open_timeout_ms, or loses its tension although its \
+         motor pulls",
         "a knot or clamp slips, the tendon is off its pulley, the finger is moved while it takes up slack, there is \
          more slack than the motor winds in before the time-out, or the sign or zero of a motor or gauge is wrong",
         "Repair the tendon and recover the finger; if a sign or zero is wrong, close the hand and run sun2xp calibrate",

@@ -96,7 +96,10 @@ pub enum Unsound {
         reason: String,
     },
     /// A cycle names a controller that the recording does not describe.
-    #[error("cycle {cycle} names controller {number}, which the recording does not describe before this cycle")]
+    #[error(
+        "cycle {cycle} names controller {number}, which the recording does not describe before this cycle: the \
+         description was lost during the recording, or the file was altered. Record again, or copy the file again"
+    )]
     UnknownController {
         /// Number of the cycle.
         cycle: u64,
@@ -104,7 +107,9 @@ pub enum Unsound {
         number: u32,
     },
     /// A cycle does not come after the previous one.
-    #[error("cycle {0} comes after a later cycle")]
+    #[error(
+        "cycle {0} comes after a cycle with a higher number: the file was altered after it was written, copy it again"
+    )]
     Order(u64),
     /// A controller computes a command that is not a finite number.
     #[error(

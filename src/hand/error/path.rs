@@ -19,11 +19,11 @@ pub enum PathError {
     /// The time for which a set point is valid is not usable.
     #[error("a set point cannot be valid for {0} s: send 0 for the configured time, or up to 3600")]
     Valid(f64),
-    /// A time is not later than the one before.
+    /// A time is NaN, above the longest permitted time, or less than 1 ms later than the one before.
     #[error(
         "the time of pose {pose} of the path of finger {finger} is {time} s, and the time before it is {before} s: \
-         times count from the beginning of the path. Each must be at least {least} s later than the one before, and at \
-         most {most} s"
+         times count from the beginning of the path. Each must be at least {least} s later than the one before, and no \
+         time may exceed {most} s"
     )]
     Time {
         /// The finger.

@@ -10,7 +10,7 @@ use thiserror::Error;
 pub enum ReflexError {
     /// A value of the rule is outside its range.
     #[error(
-        "the reflex for finger {finger} is refused: its {what} of {value:?}{unit} is not between {low} and {high}: \
+        "the reflex for finger {finger} is refused: its {what}, {value:?}{unit}, is not between {low} and {high}: \
          choose a value in this range"
     )]
     Value {

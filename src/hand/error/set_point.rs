@@ -116,8 +116,9 @@ pub enum SetPointError {
     /// The tendons cannot make a joint torque.
     #[error(
         "the tendons of finger {finger} can make only {part:.3} of the joint torque: send less torque, or set \
-         `hand.out_of_range = \"clamp\"`. A single joint may have {:.2} to {:.2} (joint 0), {:.2} to {:.2} (joint 1) \
-         or {:.2} to {:.2} N cm (joint 2)", least[0], most[0], least[1], most[1], least[2], most[2]
+         `hand.out_of_range = \"clamp\"`. If the other joints have no torque, joint 0 may have {:.2} to {:.2} N cm, \
+         joint 1 {:.2} to {:.2} N cm, or joint 2 {:.2} to {:.2} N cm",
+        least[0], most[0], least[1], most[1], least[2], most[2]
     )]
     TooMuchTorque {
         /// The finger.

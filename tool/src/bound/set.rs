@@ -253,7 +253,8 @@ impl SetBound {
         };
         writeln!(
             out,
-            "    not covered by the bound: {samples} samples with the tip within 3 cm of the axis of joint 0, {found}"
+            "    not searched, but checked at the bound: {samples} samples with the tip within 3 cm of the axis of \
+             joint 0, {found}"
         )
     }
 }

@@ -68,13 +68,13 @@ impl Step {
                 "Reads the gauges without load, and while you hang known weights on each tendon. The motors are off."
             }
             Self::Motors => {
-                "Turns each motor a little, then pulls each tendon with up to twice the lowest tension. Takes 15 s."
+                "Turns each motor a little, then pulls each tendon with up to twice finger.tendon.minimum. Takes 15 s."
             }
             Self::Zeros => "Zeros gauges and encoders, then makes the finger a soft spring. Takes up to a minute.",
             Self::Tendons => {
-                "Moves every joint between its stops and presses against the lower ones, with up to 0.6 of the largest \
-                 tension. This measures the stretch of the tendons. Then zeros gauges and encoders again, with this \
-                 stretch. Takes two minutes."
+                "Moves every joint between its stops and presses against the lower ones, with up to 0.6 of \
+                 finger.tendon.maximum. This measures the stretch of the tendons. Then zeros gauges and encoders \
+                 again, with this stretch. Takes two minutes."
             }
             Self::Bound => "Computes the largest stiffness at which the finger is stable. Takes one to two minutes.",
             Self::Computer => "Checks whether this computer runs the finger in time. The motors are off.",

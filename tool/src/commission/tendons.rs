@@ -68,7 +68,7 @@ fn report(outcome: &mut Outcome, found: &Identified) {
     }
     outcome.found(format!("friction of the motors {} N cm", list(found.motor_coulomb.as_slice(), 3)));
     outcome.found(format!(
-        "friction of conduits {}, of pulleys {}, of joints {} N cm",
+        "friction of conduits {} and of pulleys {} (ratios), of joints {} N cm",
         list(found.conduit.as_slice(), 3),
         list(found.pulley.as_slice(), 3),
         list(found.joint_coulomb.as_slice(), 3)

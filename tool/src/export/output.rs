@@ -34,7 +34,8 @@ impl Output {
             return Err(exists(&path));
         }
         if old.as_ref().is_some_and(|old| !old.is_file()) {
-            return Err(format!("cannot replace {}: it is not a regular file", ShownPath(&path)).into());
+            let shown = ShownPath(&path);
+            return Err(format!("cannot replace {shown}: it is not a regular file. Choose another --output").into());
         }
         let target = path.canonicalize().unwrap_or_else(|_| path.clone());
         let file = NewFile::beside(&target, old.as_ref()).map_err(|error| unwritable(&path, &error))?;

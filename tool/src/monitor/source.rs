@@ -89,8 +89,7 @@ impl Wanted {
             Self::Named(name) => return Reader::attach(name.as_deref()),
             Self::Process(process) => *process,
         };
-        let listed = |source| AttachError::System { doing: "read the names of the open hands", source };
-        for name in telemetry::hands().map_err(listed)? {
+        for name in telemetry::hands().map_err(AttachError::Names)? {
             if let Ok(reader) = Reader::attach(Some(&name))
                 && reader.description().process == process
             {

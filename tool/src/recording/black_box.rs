@@ -49,7 +49,14 @@ pub fn read(path: &Path) -> Result<(Description, Vec<Entry>), Failure> {
     }
     for record in cycles {
         let CycleRecord { cycle, began, stage, timing, feedback, status, control } = record;
-        let stage = stage_of(&stage).ok_or_else(|| format!("cycle {cycle} has the unknown stage \"{stage}\""))?;
+        let stage = stage_of(&stage).ok_or_else(|| {
+            format!(
+                "{}: cycle {cycle} has the unknown stage \"{stage}\": the file was altered, or it needs the program of \
+                 library {}, which wrote it",
+                ShownPath(path),
+                description.library
+            )
+        })?;
         let record = CycleRecord { cycle, began, stage, timing, feedback, status, control };
         add(began, Message::Cycle { finger: number, record });
     }

@@ -86,7 +86,7 @@ pub fn replay(file: &Path) -> Result<Report, Failure> {
     if reports.iter().all(|report| report.replayed == 0) {
         let without_state = reports.iter().any(|report| report.without_state > 0);
         let reason = match without_state {
-            true => "no cycle can be replayed, because no recorded state precedes one: record for at least a second",
+            true => "it has no recorded state before any of its cycles, so none can be replayed: record for a second",
             false => "it contains no cycles in which a controller has run",
         };
         return Err(in_file(file, reason));

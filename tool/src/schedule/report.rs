@@ -152,8 +152,8 @@ impl Report {
         match (self.virtual_machine, self.source) {
             (true, Source::MeasuredMaximum) => Some(
                 "Its host may pause it at any time and for any duration. The worst cases include such pauses, and a \
-                 longer measurement finds longer ones. They do not hold for a physical machine. Use --p999 to leave \
-                 most pauses out.",
+                 longer measurement finds longer ones. These worst cases do not hold for a physical machine. Use \
+                 --p999 to leave most pauses out.",
             ),
             (true, Source::Measured999) => Some(
                 "Its host may pause it at any time and for any duration. The 99.9 % values leave most pauses out, so \

@@ -42,7 +42,7 @@ impl Refusal {
             Self::Host => {
                 "Refused: the Host of the request is not the address that sun2xp has printed. Open that address.\n"
             }
-            Self::Origin => "Refused: the request comes from another page.\n",
+            Self::Origin => "Refused: the request comes from another page. Open the address that sun2xp has printed.\n",
             Self::Token => "Refused: the token is missing or wrong. Open the address that sun2xp has printed.\n",
         }
     }

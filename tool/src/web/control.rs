@@ -140,7 +140,9 @@ impl Executor {
     /// Returns whether the hand has accepted the command, and what was done, or why not. `stopped` is as in
     /// [`Command::execute`].
     fn execute(&self, command: &Command, stopped: &dyn Fn() -> bool) -> (bool, String) {
-        let Some(hand) = self.hand.upgrade() else { return (false, "the hand is closed".into()) };
+        let Some(hand) = self.hand.upgrade() else {
+            return (false, "the hand is closed: start sun2xp jog again".into());
+        };
         match command.execute(&hand, &self.configuration, stopped) {
             Ok(text) => (true, text),
             Err(refused) => (false, refused.to_string()),

@@ -239,3 +239,15 @@ fn a_format_must_be_chosen() {
     assert!(String::from_utf8_lossy(&run.stderr).contains("--urdf"), "{run:?}");
     assert_eq!(tool(&["--urdf", "--mjcf"]).status.code(), Some(2));
 }
+
+#[test]
+fn a_model_that_cannot_be_written_says_what_failed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let configuration = folder.path().join("hand.toml");
+    std::fs::write(&configuration, HAND).expect("written");
+    let file = folder.path().join("none/hand.urdf");
+    let [configuration, output] = [&configuration, &file].map(|path| path.to_str().expect("a plain name"));
+    let run = tool(&["--urdf", "--config", configuration, "--output", output]);
+    assert_eq!(run.status.code(), Some(1), "{run:?}");
+    assert!(String::from_utf8_lossy(&run.stderr).contains(&format!("cannot write {output}: ")), "{run:?}");
+}

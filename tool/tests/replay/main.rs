@@ -125,7 +125,7 @@ fn a_recording_without_states_is_refused() {
     let rest = recording.messages.iter().filter(|message| !matches!(message, Message::Keyframe { .. }));
     let file = recording.write(&rest.cloned().collect::<Vec<_>>());
     let (status, told) = replayed_with(file.path(), &[]);
-    assert!(status == Some(1) && told.contains("no recorded state precedes one"), "{told}");
+    assert!(status == Some(1) && told.contains("no recorded state before any of its cycles"), "{told}");
 }
 
 /// Nothing was compared, so nothing may count as equal.

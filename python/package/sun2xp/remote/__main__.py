@@ -11,10 +11,15 @@ from ._network import LOOPBACK
 
 def main() -> int:
     """Prints one line for each hand. Returns the exit status."""
+    endpoint = sys.argv[1] if len(sys.argv) > 1 else LOOPBACK
     try:
-        hands = discover(sys.argv[1] if len(sys.argv) > 1 else LOOPBACK)
+        hands = discover(endpoint)
     except Error as error:
         print(error, file=sys.stderr)
+        return 1
+    if not hands:
+        remedy = "start `sun2xp serve` there, or connect it to the router there"
+        print(f"no hand answers at {endpoint}: {remedy}", file=sys.stderr)
         return 1
     for name, status in sorted(hands.items()):
         stages = ", ".join(f"finger {finger} {one.stage}" for finger, one in status.fingers.items())

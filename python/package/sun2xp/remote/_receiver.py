@@ -232,11 +232,11 @@ class Receiver:
             record = self._newest.get(finger)
             age = self.age() if record is None else self._age_of(record)
         if record is None or age > stale:
-            known = f"the state of finger {finger} is {age * 1e3:.0f} ms old"
-            if record is None:
-                known = f"no state of finger {finger} has arrived"
-            remedy = "check the line and sun2xp serve, or allow older data with the argument `stale`"
-            text = f"{known}, and {stale * 1e3:.0f} ms are allowed: {remedy}"
+            remedy = "check the line and sun2xp serve"
+            text = f"no state of finger {finger} has arrived yet: {remedy}"
+            if record is not None:
+                known = f"the state of finger {finger} is {age * 1e3:.0f} ms old, and {stale * 1e3:.0f} ms are allowed"
+                text = f"{known}: {remedy}, or allow older data with the argument `stale`"
             raise Stale(text, number=ErrorNumber.TIMED_OUT)
         return record
 

@@ -24,9 +24,9 @@ impl fmt::Display for Loss {
         formatter.write_str(match self {
             Self::Never => "it only watches. Open the hand instead",
             Self::Ended => {
-                "the server has ended its ownership, because no Target (the message with the set points) arrived for \
-                 the time `serve.end_ms`, or because the hand was released. Check the line, then open or reopen the \
-                 hand"
+                "the server has ended the ownership of this client, because no Target (the message with the set \
+                 points) arrived for the time `serve.end_ms`, or because the hand was released. Check the line, then \
+                 open or reopen the hand"
             }
             Self::TakenOver => {
                 "another client has acquired it. The status names the owner; reopen the hand when it is free"

@@ -81,7 +81,7 @@ impl Exchange {
         self.refuse_unless_ready(now, [finger])?;
         match self.view.newest(finger).map(|record| record.stage) {
             Some(Stage::Running) => {}
-            other => return Err(RemoteError::Busy { finger, stage: other.map_or("not known yet", Stage::name) }),
+            other => return Err(RemoteError::Busy { finger, stage: other.map_or("in an unknown stage", Stage::name) }),
         }
         let mut changes = [const { None }; FINGERS];
         changes[finger.index()] = Some(Change { place: Place::Path(poses.to_vec()), ..Change::default() });

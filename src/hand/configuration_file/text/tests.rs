@@ -149,7 +149,7 @@ fn values_with_which_no_controller_can_be_constructed_are_refused_with_the_key_t
         (
             "[finger.2.friction]\njoint_coulomb = [20, 20, 20]\n",
             2,
-            "finger.2.friction.joint_coulomb: correct this value first",
+            "finger.2.friction.joint_coulomb: must be corrected first",
             "lower tendon.minimum",
         ),
         (

@@ -23,7 +23,7 @@ fn a_server_that_was_started_again_is_noticed() {
     let mut exchange = owner();
     let other = State { owner: 0, ..state(9, 20 * MS, Stage::Running) };
     exchange.take_state(&other, 30 * MS);
-    assert!(refused(send(&mut exchange, good(1), 30 * MS)).1.contains("the server has ended its ownership"));
+    assert!(refused(send(&mut exchange, good(1), 30 * MS)).1.contains("the server has ended the ownership"));
 }
 
 /// The server was started again. Its Answer to an acquire arrives before its first State.
