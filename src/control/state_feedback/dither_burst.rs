@@ -69,6 +69,13 @@ impl DitherBurst {
         (0..3).any(|joint| sprung[joint].abs() > self.held[joint])
     }
 
+    /// Returns whether a fast motion has ended and its burst cannot begin: something stopped the finger, or a tendon is
+    /// almost slack. `rates` are the joint rates of the reference, rad/s. The result is valid while the envelope is
+    /// small, because the burst also counts as awaited while the envelope rises.
+    pub fn waits(&self, state: &DitherBurstState, rates: &Vector3<f64>) -> bool {
+        state.awaited && rates.amax() < SLOW
+    }
+
     /// Returns the envelope. `rates` are the joint rates of the reference, rad/s. `sprung` is the joint torque of the
     /// spring, N cm. `slack` is true if a tendon is almost slack. In this case the burst ends, because the tensions
     /// must recover first.
@@ -134,7 +141,10 @@ mod tests {
         let mut state = DitherBurstState::default();
         after(&mut state, 0.1, 4.0, 0.0);
         assert_eq!(after(&mut state, 1.0, 0.0, 1.1), 0.0);
+        let burst = DitherBurst::new(&Vector3::repeat(20.0), RATE);
+        assert!(burst.waits(&state, &Vector3::zeros()) && !burst.waits(&state, &Vector3::repeat(SLOW)));
         assert!(after(&mut state, 0.1, 0.0, 0.9) > 0.9, "{state:?}");
+        assert!(!burst.waits(&state, &Vector3::zeros()), "{state:?}");
     }
 
     #[test]
