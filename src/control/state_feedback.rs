@@ -17,6 +17,7 @@ mod observer;
 mod periodic_disturbance;
 mod pulley_feed_forward;
 mod reference;
+mod stiffening;
 mod tension_dither;
 
 pub use numbers::Numbers;
@@ -32,6 +33,7 @@ use crate::control::state_feedback::observer::{TendonEstimate, TendonMotion, Ten
 use crate::control::state_feedback::periodic_disturbance::{PeriodicDisturbance, PeriodicDisturbanceState};
 use crate::control::state_feedback::pulley_feed_forward::PulleyFeedForward;
 use crate::control::state_feedback::reference::{Reference, ReferenceMotion, ReferenceState};
+use crate::control::state_feedback::stiffening::{Stiffening, StiffeningState};
 use crate::control::state_feedback::tension_dither::{TensionDither, TensionDitherState};
 use crate::control::tendons::bumpless_transfer::BumplessTransfer;
 use crate::model::LinkDynamics;
@@ -59,6 +61,7 @@ pub(super) struct StateFeedback {
     periodic_disturbance: PeriodicDisturbance,
     friction: FrictionFeedForward,
     pulleys: Option<PulleyFeedForward>,
+    stiffening: Option<Stiffening>,
     /// R, m.
     r: Matrix3x4<f64>,
     /// R^T (R R^T)^-1, 1/m. Its transpose converts the travel of the tendons to joint angles. The transpose converts a
@@ -127,6 +130,8 @@ pub(super) struct StateFeedbackState {
     /// Speed of each tendon at the joints while the reference is at rest, low-pass filtered, m/s.
     #[serde(default)]
     creep: Vector4<f64>,
+    #[serde(default)]
+    stiffening: StiffeningState,
     dither: DitherState,
     tension_dither: TensionDitherState,
     #[serde(default)]
@@ -154,6 +159,7 @@ impl StateFeedback {
             along: None,
             drift: Vector3::zeros(),
             creep: Vector4::zeros(),
+            stiffening: StiffeningState::default(),
             dither: self.dither.start(),
             tension_dither: self.tension_dither.start(),
             periodic_disturbance: PeriodicDisturbanceState::default(),

@@ -21,7 +21,7 @@ impl Controller {
         let (spring, joint_spring) = self.spring_transition.advance(&mut state.spring, set_point);
         let mut spring = self.joint_stiffness.posed(spring, &state.report.joints);
         let push = self.soft_limits.push(&state.report.joints);
-        let scale = self.supported(&mut state.report, &spring.k_theta, joint_spring, &push);
+        let scale = self.supported(&mut state.report, &spring.k_theta, joint_spring, &push).min(1.0);
         spring.soften(scale);
         let (mut anchor, begins) = match state.doing {
             Doing::Following(anchor) => (anchor, false),
@@ -59,7 +59,8 @@ impl Controller {
         let mut pose = JointSines::of(&state.report.joints);
         let k_theta = self.joint_stiffness.joint_stiffness_at(spring, &pose);
         let push = self.soft_limits.push(&state.report.joints);
-        let scale = self.supported(&mut state.report, &k_theta, joint_spring, &push);
+        let headroom = self.supported(&mut state.report, &k_theta, joint_spring, &push);
+        let scale = headroom.min(1.0);
         let softened;
         let spring = if scale == 1.0 {
             spring
@@ -82,7 +83,7 @@ impl Controller {
         let springs = (spring, joint_spring, &set_point.motion);
         let gravity = (&self.gravity, &state.gravity);
         let Decision { pulls, against_friction, joint_torques, desired_tensions, torque_scale } =
-            law.decide(elastic, &pose, springs, begins, (&self.soft_limits, gravity), &distribution);
+            law.decide(elastic, &pose, springs, begins, (&self.soft_limits, headroom, gravity), &distribution);
         state.against_friction = against_friction;
         self.command_pulls(state, &pulls, &limit, false);
         state.report.joint_torques = joint_torques;
@@ -90,14 +91,15 @@ impl Controller {
         state.report.torque_scale = torque_scale;
     }
 
-    /// Returns the factor, 0 to 1, by which the stiffness must be scaled, and writes it to the report. With this factor
-    /// the pose supports the sum of the scaled stiffness of both springs and the stiffness of the soft limits.
-    /// `k_theta` is the stiffness of the tip's spring, N cm/rad.
+    /// Returns the largest factor with which the pose supports the sum of the scaled stiffness of both springs and the
+    /// stiffness of the soft limits. Writes this factor to the report, or 1 if it is larger. `k_theta` is the stiffness
+    /// of the tip's spring, N cm/rad.
     fn supported(&self, report: &mut Report, k_theta: &Matrix3<f64>, joint: Option<&JointSpring>, push: &Push) -> f64 {
-        report.stiffness_scale = match joint {
-            None => self.admissible.scale(k_theta, &push.stiffness),
-            Some(joint) => self.admissible.scale(&(k_theta + joint.k_theta), &push.stiffness),
+        let headroom = match joint {
+            None => self.admissible.headroom(k_theta, &push.stiffness),
+            Some(joint) => self.admissible.headroom(&(k_theta + joint.k_theta), &push.stiffness),
         };
-        report.stiffness_scale
+        report.stiffness_scale = headroom.min(1.0);
+        headroom
     }
 }

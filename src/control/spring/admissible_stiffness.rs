@@ -40,16 +40,17 @@ impl AdmissibleStiffness {
         Some(Self { inverse, compliance, share: share(finger.controller.scheme(rate), rate) })
     }
 
-    /// Returns the factor, 0 to 1, by which K_theta must be scaled so that K_theta and the soft joint limits together
-    /// stay within the share. `limits` is the stiffness of the soft joint limits. K_theta and `limits` are in N cm/rad.
+    /// Returns the largest factor by which K_theta can be scaled so that K_theta and the soft joint limits together
+    /// stay within the share. It is below 1 if the pose does not support K_theta, and infinite if K_theta is zero.
+    /// `limits` is the stiffness of the soft joint limits. K_theta and `limits` are in N cm/rad.
     ///
     /// The largest eigenvalue of a sum of matrices is at most the sum of their largest eigenvalues. For the soft
     /// limits, the trace is used instead of the largest eigenvalue, because it is at least as large.
     #[inline]
-    pub fn scale(&self, k_theta: &Matrix3<f64>, limits: &Vector3<f64>) -> f64 {
+    pub fn headroom(&self, k_theta: &Matrix3<f64>, limits: &Vector3<f64>) -> f64 {
         let [largest, ..] = eigenvalues(&self.used(k_theta));
         let left = self.share - limits.dot(&self.compliance);
-        if largest > left { left / largest } else { 1.0 }
+        if largest > 0.0 { left / largest } else { f64::INFINITY }
     }
 
     /// Returns L^-1 K_theta L^-T. The products with the zeros above the diagonal of L^-1 are left out.

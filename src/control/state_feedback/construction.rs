@@ -13,6 +13,7 @@ use crate::control::state_feedback::observer::{ElasticTendon, ObserverDesign, Te
 use crate::control::state_feedback::periodic_disturbance::PeriodicDisturbance;
 use crate::control::state_feedback::pulley_feed_forward::PulleyFeedForward;
 use crate::control::state_feedback::reference::Reference;
+use crate::control::state_feedback::stiffening::Stiffening;
 use crate::control::state_feedback::tension_dither::TensionDither;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use crate::model::{LinkDynamics, Tendons};
@@ -155,9 +156,14 @@ fn tension_dither(
     rate: f64,
 ) -> TensionDither {
     let (pulley, minimum) = (Vector4::from(finger.friction.pulley), finger.tendon.minimum);
-    let pretension = tendons.pretension(minimum);
-    let torques = tendons.r.abs() * pretension;
-    TensionDither::new(pretension.normalize(), numbers, (&pulley, &torques), (lowest, highest), minimum, rate)
+    let common = tendons.pretension(minimum).normalize();
+    let torques = torques_at_pretension(finger, tendons);
+    TensionDither::new(common, numbers, (&pulley, &torques), (lowest, highest), minimum, rate)
+}
+
+/// Returns, for each joint, the sum of the magnitudes of the torques of the four tendons at the pretension, N cm.
+fn torques_at_pretension(finger: &ConfiguredFinger, tendons: &Tendons) -> Vector3<f64> {
+    tendons.r.abs() * tendons.pretension(finger.tendon.minimum)
 }
 
 impl StateFeedback {
@@ -171,8 +177,7 @@ impl StateFeedback {
         set_point_speed: f64,
         rate: f64,
     ) -> Result<Self, Unusable> {
-        let drives = Drives::new(finger, tendons)?;
-        let dynamics = link_dynamics(finger)?;
+        let (drives, dynamics) = (Drives::new(finger, tendons)?, link_dynamics(finger)?);
         let r = tendons.r * 0.01;
         let pseudo_inverse = right_inverse(&r)?;
         let relative_damping = drives.relative_damping(numbers, &dynamics, &r);
@@ -202,6 +207,7 @@ impl StateFeedback {
             tension_dither,
             friction: FrictionFeedForward { friction, share: numbers.friction_share },
             pulleys: PulleyFeedForward::new(&finger.friction.pulley.into(), numbers, rate),
+            stiffening: Stiffening::new(&torques_at_pretension(finger, tendons), numbers, rate),
             r,
             pseudo_inverse,
             common: tendons.pretension(1.0).normalize(),

@@ -8,6 +8,7 @@ use crate::control::spring::soft_limits::SoftLimits;
 use crate::control::spring::spring_transition::Spring;
 use crate::control::state_feedback::observer::TendonMotion;
 use crate::control::state_feedback::reference::ReferenceMotion;
+use crate::control::state_feedback::stiffening::{Added, StiffeningState};
 use crate::control::tendons::tension_distribution::{BoundedDistribution, DistributedTensions};
 use crate::model::JointSines;
 use nalgebra::{Matrix3, Vector3, Vector4};
@@ -57,14 +58,15 @@ impl StateFeedback {
     /// Returns the pulls that act from the next sample on. They give the fingertip the spring `spring`, and the joints
     /// the spring `joint_spring`. The anchor of both springs has the motion `motion`. If `begins` is true, the springs
     /// start without deflection. `pose` has the sines of the joint angles in `state`. `gravity` is the compensation,
-    /// with the gravity that planners have set, m/s^2.
+    /// with the gravity that planners have set, m/s^2. `headroom` is the factor by which the pose permits to scale the
+    /// stiffness of the springs.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,
         pose: &JointSines,
         (spring, joint_spring, motion): (&Spring, &Option<JointSpring>, &Option<Motion>),
         begins: bool,
-        (limits, gravity): (&SoftLimits, (&GravityCompensation, &Option<Vector3<f64>>)),
+        (limits, headroom, gravity): (&SoftLimits, f64, (&GravityCompensation, &Option<Vector3<f64>>)),
         distribution: &BoundedDistribution,
     ) -> Decision {
         if begins {
@@ -76,8 +78,9 @@ impl StateFeedback {
         }
         let reference = self.follow(state, &spring.joints, motion);
         let inertia = self.dynamics.inertia_at(&state.joints, pose);
+        let limits = (limits, headroom, gravity);
         let JointTorques { sprung, k_theta, all } =
-            self.joint_torques(state, &now, (spring, joint_spring), &reference, &inertia, (limits, gravity));
+            self.joint_torques(state, &now, (spring, joint_spring), &reference, &inertia, limits);
         let joint_torques = all * 100.0;
         let DistributedTensions { tensions: distributed, scale: torque_scale } =
             distribution.distribute(&joint_torques);
@@ -101,6 +104,7 @@ impl StateFeedback {
         state.along = None;
         state.drift = Vector3::zeros();
         state.creep = Vector4::zeros();
+        state.stiffening = StiffeningState::default();
         state.dither = self.dither.start();
         state.tension_dither = self.tension_dither.start();
     }
@@ -139,8 +143,9 @@ impl StateFeedback {
         reference
     }
 
-    /// Returns the joint torques: the sum of the torques of the spring, the soft limits, gravity compensation and the
-    /// damper, and of the feed-forward for friction and for the motion of the reference.
+    /// Returns the joint torques: the sum of the torques of the spring, of its additional stiffness in a fast motion,
+    /// of the soft limits, gravity compensation and the damper, and of the feed-forward for friction and for the motion
+    /// of the reference.
     fn joint_torques(
         &self,
         state: &mut StateFeedbackState,
@@ -148,7 +153,7 @@ impl StateFeedback {
         (spring, joint_spring): (&Spring, &Option<JointSpring>),
         reference: &ReferenceMotion,
         inertia: &Matrix3<f64>,
-        (limits, (compensation, gravity)): (&SoftLimits, (&GravityCompensation, &Option<Vector3<f64>>)),
+        (limits, headroom, (compensation, gravity)): (&SoftLimits, f64, (&GravityCompensation, &Option<Vector3<f64>>)),
     ) -> JointTorques {
         let push = limits.push(&now.joints);
         let pose = JointSines::of(&now.joints);
@@ -159,12 +164,15 @@ impl StateFeedback {
             k_theta += joint_spring.k_theta;
             sprung += joint_spring.torques(&(reference.joints - now.joints));
         }
-        let held_stiffness = (k_theta + Matrix3::from_diagonal(&push.stiffness)) * 0.01;
+        let added = self.stiffening.as_ref().map_or_else(Added::default, |stiffening| {
+            stiffening.advance(&mut state.stiffening, (&reference.rates, &sprung), headroom)
+        });
+        let held_stiffness = (k_theta * (1.0 + added.part) + Matrix3::from_diagonal(&push.stiffness)) * 0.01;
         let apparent = self.apparent_motors + inertia;
         let damped = self.damped_motors + inertia;
         let damping = self.damping.damping(&damped, inertia, &held_stiffness, spring.damping);
         let joint_friction = self.joint_friction(state, &now.rates, &reference.rates, &damping);
-        let held = sprung + push.torque + compensation.torques(gravity, &now.joints);
+        let held = sprung + added.torques + push.torque + compensation.torques(gravity, &now.joints);
         let rubbing = self.pulleys.as_ref().map_or_else(Vector3::zeros, |pulleys| {
             let speeds = (&self.r.tr_mul(&reference.rates), &self.r.tr_mul(&now.rates));
             self.r * pulleys.tensions(&mut state.creep, speeds, &now.tensions)

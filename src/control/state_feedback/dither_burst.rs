@@ -10,14 +10,14 @@ use serde::{Deserialize, Serialize};
 
 /// Rate of the reference, rad/s, from which a motion is fast. A slow motion causes no burst: bursts would follow each
 /// other, and a grasp that tightens slowly would slip.
-const FAST: f64 = 0.4;
+pub(super) const FAST: f64 = 0.4;
 /// Rate of the reference, rad/s, below which a fast motion has ended.
-const SLOW: f64 = 0.2;
+pub(super) const SLOW: f64 = 0.2;
 /// Largest torque of the spring with which a burst begins. It is a fraction of the sum of the magnitudes of the torques
 /// that the four tendons exert on the joint at the pretension. Pulleys whose friction is this fraction of the tension
 /// hold the finger against such a torque. A larger torque usually means that the finger touches something. At walls,
 /// bursts of fingers with rotors of half the inertia caused motions of 2 mm.
-const HELD: f64 = 0.1;
+pub(super) const HELD: f64 = 0.1;
 
 /// Time constant with which the envelope rises, s. The tensions are still low directly after a motion. With 0.01 s, the
 /// first oscillation is therefore so large that a tension falls to 3.8 N after a reach of 30 mm. With 0.025 s, "worn"
@@ -67,6 +67,13 @@ impl DitherBurst {
     /// Returns whether the spring has so much torque, N cm, that the finger probably touches something.
     pub fn touches(&self, sprung: &Vector3<f64>) -> bool {
         (0..3).any(|joint| sprung[joint].abs() > self.held[joint])
+    }
+
+    /// Returns whether a fast motion has ended and its burst cannot begin: something stopped the finger, or a tendon is
+    /// almost slack. `rates` are the joint rates of the reference, rad/s. The result is valid while the envelope is
+    /// small, because the burst also counts as awaited while the envelope rises.
+    pub fn waits(&self, state: &DitherBurstState, rates: &Vector3<f64>) -> bool {
+        state.awaited && rates.amax() < SLOW
     }
 
     /// Returns the envelope. `rates` are the joint rates of the reference, rad/s. `sprung` is the joint torque of the
@@ -134,7 +141,10 @@ mod tests {
         let mut state = DitherBurstState::default();
         after(&mut state, 0.1, 4.0, 0.0);
         assert_eq!(after(&mut state, 1.0, 0.0, 1.1), 0.0);
+        let burst = DitherBurst::new(&Vector3::repeat(20.0), RATE);
+        assert!(burst.waits(&state, &Vector3::zeros()) && !burst.waits(&state, &Vector3::repeat(SLOW)));
         assert!(after(&mut state, 0.1, 0.0, 0.9) > 0.9, "{state:?}");
+        assert!(!burst.waits(&state, &Vector3::zeros()), "{state:?}");
     }
 
     #[test]

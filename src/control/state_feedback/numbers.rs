@@ -86,6 +86,9 @@ pub struct Numbers {
     pub creep_slope: f64,
     /// Bandwidth of the low-pass filter on this speed, rad/s. Dither and noise are above this bandwidth.
     pub creep_bandwidth: f64,
+    /// Largest additional stiffness during and after a fast motion of the reference, as a part of the stiffness of the
+    /// spring. 0: the stiffness does not change.
+    pub stiffening: f64,
 }
 
 /// Lowest frequency for which the damping is designed, rad/s. It determines the damping of a finger without stiffness.
@@ -133,6 +136,11 @@ const CREEP_SLOPE: f64 = 25.0;
 
 /// See [`Numbers::creep_bandwidth`].
 const CREEP_BANDWIDTH: f64 = 20.0;
+
+/// See [`Numbers::stiffening`]. A spring of 3 N/cm then has up to 7.5 N/cm.
+const STIFFENING: f64 = 1.5;
+/// Rate below which the stiffness does not change, Hz. At 500 Hz, a loop with a stiff spring has little margin.
+const LEAST_STIFFENING_RATE: f64 = 750.0;
 
 /// See [`Numbers::friction_share`]. With half of the configured friction, no finger hunted, although the friction of
 /// the fingers was 0 to 3 times the configured one.
@@ -268,6 +276,7 @@ impl Numbers {
             pulley_creep: PULLEY_CREEP,
             creep_slope: CREEP_SLOPE,
             creep_bandwidth: CREEP_BANDWIDTH,
+            stiffening: if rate < LEAST_STIFFENING_RATE { 0.0 } else { STIFFENING },
         };
         positive("controller.inertia_gain", &[numbers.inertia_gain])?;
         positive("controller.damping_ratio", &[numbers.damping_ratio])?;

@@ -177,7 +177,10 @@ impl TensionDither {
         state.measured += (phase * deviation - state.measured) * self.measuring;
         if burst < ENDED {
             let missing = 1.0 - state.measured.norm() / wanted;
-            state.scale += missing.max(-1.0) * self.adjusting;
+            // At a wall, the motors with the most friction do not follow. A larger command would make the others turn
+            // the joints.
+            let most = if self.burst.waits(&state.burst, rates) { 0.0 } else { 1.0 };
+            state.scale += missing.max(-1.0).min(most) * self.adjusting;
         }
         let scale = if slack { state.scale * FALLING } else { state.scale };
         state.scale = scale.clamp(SCALES[0], SCALES[1]);
@@ -208,12 +211,12 @@ mod tests {
     }
 
     /// Runs the dither for `time` (s) on tensions that follow it with the gain `response`, with a reference of this
-    /// rate, rad/s. Returns the largest deviations of the tensions from `desired` in the last 0.1 s, N.
+    /// rate, rad/s, and a spring of this torque, N cm. Returns the largest deviations from `desired` at the end, N.
     fn run(
         dither: &TensionDither,
         state: &mut TensionDitherState,
         (desired, response): (&Vector4<f64>, f64),
-        rate: f64,
+        (rate, torque): (f64, f64),
         time: f64,
     ) -> Vector4<f64> {
         let phasor = Dither::new(Vector3::zeros(), 40.0, RATE);
@@ -224,7 +227,7 @@ mod tests {
             phasor.advance(&mut phase);
             let phase = phasor.phase(&phase);
             let firm = Matrix3::from_diagonal_element(40.0);
-            let moving = (&Vector3::repeat(rate), &Vector3::zeros(), &firm);
+            let moving = (&Vector3::repeat(rate), &Vector3::repeat(torque), &firm);
             let amplitude = dither.advance(state, (desired, &now), &phase, moving);
             now = desired + amplitude * (response * phase.x);
             if cycle + 100 >= cycles {
@@ -236,7 +239,7 @@ mod tests {
 
     /// Runs the dither for two seconds at rest.
     fn followed(dither: &TensionDither, desired: &Vector4<f64>, response: f64) -> Vector4<f64> {
-        run(dither, &mut dither.start(), (desired, response), 0.0, 2.0)
+        run(dither, &mut dither.start(), (desired, response), (0.0, 0.0), 2.0)
     }
 
     #[test]
@@ -249,6 +252,11 @@ mod tests {
             assert!(found.iter().all(|part| (part - 0.1).abs() < 0.006), "{response}: {found}");
         }
         assert_eq!(followed(&dither(0.0, 0.1), &desired, 1.0), Vector4::zeros());
+        // After a fast motion into a wall, the command does not grow.
+        let (dither, mut state) = (dither(0.06, 0.0), dither(0.06, 0.0).start());
+        run(&dither, &mut state, (&desired, 1.0), (4.0, 50.0), 0.5);
+        let found = run(&dither, &mut state, (&desired, 0.5), (0.0, 50.0), 2.0).component_div(&desired);
+        assert!(found.max() < 0.04, "{found}");
     }
 
     #[test]
@@ -269,8 +277,8 @@ mod tests {
         let after_a_motion = |least, desired: Vector4<f64>| {
             let dither = dither(least, 0.0);
             let mut state = dither.start();
-            run(&dither, &mut state, (&desired, 1.0), 4.0, 0.5);
-            run(&dither, &mut state, (&desired, 1.0), 0.0, 0.1).component_div(&home())
+            run(&dither, &mut state, (&desired, 1.0), (4.0, 0.0), 0.5);
+            run(&dither, &mut state, (&desired, 1.0), (0.0, 0.0), 0.1).component_div(&home())
         };
         let found = after_a_motion(0.06, home() * 1.5);
         assert!(found.iter().all(|part| (part - 0.35).abs() < 0.02), "{found}");
