@@ -2,6 +2,7 @@
 
 use super::{Controller, Doing, State};
 use crate::control::signals::{Report, SetPoint};
+use crate::control::spring::admissible_stiffness::UsedShares;
 use crate::control::spring::joint_spring::JointSpring;
 use crate::control::spring::soft_limits::Push;
 use crate::control::spring::spring_transition::Spring;
@@ -21,7 +22,8 @@ impl Controller {
         let (spring, joint_spring) = self.spring_transition.advance(&mut state.spring, set_point);
         let mut spring = self.joint_stiffness.posed(spring, &state.report.joints);
         let push = self.soft_limits.push(&state.report.joints);
-        let scale = self.supported(&mut state.report, &spring.k_theta, joint_spring, &push).min(1.0);
+        self.limit_stiffness(&mut state.report, &spring.k_theta, joint_spring, &push);
+        let scale = state.report.stiffness_scale;
         spring.soften(scale);
         let (mut anchor, begins) = match state.doing {
             Doing::Following(anchor) => (anchor, false),
@@ -59,8 +61,8 @@ impl Controller {
         let mut pose = JointSines::of(&state.report.joints);
         let k_theta = self.joint_stiffness.joint_stiffness_at(spring, &pose);
         let push = self.soft_limits.push(&state.report.joints);
-        let headroom = self.supported(&mut state.report, &k_theta, joint_spring, &push);
-        let scale = headroom.min(1.0);
+        let used = self.limit_stiffness(&mut state.report, &k_theta, joint_spring, &push);
+        let scale = state.report.stiffness_scale;
         let softened;
         let spring = if scale == 1.0 {
             spring
@@ -83,7 +85,7 @@ impl Controller {
         let springs = (spring, joint_spring, &set_point.motion);
         let gravity = (&self.gravity, &state.gravity);
         let Decision { pulls, against_friction, joint_torques, desired_tensions, torque_scale } =
-            law.decide(elastic, &pose, springs, begins, (&self.soft_limits, headroom, gravity), &distribution);
+            law.decide(elastic, &pose, springs, begins, (&self.soft_limits, used, gravity), &distribution);
         state.against_friction = against_friction;
         self.command_pulls(state, &pulls, &limit, false);
         state.report.joint_torques = joint_torques;
@@ -91,15 +93,21 @@ impl Controller {
         state.report.torque_scale = torque_scale;
     }
 
-    /// Returns the largest factor with which the pose supports the sum of the scaled stiffness of both springs and the
-    /// stiffness of the soft limits. Writes this factor to the report, or 1 if it is larger. `k_theta` is the stiffness
-    /// of the tip's spring, N cm/rad.
-    fn supported(&self, report: &mut Report, k_theta: &Matrix3<f64>, joint: Option<&JointSpring>, push: &Push) -> f64 {
-        let headroom = match joint {
-            None => self.admissible.headroom(k_theta, &push.stiffness),
-            Some(joint) => self.admissible.headroom(&(k_theta + joint.k_theta), &push.stiffness),
+    /// Writes the factor, 0 to 1, by which the stiffness must be scaled to the report. With this factor the pose
+    /// supports the sum of the scaled stiffness of both springs and the stiffness of the soft limits. `k_theta` is the
+    /// stiffness of the tip's spring, N cm/rad. Returns what the springs would use without the factor.
+    fn limit_stiffness(
+        &self,
+        report: &mut Report,
+        k_theta: &Matrix3<f64>,
+        joint: Option<&JointSpring>,
+        push: &Push,
+    ) -> UsedShares {
+        let used = match joint {
+            None => self.admissible.used(k_theta, &push.stiffness),
+            Some(joint) => self.admissible.used(&(k_theta + joint.k_theta), &push.stiffness),
         };
-        report.stiffness_scale = headroom.min(1.0);
-        headroom
+        report.stiffness_scale = self.admissible.scale(used);
+        used
     }
 }

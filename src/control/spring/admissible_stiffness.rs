@@ -18,9 +18,25 @@ fn share(scheme: Scheme, rate: f64) -> f64 {
     }
 }
 
-/// Limits K_theta to a share of R k R^T = L L^T. R k R^T is the stiffness with which the tendons hold the joints while
-/// the motors are locked, and the diagonal matrix k contains the stiffnesses of the tendons. The largest eigenvalue of
-/// L^-1 K_theta L^-T is the largest share that K_theta uses in any direction.
+/// Returns R k R^T, the stiffness with which the tendons hold the joints while the motors are locked, N cm/rad. The
+/// diagonal matrix k contains the stiffnesses of the tendons.
+pub(crate) fn stiffness_of_tendons(finger: &ConfiguredFinger, tendons: &Tendons) -> Matrix3<f64> {
+    let stiffness = finger.tendon.stiffness;
+    let stretched = Matrix3x4::from_fn(|joint, tendon| tendons.r[(joint, tendon)] * stiffness[tendon]);
+    stretched * tendons.r.transpose()
+}
+
+/// The shares of R k R^T that two stiffnesses use.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct UsedShares {
+    /// That of K_theta.
+    pub spring: f64,
+    /// That of the soft joint limits.
+    pub limits: f64,
+}
+
+/// Limits K_theta to a share of R k R^T = L L^T (see [`stiffness_of_tendons`]). The largest eigenvalue of L^-1 K_theta
+/// L^-T is the largest share that K_theta uses in any direction.
 #[derive(Clone, Debug)]
 pub(crate) struct AdmissibleStiffness {
     /// L^-1, (N cm/rad)^(-1/2).
@@ -33,29 +49,32 @@ pub(crate) struct AdmissibleStiffness {
 impl AdmissibleStiffness {
     /// Constructs the limit for `finger` at `rate`, Hz. Returns None if the rank of R is below 3.
     pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, rate: f64) -> Option<Self> {
-        let stiffness = finger.tendon.stiffness;
-        let stretched = Matrix3x4::from_fn(|joint, tendon| tendons.r[(joint, tendon)] * stiffness[tendon]);
-        let inverse = (stretched * tendons.r.transpose()).cholesky()?.l().try_inverse()?;
+        let inverse = stiffness_of_tendons(finger, tendons).cholesky()?.l().try_inverse()?;
         let compliance = inverse.tr_mul(&inverse).diagonal();
         Some(Self { inverse, compliance, share: share(finger.controller.scheme(rate), rate) })
     }
 
-    /// Returns the largest factor by which K_theta can be scaled so that K_theta and the soft joint limits together
-    /// stay within the share. It is below 1 if the pose does not support K_theta, and infinite if K_theta is zero.
-    /// `limits` is the stiffness of the soft joint limits. K_theta and `limits` are in N cm/rad.
+    /// Returns the share of R k R^T that each of two stiffnesses uses: K_theta, and that of the soft joint limits
+    /// (`limits`). Both are in N cm/rad.
     ///
     /// The largest eigenvalue of a sum of matrices is at most the sum of their largest eigenvalues. For the soft
     /// limits, the trace is used instead of the largest eigenvalue, because it is at least as large.
     #[inline]
-    pub fn headroom(&self, k_theta: &Matrix3<f64>, limits: &Vector3<f64>) -> f64 {
-        let [largest, ..] = eigenvalues(&self.used(k_theta));
-        let left = self.share - limits.dot(&self.compliance);
-        if largest > 0.0 { left / largest } else { f64::INFINITY }
+    pub fn used(&self, k_theta: &Matrix3<f64>, limits: &Vector3<f64>) -> UsedShares {
+        let [spring, ..] = eigenvalues(&self.relative(k_theta));
+        UsedShares { spring, limits: limits.dot(&self.compliance) }
+    }
+
+    /// Returns the factor, 0 to 1, by which K_theta must be scaled so that K_theta and the soft joint limits together
+    /// stay within the share.
+    pub fn scale(&self, used: UsedShares) -> f64 {
+        let left = self.share - used.limits;
+        if used.spring > left { left / used.spring } else { 1.0 }
     }
 
     /// Returns L^-1 K_theta L^-T. The products with the zeros above the diagonal of L^-1 are left out.
     #[inline]
-    fn used(&self, k_theta: &Matrix3<f64>) -> Matrix3<f64> {
+    fn relative(&self, k_theta: &Matrix3<f64>) -> Matrix3<f64> {
         let l = &self.inverse;
         let lower = |row: usize, [a, b, c]: [f64; 3]| match row {
             0 => l[(0, 0)] * a,

@@ -4,6 +4,7 @@ use super::StateFeedback;
 use super::numbers::Numbers;
 use crate::control::motors::motor_friction::MotorFriction;
 use crate::control::number_checks::positive;
+use crate::control::spring::admissible_stiffness::stiffness_of_tendons;
 use crate::control::spring::joint_stiffness::JointStiffness;
 use crate::control::spring::slew::Slew;
 use crate::control::state_feedback::damping_design::DampingDesign;
@@ -207,7 +208,13 @@ impl StateFeedback {
             tension_dither,
             friction: FrictionFeedForward { friction, share: numbers.friction_share },
             pulleys: PulleyFeedForward::new(&finger.friction.pulley.into(), numbers, rate),
-            stiffening: Stiffening::new(&torques_at_pretension(finger, tendons), numbers, rate),
+            stiffening: Stiffening::new(
+                stiffness_of_tendons(finger, tendons),
+                &torques_at_pretension(finger, tendons),
+                finger.friction.pulley.iter().any(|&pulley| pulley > 0.0),
+                numbers,
+                rate,
+            ),
             r,
             pseudo_inverse,
             common: tendons.pretension(1.0).normalize(),

@@ -2,6 +2,7 @@
 
 use super::{StateFeedback, StateFeedbackState};
 use crate::control::motion::Motion;
+use crate::control::spring::admissible_stiffness::UsedShares;
 use crate::control::spring::gravity_compensation::GravityCompensation;
 use crate::control::spring::joint_spring::JointSpring;
 use crate::control::spring::soft_limits::SoftLimits;
@@ -58,15 +59,15 @@ impl StateFeedback {
     /// Returns the pulls that act from the next sample on. They give the fingertip the spring `spring`, and the joints
     /// the spring `joint_spring`. The anchor of both springs has the motion `motion`. If `begins` is true, the springs
     /// start without deflection. `pose` has the sines of the joint angles in `state`. `gravity` is the compensation,
-    /// with the gravity that planners have set, m/s^2. `headroom` is the factor by which the pose permits to scale the
-    /// stiffness of the springs.
+    /// with the gravity that planners have set, m/s^2. `used` is what the springs and the soft joint limits use of the
+    /// stiffness of the tendons.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,
         pose: &JointSines,
         (spring, joint_spring, motion): (&Spring, &Option<JointSpring>, &Option<Motion>),
         begins: bool,
-        (limits, headroom, gravity): (&SoftLimits, f64, (&GravityCompensation, &Option<Vector3<f64>>)),
+        (limits, used, gravity): (&SoftLimits, UsedShares, (&GravityCompensation, &Option<Vector3<f64>>)),
         distribution: &BoundedDistribution,
     ) -> Decision {
         if begins {
@@ -78,7 +79,7 @@ impl StateFeedback {
         }
         let reference = self.follow(state, &spring.joints, motion);
         let inertia = self.dynamics.inertia_at(&state.joints, pose);
-        let limits = (limits, headroom, gravity);
+        let limits = (limits, used, gravity);
         let JointTorques { sprung, k_theta, all } =
             self.joint_torques(state, &now, (spring, joint_spring), &reference, &inertia, limits);
         let joint_torques = all * 100.0;
@@ -153,21 +154,26 @@ impl StateFeedback {
         (spring, joint_spring): (&Spring, &Option<JointSpring>),
         reference: &ReferenceMotion,
         inertia: &Matrix3<f64>,
-        (limits, headroom, (compensation, gravity)): (&SoftLimits, f64, (&GravityCompensation, &Option<Vector3<f64>>)),
+        (limits, used, (compensation, gravity)): (
+            &SoftLimits,
+            UsedShares,
+            (&GravityCompensation, &Option<Vector3<f64>>),
+        ),
     ) -> JointTorques {
         let push = limits.push(&now.joints);
         let pose = JointSines::of(&now.joints);
         let posed = self.joint_stiffness.posed_at(spring, &now.joints, &pose);
         let mut k_theta = posed.k_theta;
         let mut sprung = posed.torques(&reference.joints);
+        let deflection = reference.joints - now.joints;
         if let Some(joint_spring) = joint_spring {
             k_theta += joint_spring.k_theta;
-            sprung += joint_spring.torques(&(reference.joints - now.joints));
+            sprung += joint_spring.torques(&deflection);
         }
         let added = self.stiffening.as_ref().map_or_else(Added::default, |stiffening| {
-            stiffening.advance(&mut state.stiffening, (&reference.rates, &sprung), headroom)
+            stiffening.advance(&mut state.stiffening, (&reference.rates, &deflection), used)
         });
-        let held_stiffness = (k_theta * (1.0 + added.part) + Matrix3::from_diagonal(&push.stiffness)) * 0.01;
+        let held_stiffness = (k_theta + added.stiffness + Matrix3::from_diagonal(&push.stiffness)) * 0.01;
         let apparent = self.apparent_motors + inertia;
         let damped = self.damped_motors + inertia;
         let damping = self.damping.damping(&damped, inertia, &held_stiffness, spring.damping);

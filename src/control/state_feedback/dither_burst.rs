@@ -17,7 +17,7 @@ pub(super) const SLOW: f64 = 0.2;
 /// that the four tendons exert on the joint at the pretension. Pulleys whose friction is this fraction of the tension
 /// hold the finger against such a torque. A larger torque usually means that the finger touches something. At walls,
 /// bursts of fingers with rotors of half the inertia caused motions of 2 mm.
-pub(super) const HELD: f64 = 0.1;
+const HELD: f64 = 0.1;
 
 /// Time constant with which the envelope rises, s. The tensions are still low directly after a motion. With 0.01 s, the
 /// first oscillation is therefore so large that a tension falls to 3.8 N after a reach of 30 mm. With 0.025 s, "worn"

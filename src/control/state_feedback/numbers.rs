@@ -86,9 +86,11 @@ pub struct Numbers {
     pub creep_slope: f64,
     /// Bandwidth of the low-pass filter on this speed, rad/s. Dither and noise are above this bandwidth.
     pub creep_bandwidth: f64,
-    /// Largest additional stiffness during and after a fast motion of the reference, as a part of the stiffness of the
-    /// spring. 0: the stiffness does not change.
+    /// Largest additional stiffness during a fast motion of the reference, as a share of R k R^T. 0: the stiffness does
+    /// not change.
     pub stiffening: f64,
+    /// The same if the friction of the pulleys is known, and so fed forward.
+    pub identified_stiffening: f64,
 }
 
 /// Lowest frequency for which the damping is designed, rad/s. It determines the damping of a finger without stiffness.
@@ -137,8 +139,10 @@ const CREEP_SLOPE: f64 = 25.0;
 /// See [`Numbers::creep_bandwidth`].
 const CREEP_BANDWIDTH: f64 = 20.0;
 
-/// See [`Numbers::stiffening`]. A spring of 3 N/cm then has up to 7.5 N/cm.
-const STIFFENING: f64 = 1.5;
+/// See [`Numbers::stiffening`].
+const STIFFENING: f64 = 0.1;
+/// See [`Numbers::identified_stiffening`]. With 0.1, steps of identified "worn" fingers settle in up to 256 ms.
+const IDENTIFIED_STIFFENING: f64 = 0.02;
 /// Rate below which the stiffness does not change, Hz. At 500 Hz, a loop with a stiff spring has little margin.
 const LEAST_STIFFENING_RATE: f64 = 750.0;
 
@@ -277,6 +281,7 @@ impl Numbers {
             creep_slope: CREEP_SLOPE,
             creep_bandwidth: CREEP_BANDWIDTH,
             stiffening: if rate < LEAST_STIFFENING_RATE { 0.0 } else { STIFFENING },
+            identified_stiffening: if rate < LEAST_STIFFENING_RATE { 0.0 } else { IDENTIFIED_STIFFENING },
         };
         positive("controller.inertia_gain", &[numbers.inertia_gain])?;
         positive("controller.damping_ratio", &[numbers.damping_ratio])?;

@@ -1,50 +1,52 @@
-//! A stiffer spring during a fast motion of the reference and shortly after it.
+//! A stiffer spring during a fast motion of the reference.
 //!
 //! The gauges do not measure the friction of the pulleys. It holds the joints back: they lag the reference by about
 //! K_theta^-1 F, where F is the torque of the friction. After the motion they creep to their rest position, because
 //! pulleys that the dither keeps sliding act like viscous friction. If the tip is close to the axis of joint 0, or the
 //! finger is nearly straight, K_theta is small in one direction. The lag is then larger than 5 % of a step of 5 mm.
-//! With the additional stiffness g K_theta, the lag is smaller by the factor 1 + g, and the joints creep faster by
-//! almost this factor.
 //!
-//! The additional torque is zero in the rest position of the spring, and it ends soon after the motion. So the finger
-//! is the commanded spring whenever its reference is at rest.
+//! The additional stiffness is c R k R^T, a share of the stiffness that the tendons give the joints. It raises the
+//! share that K_theta uses by the same c in every direction. So it helps most in the directions in which K_theta is
+//! small, and changes little in the stiff directions, in which the loop has less margin.
+//!
+//! The additional stiffness ends with the motion. So the finger is the commanded spring whenever its reference is at
+//! rest.
 
-use super::dither_burst::{FAST, HELD, SLOW};
+use super::dither_burst::{FAST, SLOW};
 use super::numbers::Numbers;
-use nalgebra::Vector3;
+use crate::control::spring::admissible_stiffness::UsedShares;
+use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Largest stiffness of the stiffer spring, as a fraction of the stiffness that the pose supports.
-const SUPPORTED: f64 = 0.8;
+/// Largest share of R k R^T that the spring, the soft joint limits and the additional stiffness use together. With 0.68,
+/// steps of fingers with rotors of half the inertia did not settle in some poses.
+const SUPPORTED: f64 = 0.57;
 /// Largest additional torque, as a fraction of the sum of the magnitudes of the torques that the four tendons exert on
 /// the joint at the pretension. An object in the way of the finger meets at most this additional torque.
 const LARGEST: f64 = 0.05;
 
 /// Time constant with which the stiffness rises, s.
 const RISING: f64 = 0.01;
-/// Time for which the spring stays stiffer after a motion, s.
-const STAYING: f64 = 0.12;
-/// Time constant with which the additional stiffness decays, s. The burst of the dither decays as fast.
-const DECAYING: f64 = 0.08;
-/// Part of the additional stiffness below which it becomes zero.
+/// Time constant with which it decays after the motion, s. With wrong gauges or moment arms, the additional stiffness
+/// changes the rest position, and the finger must return while the stiffness decays. With 0.08 s, and 0.12 s in which
+/// the stiffness stayed, steps of "cheap" fingers settled in 361 instead of 168 ms.
+const DECAYING: f64 = 0.02;
+/// Part of the largest additional stiffness below which it becomes zero.
 const ENDED: f64 = 1e-3;
-/// Time constant of the filter that finds the torque of the spring before a motion, s.
+/// Time constant of the filter that finds the deflection before a motion, s.
 const RESTING: f64 = 0.1;
 
-/// Adds g (tau - tau_0) to the torque tau of the spring. tau_0 is the torque before the motion. It is not zero if an
-/// object loads the finger, or if gauges or moment arms are wrong. Without tau_0, the rest position would change while
-/// g decays.
+/// Adds c R k R^T (d - d_0) to the torque of the spring. d is the deflection of the joints, and d_0 that before the
+/// motion. d_0 is not zero if an object loads the finger, or if gauges or moment arms are wrong. Without d_0, the finger
+/// would move when c rises.
 #[derive(Clone, Debug)]
 pub(super) struct Stiffening {
-    /// Largest g.
+    /// R k R^T, N cm/rad.
+    tendons: Matrix3<f64>,
+    /// Largest c.
     most: f64,
     /// Largest additional torque, N cm.
     largest: Vector3<f64>,
-    /// Largest change of the torque of the spring with which the spring stays stiffer after a motion, N cm. A larger
-    /// one usually means that the finger has touched something.
-    held: Vector3<f64>,
-    period: f64,
     rising: f64,
     decay: f64,
     resting: f64,
@@ -52,67 +54,68 @@ pub(super) struct Stiffening {
 
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(super) struct StiffeningState {
-    /// tau_0, N cm.
+    /// d_0, rad.
     rest: Vector3<f64>,
     /// From 0 to 1.
     envelope: f64,
-    /// Time for which the spring still stays stiffer, s. Zero: no fast motion, or it has ended long enough ago.
-    staying: f64,
+    /// Whether a fast motion lasts.
+    fast: bool,
 }
 
 /// What is added to the spring.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Added {
-    /// g.
-    pub part: f64,
+    /// Stiffness, N cm/rad.
+    pub stiffness: Matrix3<f64>,
     /// Torques, N cm.
     pub torques: Vector3<f64>,
 }
 
 impl Stiffening {
-    /// `torques` has, for each joint, the sum of the magnitudes of the torques of the four tendons at the pretension,
-    /// N cm. `rate` is the rate of the servo, Hz. Returns None if there is no additional stiffness.
-    pub fn new(torques: &Vector3<f64>, numbers: &Numbers, rate: f64) -> Option<Self> {
-        (numbers.stiffening > 0.0).then(|| Self {
-            most: numbers.stiffening,
+    /// `tendons` is R k R^T, N cm/rad. `torques` has, for each joint, the sum of the magnitudes of the torques of the
+    /// four tendons at the pretension, N cm. `identified` is true if the friction of the pulleys is known. `rate` is
+    /// the rate of the servo, Hz. Returns None if there is no additional stiffness.
+    pub fn new(
+        tendons: Matrix3<f64>,
+        torques: &Vector3<f64>,
+        identified: bool,
+        numbers: &Numbers,
+        rate: f64,
+    ) -> Option<Self> {
+        let most = if identified { numbers.identified_stiffening } else { numbers.stiffening };
+        (most > 0.0).then(|| Self {
+            tendons,
+            most,
             largest: torques * LARGEST,
-            held: torques * HELD,
-            period: 1.0 / rate,
             rising: (1.0 / (RISING * rate)).min(1.0),
             decay: (-1.0 / (DECAYING * rate)).exp(),
             resting: (1.0 / (RESTING * rate)).min(1.0),
         })
     }
 
-    /// Returns what is added in this cycle. `rates` are the joint rates of the reference, rad/s, and `sprung` is the
-    /// joint torque of the spring, N cm. `headroom` is the factor by which the pose permits to scale the stiffness of
-    /// the spring.
+    /// Returns what is added in this cycle. `rates` are the joint rates of the reference, rad/s. `deflection` is the
+    /// reference minus the joint angles, rad. `used` is what the spring and the soft joint limits use of R k R^T.
     pub fn advance(
         &self,
         state: &mut StiffeningState,
-        (rates, sprung): (&Vector3<f64>, &Vector3<f64>),
-        headroom: f64,
+        (rates, deflection): (&Vector3<f64>, &Vector3<f64>),
+        used: UsedShares,
     ) -> Added {
         let rate = rates.amax();
-        let change = sprung - state.rest;
-        state.staying = if rate >= FAST || (rate >= SLOW && state.staying > 0.0) {
-            STAYING
-        } else if (0..3).any(|joint| change[joint].abs() > self.held[joint]) {
-            0.0
-        } else {
-            (state.staying - self.period).max(0.0)
-        };
-        if state.staying > 0.0 {
+        state.fast = rate >= FAST || (rate >= SLOW && state.fast);
+        if state.fast {
             state.envelope += (1.0 - state.envelope) * self.rising;
         } else {
             let envelope = state.envelope * self.decay;
             state.envelope = if envelope < ENDED { 0.0 } else { envelope };
         }
+        let change = deflection - state.rest;
         state.rest += change * (self.resting * (1.0 - state.envelope));
-        // In this order, a headroom that is NaN gives zero.
-        let part = state.envelope * (SUPPORTED * headroom - 1.0).max(0.0).min(self.most);
-        let torques = (change * part).zip_map(&self.largest, |torque, largest| torque.clamp(-largest, largest));
-        Added { part, torques }
+        // In this order, a share that is NaN gives zero.
+        let share = state.envelope * (SUPPORTED - used.spring - used.limits).max(0.0).min(self.most);
+        let stiffness = self.tendons * share;
+        let torques = (stiffness * change).zip_map(&self.largest, |torque, largest| torque.clamp(-largest, largest));
+        Added { stiffness, torques }
     }
 }
 
@@ -123,49 +126,48 @@ mod tests {
 
     const RATE: f64 = 1000.0;
 
-    /// Runs the law for `time` (s) with a reference of this rate, rad/s, this torque of the spring at joint 0, N cm,
-    /// and this headroom.
-    fn after(state: &mut StiffeningState, time: f64, (rate, torque, headroom): (f64, f64, f64)) -> Added {
-        let tuned = Numbers::new(&ConfiguredController::default(), RATE).expect("usable numbers");
-        let numbers = Numbers { stiffening: 1.0, ..tuned };
-        let law = Stiffening::new(&Vector3::new(20.0, 20.0, 10.0), &numbers, RATE).expect("additional stiffness");
-        let (rates, sprung) = (Vector3::new(0.0, -rate, 0.0), Vector3::new(torque, 0.0, 0.0));
+    fn numbers(rate: f64) -> Numbers {
+        Numbers::new(&ConfiguredController::default(), rate).expect("usable numbers")
+    }
+
+    /// Runs the law for `time` (s) with a reference of this rate, rad/s, this deflection of joint 0, rad, and a spring
+    /// that uses this share.
+    fn after(state: &mut StiffeningState, time: f64, (rate, deflection, spring): (f64, f64, f64)) -> Added {
+        let numbers = Numbers { stiffening: 0.1, ..numbers(RATE) };
+        let tendons = Matrix3::from_diagonal_element(100.0);
+        let law = Stiffening::new(tendons, &Vector3::new(20.0, 20.0, 10.0), false, &numbers, RATE).expect("a law");
+        let (rates, deflection) = (Vector3::new(0.0, -rate, 0.0), Vector3::new(deflection, 0.0, 0.0));
+        let used = UsedShares { spring, limits: 0.0 };
         let cycles = (time * RATE) as usize;
-        (0..cycles).map(|_| law.advance(state, (&rates, &sprung), headroom)).last().expect("cycles")
+        (0..cycles).map(|_| law.advance(state, (&rates, &deflection), used)).last().expect("cycles")
     }
 
     #[test]
-    fn a_fast_motion_makes_the_spring_stiffer_for_a_while() {
+    fn a_fast_motion_makes_the_spring_stiffer_until_it_ends() {
         let mut state = StiffeningState::default();
-        assert_eq!(after(&mut state, 1.0, (0.0, 0.5, 3.0)).part, 0.0);
-        let Added { part, torques } = after(&mut state, 0.1, (4.0, 1.0, 3.0));
-        assert!(part > 0.99 && (torques - Vector3::x() * 0.45).amax() < 0.02, "{part} {torques}");
-        assert!(after(&mut state, 0.1, (0.0, 1.0, 3.0)).part > 0.99, "{state:?}");
-        assert_eq!(after(&mut state, 1.0, (0.0, 1.0, 3.0)).part, 0.0, "{state:?}");
-        assert_eq!(after(&mut state, 1.0, (0.39, 1.0, 3.0)).part, 0.0, "a slow motion");
-    }
-
-    #[test]
-    fn a_finger_that_touches_something_has_the_commanded_stiffness_soon() {
-        let mut state = StiffeningState::default();
-        assert!(after(&mut state, 0.1, (4.0, 0.0, 3.0)).part > 0.99);
-        assert!(after(&mut state, 0.4, (0.0, 2.5, 3.0)).part < 0.01, "{state:?}");
+        assert_eq!(after(&mut state, 1.0, (0.0, 0.02, 0.2)).stiffness[(0, 0)], 0.0);
+        let Added { stiffness, torques } = after(&mut state, 0.1, (4.0, 0.05, 0.2));
+        assert!((stiffness[(0, 0)] - 10.0).abs() < 0.01, "{stiffness}");
+        assert!((torques - Vector3::x() * 0.3).amax() < 0.03, "{torques}");
+        assert!(after(&mut state, 0.1, (0.0, 0.05, 0.2)).stiffness[(0, 0)] < 0.1, "{state:?}");
+        assert_eq!(after(&mut state, 0.1, (0.0, 0.05, 0.2)).stiffness[(0, 0)], 0.0, "{state:?}");
+        assert_eq!(after(&mut state, 1.0, (0.39, 0.05, 0.2)).stiffness[(0, 0)], 0.0, "a slow motion");
     }
 
     #[test]
     fn the_pose_and_the_torques_of_the_tendons_limit_what_is_added() {
-        for (headroom, expected) in [(1.5, 0.2), (0.9, 0.0), (f64::INFINITY, 1.0), (f64::NAN, 0.0)] {
-            let found = after(&mut StiffeningState::default(), 0.2, (4.0, 0.0, headroom)).part;
-            assert!((found - expected).abs() < 1e-6, "{headroom}: {found}");
+        for (spring, expected) in [(0.5, 0.07), (0.6, 0.0), (0.0, 0.1), (f64::NAN, 0.0)] {
+            let found = after(&mut StiffeningState::default(), 0.2, (4.0, 0.0, spring)).stiffness[(1, 1)] / 100.0;
+            assert!((found - expected).abs() < 1e-6, "{spring}: {found}");
         }
-        let torques = after(&mut StiffeningState::default(), 0.1, (4.0, -5.0, 3.0)).torques;
+        let torques = after(&mut StiffeningState::default(), 0.1, (4.0, -5.0, 0.2)).torques;
         assert!((torques + Vector3::x() * (LARGEST * 20.0)).amax() < 1e-12, "{torques}");
     }
 
     #[test]
     fn below_750_hz_the_stiffness_does_not_change() {
-        let numbers = |rate| Numbers::new(&ConfiguredController::default(), rate).expect("usable numbers");
-        assert!(Stiffening::new(&Vector3::repeat(20.0), &numbers(500.0), 500.0).is_none());
-        assert!(Stiffening::new(&Vector3::repeat(20.0), &numbers(RATE), RATE).is_some());
+        let law = |rate| Stiffening::new(Matrix3::identity(), &Vector3::repeat(20.0), true, &numbers(rate), rate);
+        assert!(law(500.0).is_none());
+        assert!(law(RATE).is_some());
     }
 }
