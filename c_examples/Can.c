@@ -39,12 +39,12 @@ static void start_far_end(const char *program, const char *place, pid_t *process
     snprintf(path, sizeof path, "%.*sCanDrives", end != NULL ? (int)(end - program) + 1 : 0, program);
     *process = fork();
     if (*process < 0) {
-        perror("fork");
+        fprintf(stderr, "CanDrives cannot be started (%s): end other programs\n", strerror(errno));
         exit(1);
     }
     if (*process == 0) {
         execl(path, path, place, (char *)NULL);
-        perror(path);
+        fprintf(stderr, "%s cannot be started (%s): build it with make -C c_examples all\n", path, strerror(errno));
         _exit(1);
     }
 }
@@ -185,7 +185,7 @@ int main(int count, char **arguments)
     int i, result;
 
     if (count == 1 && if_nametoindex(place) == 0 && (place = mkdtemp(folder)) == NULL) {
-        perror(folder);
+        fprintf(stderr, "%s: %s: make /tmp writable, or name a CAN interface\n", folder, strerror(errno));
         return 1;
     }
     printf("CAN over %s\n", place);
@@ -195,7 +195,7 @@ int main(int count, char **arguments)
     for (i = 0; i < 3; i++) {
         drives[i].finger = i + 1;
         if (can_open(&drives[i].bus, place, i + 1) != 0) {
-            perror(place);
+            fprintf(stderr, "%s: %s: name a CAN interface that exists (ip link shows them)\n", place, strerror(errno));
             end_far_end(far_end, place == folder ? folder : NULL);
             return 1;
         }

@@ -88,7 +88,7 @@ template <class Struct, class Call> Struct filled(Call call)
 }
 
 /// The limit of a wait, s. A time of 0 or less, for example because a deadline has passed, means that the call does not
-/// wait. The C calls would refuse a negative time, or would wait without a limit.
+/// wait. With a negative time, sun2xp_wait would refuse the call, and sun2xp_wait_event would wait without a limit.
 inline double limit(seconds longest) noexcept { return longest.count() > 0 ? longest.count() : 0; }
 
 /// A function that gets events.

@@ -17,9 +17,9 @@ use std::ffi::{CStr, c_char, c_int};
 ///   keys     lines of TOML, in UTF-8, as under [finger.i] of the configuration file (docs/sun2xp.toml)
 ///
 /// All keys take effect together, within a cycle and without a jump in torque; other keys stay as they are.
-/// The change lasts until sun2xp_close: the file is not written. A new controller.law applies from the next
-/// set point or path in joint angles on. These keys cannot change while the hand is open: port, board, baud,
-/// reconnect, address, thread, core, priority, base, turn_degrees, encoder, motor.sign,
+/// The change lasts until sun2xp_close: the file is not written. A new controller.law applies to set points
+/// and paths in joint angles that are sent after the call. These keys cannot change while the hand is open:
+/// port, board, baud, reconnect, address, thread, core, priority, base, turn_degrees, encoder, motor.sign,
 /// motor.torque_limit, motor.torque_constant, stiffness.initial, touch and simulation.
 ///
 /// A configured stiffness.bound was chosen for the configured controller.scheme. If the lines in keys

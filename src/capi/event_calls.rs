@@ -169,8 +169,9 @@ pub extern "C" fn sun2xp_on_event(
 ///
 /// The descriptor is readable while sun2xp_next_event would return an event, and from the beginning of
 /// sun2xp_close on. A call of sun2xp_next_event that returns 0 makes the descriptor unreadable. So after each
-/// poll, call sun2xp_next_event until it returns 0. Do not read, write or close the descriptor. sun2xp_close
-/// closes the descriptor as its last step.
+/// poll, call sun2xp_next_event until it does not return 1. If it returns a negative number, the hand is being
+/// closed: do not poll again. Do not read, write or close the descriptor. sun2xp_close closes the descriptor as
+/// its last step.
 ///
 /// Returns the descriptor, the same one until sun2xp_close, or a negative number with
 ///   EPERM    forked child
@@ -183,11 +184,12 @@ pub extern "C" fn sun2xp_on_event(
 ///
 ///     struct pollfd ready;
 ///     struct sun2xp_event event;
+///     int next = 0;
 ///     ready.fd = sun2xp_event_descriptor(hand);
 ///     ready.events = POLLIN;
 ///     event.size = sizeof event;
-///     while (poll(&ready, 1, 1000) == 1)
-///         while (sun2xp_next_event(hand, &event) == 1)
+///     while (next >= 0 && poll(&ready, 1, 1000) == 1)
+///         while ((next = sun2xp_next_event(hand, &event)) == 1)
 ///             printf("event %d\n", event.kind);
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_event_descriptor(hand: *mut sun2xp_hand) -> c_int {

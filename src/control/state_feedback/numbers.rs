@@ -140,7 +140,7 @@ const CREEP_SLOPE: f64 = 25.0;
 const CREEP_BANDWIDTH: f64 = 20.0;
 
 /// See [`Numbers::stiffening`].
-const STIFFENING: f64 = 0.1;
+const STIFFENING: f64 = 0.07;
 /// See [`Numbers::identified_stiffening`]. With 0.1, steps of identified "worn" fingers settle in up to 256 ms.
 const IDENTIFIED_STIFFENING: f64 = 0.02;
 /// Rate below which the stiffness does not change, Hz. At 500 Hz, a loop with a stiff spring has little margin.

@@ -233,9 +233,10 @@ faults! {
         "Make sure that the finger can move safely, then recover it", [Recover];
     51 SetPointExpired "SET_POINT_EXPIRED" Fault Finger Time "set point expired",
         "the planner has sent nothing for longer than its last set point was valid, and either \
-         finger.motion.on_expiry is \"end state\" or finger.motion.end_state_ms has passed as well",
+         finger.motion.on_expiry is \"end state\" or finger.motion.end_state_ms (with sun2xp serve: \
+         serve.end_ms) has passed as well",
         "the planner hangs, is stopped in a debugger, or plans for longer than its set points are valid",
-        "Recover the finger and send set points in time, or raise finger.motion.valid_ms", [Recover];
+        "Recover the finger and send set points in time, or raise finger.motion.valid_ms or serve.end_ms", [Recover];
     52 ReflexStop "REFLEX_STOP" Fault Finger Nothing "stopped by a reflex",
         "the condition of a reflex was true, and its reaction stops the finger",
         "the planner installed the reflex for this case; the last event \"reflex fired\" has the number of the rule",

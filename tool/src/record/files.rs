@@ -37,7 +37,7 @@ pub struct Files {
     description: Description,
     controllers: BTreeMap<FingerNumber, VecDeque<Message>>,
     file: OpenFile,
-    /// The files that exist, the present one last.
+    /// The files that may still have to be deleted, from the oldest to the present one.
     paths: VecDeque<PathBuf>,
     /// Number of files that have been begun.
     begun: u32,
@@ -253,7 +253,9 @@ fn create_new(path: &Path) -> io::Result<File> {
 fn unwritten(path: &Path, error: &(dyn Error + 'static)) -> Failure {
     match successors(Some(error), |&error| error.source()).find_map(|error| error.downcast_ref::<io::Error>()) {
         Some(of_system) => unwritable(path, of_system),
-        None => format!("cannot write {}: {error}", ShownPath(path)).into(),
+        None => {
+            format!("cannot write {}: {error}. This is a defect of sun2xp: please report it", ShownPath(path)).into()
+        }
     }
 }
 

@@ -235,7 +235,8 @@ class RemoteHand(Reading):
         """Zeros gauges and encoders of a finger. Its joints may move between their stops. Waits up to ten minutes.
 
         Raises:
-            Error: the calibration failed. The previous calibration is in force.
+            Error: the calibration failed, and the previous one is in force. If the finger faulted after its zeros had
+                been found, or if the server could not store them, the new ones are in force.
         """
         self._check(finger)
         self._request("calibrate", finger, self._epoch(), timeout=_CALIBRATION_TIME)
