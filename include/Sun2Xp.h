@@ -69,9 +69,9 @@
                   hand.real_time is "enforce", and real time is not available (see OpenHand). The value is the
                   errno of the system, or the errno that describes the reason best
 
-   If several reasons apply, a call reports the one that its entry lists first. A call that succeeds
-   changes neither errno nor the text of HandError(). Arrays are read and written only during the call. An
-   output is written only if the call returns 0.
+   If several reasons apply, a call reports the one that its entry in chapter 8 lists first. A call that
+   succeeds changes neither errno nor the text of HandError(). Arrays are read and written only during the
+   call. An output is written only if the call returns 0.
 
    Planners of 1990 ignore return values. For them the first refusal of each kind in a process also
    prints one line on standard error. Refusals with the same cause are of one kind, whatever their
@@ -110,8 +110,10 @@
 
    for the element type of all its arrays. SendPos, SendKx and GetPos are then plain functions for
    that type; for double they are renamed to SendPosD, SendKxD and GetPosD. The planner's
-   declarations may be int SendPos(); or those below. For any other declarations, add -DSUN2XP_H,
-   which leaves out this header.
+   declarations may be int SendPos(); or those below. For any other declarations, compile instead with
+   -DSUN2XP_H, which leaves out this header. For double, this also needs
+
+       -DSendPos=SendPosD -DSendKx=SendKxD -DGetPos=GetPosD
 
    In the library, the symbols SendPos, SendKx and GetPos take float, and those ending in D take
    double. Compilers without _Generic (gcc before 4.9) choose by the size of an element: they treat

@@ -78,10 +78,11 @@
    only if the call succeeds. sun2xp_next_event and sun2xp_wait_event write their result only if they
    return 1.
 
-   The first refusal for each kind of reason in a process is also reported in a message, unless
-   hand.print_refusals is false for the hand of the call. If a call opens a hand, or if its handle belongs
-   to no open hand, the message appears even if this key is false. Messages go to the callback of
-   sun2xp_set_log if there is one, and otherwise to standard error.
+   The first refusal of each kind in a process is also reported in a message, unless hand.print_refusals is
+   false for the hand of the call. Refusals with the same cause are of one kind, whatever their arguments
+   were. If a call opens a hand, or if its handle belongs to no open hand, the message appears even if this
+   key is false. Messages go to the callback of sun2xp_set_log if there is one, and otherwise to standard
+   error.
 
 
    3. UNITS, FRAMES, ORDER
@@ -346,11 +347,11 @@ typedef void (*sun2xp_log)(int severity, const char *text, void *user);
    callback   function to call with each message; null: messages go to standard error again
    user       third argument of each call of the function
 
- With a callback the library prints nothing. Instead it calls the callback: in a thread that opens a hand,
- in a thread whose call is refused (the first refusal of each kind, unless hand.print_refusals is false),
- and in a thread of the library that is not real-time. Several threads may call the callback at the same
- time. The callback must make no calls of the library, and must return. The text is valid only until the
- callback returns. There is one callback for all hands of the process.
+ With a callback the library prints nothing. Instead it calls the callback: in a thread whose call is
+ refused (the first refusal of each kind, unless hand.print_refusals is false), and in threads of the
+ library that are not real-time, for example in the one that opens a hand. Several threads may call the
+ callback at the same time. The callback must make no calls of the library, and must return. The text is
+ valid only until the callback returns. There is one callback for all hands of the process.
 
  When sun2xp_set_log has returned, the previous callback is not running and is not called again. A message
  that comes while sun2xp_set_log waits for the previous callback is printed.
@@ -490,8 +491,9 @@ int sun2xp_open_named(const char *name, sun2xp_hand **hand);
  sun2xp_close - stop a hand
 
  Brings every finger to the configured end state (hand.end_state) and stops the servos, as CloseHand does.
- Afterwards the handle does not belong to an open hand, and no later hand has the same handle. At exit the
- library closes all hands that are still open.
+ Afterwards the handle does not belong to an open hand. No later hand has the same handle, except on 32-bit
+ machines, where a handle can occur again after 65536 further hands. At exit the library closes all hands
+ that are still open.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -514,21 +516,24 @@ sun2xp_hand *sun2xp_default_hand(void);
 
 /* ---- HARDWARE OF THE PROGRAM ------------------------------------------------------------------------------------- */
 
-#define SUN2XP_IO_WATCHDOG 1                /* The watchdog of the hardware has tripped since the last call of start. */
+#define SUN2XP_IO_WATCHDOG 1                /* The watchdog of the hardware has tripped since the library last called
+                                               start (struct sun2xp_io). */
 #define SUN2XP_IO_ENDED 2                   /* The hardware has entered the end state, but not by its watchdog. */
 #define SUN2XP_IO_EMERGENCY_STOP 4          /* The emergency stop is active. */
 #define SUN2XP_IO_SUPPLY 8                  /* The supply of the motors is missing or out of range. */
 #define SUN2XP_IO_DRIVER 16                 /* A motor driver reports a fault. */
 #define SUN2XP_IO_SENSOR 32                 /* An encoder or a gauge cannot be read. */
-#define SUN2XP_IO_ZERO_LOST 64              /* The encoder counts have lost their reference to the zero. In the first
-                                               sample this bit does not fault the finger: a message reports it, and
-                                               the finger must be zeroed (sun2xp_zero). */
+#define SUN2XP_IO_ZERO_LOST 64              /* The encoder counts have lost their reference to the zero. If start
+                                               sets this bit when the hand is opened, the finger does not fault while
+                                               the bit stays set: a message reports it, and the finger must be zeroed
+                                               (sun2xp_zero). */
 
 /* The terms under which the motors of a finger may move. The library sets all members. */
 struct sun2xp_io_terms {
     size_t size;                            /* sizeof (struct sun2xp_io_terms) in the library. */
     int finger;                             /* Finger, 1 to 3. */
-    int hold;                               /* 1: the end state is "hold"; 0: it is "release". */
+    int hold;                               /* 1: the end state is "hold"; 0: it is "release". sun2xp_stop_all
+                                               explains both. */
     double rate;                            /* Exchanges per second, Hz. */
     double watchdog;                        /* Time without an exchange after which the hardware must enter the end
                                                state by itself, s. */
@@ -549,16 +554,16 @@ struct sun2xp_io_sample {
     double tensions[4];                     /* Tensions at the gauges, N. */
     int encoders[4];                        /* Counts of the motor encoders. */
     unsigned int faults;                    /* Sum of the SUN2XP_IO_... bits of all present faults. Each bit stops
-                                               the finger with a fault, except SUN2XP_IO_ZERO_LOST in the first
-                                               sample. */
+                                               the finger with a fault, except SUN2XP_IO_ZERO_LOST if it has been set
+                                               since start was called at opening. */
 };
 
 /* The command of one exchange. The library sets all members. */
 struct sun2xp_io_command {
     size_t size;                            /* sizeof (struct sun2xp_io_command) in the library. */
-    unsigned long number;                   /* Number of the command, counted from the last call of start. An
-                                               exchange that is repeated after an error (only with in_step) has the
-                                               same number again. */
+    unsigned long number;                   /* Number of the command, counted from the last call of start. If an
+                                               exchange fails and the member in_step of struct sun2xp_io is 1, the
+                                               library repeats the exchange with the same number. */
     int enable;                             /* 0: the motors must be off, and the torques are zero. */
     double torques[4];                      /* Torques of motors 1 to 4, N cm. */
     double deadline;                        /* Time by which the exchange should return, s of CLOCK_MONOTONIC. */
@@ -600,8 +605,9 @@ struct sun2xp_io {
              after the deadline, the sample is used nevertheless. If the next period has begun by then,
              the cycle counts as an overrun.
    stop      in the servo thread. At a recovery, or when opening is refused, it may be called in a thread
-             that is not real-time. After a failure, the library calls stop again, at least twice if the
-             failures persist. Every start that has succeeded is followed by a stop.
+             that is not real-time. If stop fails, the library calls it again. If it keeps failing, the
+             library calls it at least three times in all. Every start that has succeeded is followed by
+             a stop.
 
  Calls for one finger never overlap. Calls for different fingers may overlap. If the fingers share a
  servo thread (finger.thread), their exchanges do not overlap, but a start, or the stop of a recovery,
@@ -842,8 +848,9 @@ int sun2xp_tip(sun2xp_hand *hand, int finger, struct sun2xp_tip *tip);
                 3   hard finger with friction: three forces; the same as sun2xp_send_stiffness
                 4   soft finger: three forces and a moment about the normal
    stiffness    a matrix of dimensions x dimensions, row by row. 1: N/cm along the normal. 3 and 4: rows
-                and columns 0 to 2 are x, y, z of the finger's frame, N/cm. 4: row and column 3 are the
-                rotation about the normal: N cm/rad on the diagonal, N/rad elsewhere
+                and columns 0 to 2 are x, y, z of the finger's frame, N/cm. 4: row 3 and column 3 belong
+                to the rotation about the normal: the entry on the diagonal is in N cm/rad, the other
+                entries of this row and column are in N/rad
    normal       normal[3]: the contact normal in the finger's frame, of any length but zero. Not used
                 for 3 dimensions, and may be null there
 
@@ -1031,8 +1038,9 @@ struct sun2xp_set_point {
  refused, no finger gets its command.
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
- "board" the periods of the threads follow different clocks. Then a finger may follow one period later.
- This happens about once for every period by which two of the clocks drift apart.
+ "board" the periods of the threads follow different clocks. Then a finger may follow a single group one
+ period later. This happens at most about once in the time in which the drift between two of the clocks
+ grows by one period.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1071,14 +1079,14 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
    seconds   longest time to wait
 
  If the condition holds already, the call returns at once. With SUN2XP_ALL_FINGERS the condition must hold
- for all fingers at the same time. A finger that an object blocks settles without arriving. If the set
- point is a position of the tip, the finger arrives at the joint angles that were computed for it. If a
- reflex has replaced the set point that was sent last, the condition must hold for the set point of the
- reflex. The same applies if the finger ignored the set point because a reflex inhibits set points for
- some time. The wait then returns only after this time. If the set point that was sent last has expired,
- the condition must hold for the pose that the finger holds since then. The events
- SUN2XP_EVENT_REFLEX_FIRED and SUN2XP_EVENT_EXPIRED say that this has happened. Other calls work during
- the wait. sun2xp_close works too, and then the wait is refused.
+ for each finger and its own set point. The fingers may arrive or settle in different cycles. A finger that
+ an object blocks settles without arriving. If the set point is a position of the tip, the finger arrives
+ at the joint angles that were computed for it. If a reflex has replaced the set point that was sent last,
+ the condition must hold for the set point of the reflex. The same applies if the finger ignored the set
+ point because a reflex inhibits set points for some time. The wait then returns only after this time. If
+ the set point that was sent last has expired, the condition must hold for the pose that the finger holds
+ since then. The events SUN2XP_EVENT_REFLEX_FIRED and SUN2XP_EVENT_EXPIRED say that this has happened.
+ Other calls work during the wait. sun2xp_close works too, and then the wait is refused.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1155,8 +1163,8 @@ struct sun2xp_path_pose {
             tip positions are mixed; an entry is NaN or infinite
    EDOM     a Kx is not symmetric, or has a negative eigenvalue
    ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is too
-            stiff, or the path is too fast; sun2xp_error_text names the pose, and the factor by which the
-            path must be slower
+            stiff, or the path is too fast; sun2xp_error_text names the pose. If the path is too
+            fast, the text also gives the factor by which it must be slower
    EIO      the finger is faulted
    EBUSY    the finger is being recovered or calibrated, or is limp
    EAGAIN   during the call the finger has left its pose, because it was recovered or calibrated, its set
@@ -1555,9 +1563,9 @@ int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
    keys     lines of TOML, in UTF-8, as under [finger.i] of the configuration file (docs/sun2xp.toml)
 
  All keys take effect together, within a cycle and without a jump in torque; other keys stay as they are.
- The change lasts until sun2xp_close: the file is not written. A new controller.law applies from the next
- set point or path in joint angles on. These keys cannot change while the hand is open: port, board, baud,
- reconnect, address, thread, core, priority, base, turn_degrees, encoder, motor.sign,
+ The change lasts until sun2xp_close: the file is not written. A new controller.law applies to set points
+ and paths in joint angles that are sent after the call. These keys cannot change while the hand is open:
+ port, board, baud, reconnect, address, thread, core, priority, base, turn_degrees, encoder, motor.sign,
  motor.torque_limit, motor.torque_constant, stiffness.initial, touch and simulation.
 
  A configured stiffness.bound was chosen for the configured controller.scheme. If the lines in keys
@@ -1565,12 +1573,11 @@ int sun2xp_push(sun2xp_hand *hand, int finger, const double *force);
  default bound applies. If the bound is lowered while a path changes Kx, the Kx of the end of the path
  takes effect at once.
 
- If the path that was sent last has not ended, the call checks the whole path against the new limits,
- including the part that the finger has already followed. The new limits of finger.motion are not checked,
- because they apply only to later paths. With hand.out_of_range = "clamp" a path outside the new joint
- limits ends, and the finger moves to the end of the path at once. A finger that was beyond a joint limit
- when it became a spring may still hold its pose there. The call accepts this pose, unless the new limit is
- narrower.
+ If the path that was sent last has not ended, the call checks the whole path against the new limits, except
+ those of finger.motion, which apply only to later paths. The check includes the part that the finger has
+ already followed. With hand.out_of_range = "clamp" a path outside the new joint limits ends, and the finger
+ moves to the end of the path at once. A finger that was beyond a joint limit when it became a spring may
+ still hold its pose there. The call accepts this pose, unless the new limit is narrower.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1642,10 +1649,10 @@ struct sun2xp_status {
                                                sun2xp_timing.foreign_frames. */
     double calibration;                     /* Progress of a calibration, 0 to 1. It is 0 if no calibration runs. */
     int memory_locked;                      /* 1: sun2xp_open has locked the memory of every servo thread, so that no
-                                               servo thread waits for a page. 0: the memory of at least one servo
-                                               thread is not locked. If the planner calls munlockall later, this
-                                               memory is unlocked too, and this member stays 1. If the hand is closed
-                                               and opened again, sun2xp_open locks the memory again. */
+                                               servo thread waits for a page. If the planner calls munlockall later,
+                                               this memory is unlocked too, and this member stays 1. If the hand is
+                                               closed and opened again, sun2xp_open locks the memory again. 0: the
+                                               memory of at least one servo thread is not locked. */
     int on_core;                            /* 1: each servo thread with a configured core runs on this core. */
     double stiffness_scale;                 /* Fraction of Kx in force in the last cycle, 0 to 1. */
 };
@@ -1978,12 +1985,13 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
 
    finger   1 to 3
 
- Slackens the tendons and reads the gauges. Then finds the zero of the encoders by finger.zeroing.method:
+ Slackens the tendons and reads the gauges. Finds the zero of the encoders by finger.zeroing.method:
 
    "pose"   The finger must be in the pose finger.zeroing.pose_degrees, and must stand still there from
             the start of the call until its encoders have been read. This takes 0.3 s for a finger
-            that is a spring, and some seconds for a limp finger. A jig or a person must hold a limp
-            finger. A finger that moves is refused, and so is a limp finger that nothing holds.
+            that is a spring, whose encoders are read before its tendons are slackened, and some
+            seconds for a limp finger. A jig or a person must hold a limp finger. A finger that moves
+            is refused, and so is a limp finger that nothing holds.
    "stops"  Each joint moves slowly against both of its stops. The finger needs room for that.
    "kept"   The configured zero stays, if the board reports that its counts are still valid.
 
@@ -2017,8 +2025,8 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
               had been found before the fault, they are in force
    ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
    EACCES, ENOSPC, EBUSY ...  the configuration file cannot be written, or another process has kept it
-              locked for 30 s; the zeros are in force until sun2xp_close, and the next calibration of the
-              finger that can be stored stores them
+              locked for 30 s. The zeros are in force until sun2xp_close. If the results of a later
+              calibration of this finger can be stored, these zeros are stored with them
 
  Threads: any.
 
@@ -2035,7 +2043,7 @@ int sun2xp_zero(sun2xp_hand *hand, int finger);
    finger   1 to 3; it must have been zeroed
 
  Moves the joints back and forth around their present angles, moves each joint between its two stops,
- presses against the lower stops with up to 0.6 of the largest tension, and returns to the start.
+ presses against the lower stops with up to 0.6 of finger.tendon.maximum, and returns to the start.
  Measures the gains of the gauges, the stiffness of each tendon, its moment arms, and the friction of
  motors, conduits, pulleys and joints. The results take effect and are stored like those of sun2xp_zero.
  Takes about 80 s, and needs free space over the whole range of the joints.
@@ -2185,8 +2193,9 @@ int sun2xp_on_event(sun2xp_hand *hand, void (*callback)(const struct sun2xp_even
 
  The descriptor is readable while sun2xp_next_event would return an event, and from the beginning of
  sun2xp_close on. A call of sun2xp_next_event that returns 0 makes the descriptor unreadable. So after each
- poll, call sun2xp_next_event until it returns 0. Do not read, write or close the descriptor. sun2xp_close
- closes the descriptor as its last step.
+ poll, call sun2xp_next_event until it does not return 1. If it returns a negative number, the hand is being
+ closed: do not poll again. Do not read, write or close the descriptor. sun2xp_close closes the descriptor as
+ its last step.
 
  Returns the descriptor, the same one until sun2xp_close, or a negative number with
    EPERM    forked child
@@ -2199,11 +2208,12 @@ int sun2xp_on_event(sun2xp_hand *hand, void (*callback)(const struct sun2xp_even
 
      struct pollfd ready;
      struct sun2xp_event event;
+     int next = 0;
      ready.fd = sun2xp_event_descriptor(hand);
      ready.events = POLLIN;
      event.size = sizeof event;
-     while (poll(&ready, 1, 1000) == 1)
-         while (sun2xp_next_event(hand, &event) == 1)
+     while (next >= 0 && poll(&ready, 1, 1000) == 1)
+         while ((next = sun2xp_next_event(hand, &event)) == 1)
              printf("event %d\n", event.kind);
  */
 int sun2xp_event_descriptor(sun2xp_hand *hand);
@@ -2232,7 +2242,8 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 #define SUN2XP_THEN_GRIP 5                  /* The tip presses harder. Its force rises by the amount in the member
                                                value, but to at most the amount in the member largest, both in N.
                                                This needs a Kx without an eigenvalue of 0. */
-#define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio value, or the nearest admitted ratio. */
+#define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio in the member value, or the nearest
+                                               admitted ratio. */
 
 /*
  A rule for sun2xp_install_reflex. Members that its condition and its reaction do not use are ignored.
@@ -2338,8 +2349,9 @@ int sun2xp_remove_reflex(sun2xp_hand *hand, int finger, int number);
  Result of sun2xp_record: one cycle of a finger, from the black box.
 
  The library stores all cycles from the member oldest to the member newest. The controller does not run
- in a cycle in which the finger faults before the controller's turn, or in which a simulated finger does
- not answer. The member computed is then 0, and so are all members after it.
+ in a cycle in which the finger faults before the controller's turn, or in which a built-in simulated
+ finger or hardware with in_step does not answer. The member computed is then 0, and so are all members
+ after it.
  */
 struct sun2xp_record {
     size_t size;                            /* sizeof (struct sun2xp_record), set before the call. */
