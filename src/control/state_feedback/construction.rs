@@ -167,6 +167,12 @@ fn torques_at_pretension(finger: &ConfiguredFinger, tendons: &Tendons) -> Vector
     tendons.r.abs() * tendons.pretension(finger.tendon.minimum)
 }
 
+fn stiffening(finger: &ConfiguredFinger, tendons: &Tendons, numbers: &Numbers, rate: f64) -> Option<Stiffening> {
+    let identified = finger.friction.pulley.iter().any(|&pulley| pulley > 0.0);
+    let torques = torques_at_pretension(finger, tendons);
+    Stiffening::new(stiffness_of_tendons(finger, tendons), &torques, identified, numbers, rate)
+}
+
 impl StateFeedback {
     /// Constructs the controller with these numbers. `maximum` is the largest permitted tension of each tendon, N.
     /// `set_point_speed` is in rad/s, and `rate` is in Hz.
@@ -208,13 +214,7 @@ impl StateFeedback {
             tension_dither,
             friction: FrictionFeedForward { friction, share: numbers.friction_share },
             pulleys: PulleyFeedForward::new(&finger.friction.pulley.into(), numbers, rate),
-            stiffening: Stiffening::new(
-                stiffness_of_tendons(finger, tendons),
-                &torques_at_pretension(finger, tendons),
-                finger.friction.pulley.iter().any(|&pulley| pulley > 0.0),
-                numbers,
-                rate,
-            ),
+            stiffening: stiffening(finger, tendons, numbers, rate),
             r,
             pseudo_inverse,
             common: tendons.pretension(1.0).normalize(),

@@ -31,6 +31,10 @@ const STAYING: f64 = 0.1;
 /// Time constant with which the envelope decays, s: some periods of the dither.
 const DECAYING: f64 = 0.08;
 
+/// Longest period of the servo with which `DitherBurst::waits` is ever true, s. At 500 Hz, nominal fingers at walls
+/// moved by 65 um rms.
+const LONGEST_PERIOD: f64 = 1.0 / 750.0;
+
 /// Computes the envelope from the reference and the torque of the spring. The dither itself cannot trigger it, because
 /// the rates of the reference do not depend on measurements.
 #[derive(Clone, Debug)]
@@ -73,7 +77,7 @@ impl DitherBurst {
     /// almost slack. `rates` are the joint rates of the reference, rad/s. The result is valid while the envelope is
     /// small, because the burst also counts as awaited while the envelope rises.
     pub fn waits(&self, state: &DitherBurstState, rates: &Vector3<f64>) -> bool {
-        state.awaited && rates.amax() < SLOW
+        state.awaited && rates.amax() < SLOW && self.period <= LONGEST_PERIOD
     }
 
     /// Returns the envelope. `rates` are the joint rates of the reference, rad/s. `sprung` is the joint torque of the

@@ -18,9 +18,11 @@ use crate::control::spring::admissible_stiffness::UsedShares;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Largest share of R k R^T that the spring, the soft joint limits and the additional stiffness use together. With 0.68,
-/// steps of fingers with rotors of half the inertia did not settle in some poses.
+/// Largest share of R k R^T that the spring, the soft joint limits and the additional stiffness use together. With
+/// 0.68, steps of fingers with rotors of half the inertia did not settle in some poses.
 const SUPPORTED: f64 = 0.57;
+/// Largest c, as a fraction of the share that the spring uses. A limp finger stays limp.
+const LARGEST_RATIO: f64 = 0.5;
 /// Largest additional torque, as a fraction of the sum of the magnitudes of the torques that the four tendons exert on
 /// the joint at the pretension. An object in the way of the finger meets at most this additional torque.
 const LARGEST: f64 = 0.05;
@@ -37,8 +39,8 @@ const ENDED: f64 = 1e-3;
 const RESTING: f64 = 0.1;
 
 /// Adds c R k R^T (d - d_0) to the torque of the spring. d is the deflection of the joints, and d_0 that before the
-/// motion. d_0 is not zero if an object loads the finger, or if gauges or moment arms are wrong. Without d_0, the finger
-/// would move when c rises.
+/// motion. d_0 is not zero if an object loads the finger, or if gauges or moment arms are wrong. Without d_0, the
+/// finger would move when c rises.
 #[derive(Clone, Debug)]
 pub(super) struct Stiffening {
     /// R k R^T, N cm/rad.
@@ -112,7 +114,8 @@ impl Stiffening {
         let change = deflection - state.rest;
         state.rest += change * (self.resting * (1.0 - state.envelope));
         // In this order, a share that is NaN gives zero.
-        let share = state.envelope * (SUPPORTED - used.spring - used.limits).max(0.0).min(self.most);
+        let most = self.most.min(LARGEST_RATIO * used.spring);
+        let share = state.envelope * (SUPPORTED - used.spring - used.limits).max(0.0).min(most);
         let stiffness = self.tendons * share;
         let torques = (stiffness * change).zip_map(&self.largest, |torque, largest| torque.clamp(-largest, largest));
         Added { stiffness, torques }
@@ -156,7 +159,7 @@ mod tests {
 
     #[test]
     fn the_pose_and_the_torques_of_the_tendons_limit_what_is_added() {
-        for (spring, expected) in [(0.5, 0.07), (0.6, 0.0), (0.0, 0.1), (f64::NAN, 0.0)] {
+        for (spring, expected) in [(0.5, 0.07), (0.6, 0.0), (0.1, 0.05), (0.0, 0.0), (f64::NAN, 0.0)] {
             let found = after(&mut StiffeningState::default(), 0.2, (4.0, 0.0, spring)).stiffness[(1, 1)] / 100.0;
             assert!((found - expected).abs() < 1e-6, "{spring}: {found}");
         }

@@ -235,8 +235,7 @@ class RemoteHand(Reading):
         """Zeros gauges and encoders of a finger. Its joints may move between their stops. Waits up to ten minutes.
 
         Raises:
-            Error: the calibration failed, and the previous one is in force. If the finger faulted after its zeros had
-                been found, or if the server could not store them, the new ones are in force.
+            Error: the calibration failed. The previous one is in force, or the new one if only storing it failed.
         """
         self._check(finger)
         self._request("calibrate", finger, self._epoch(), timeout=_CALIBRATION_TIME)
