@@ -113,6 +113,9 @@ impl Stiffening {
         }
         let change = deflection - state.rest;
         state.rest += change * (self.resting * (1.0 - state.envelope));
+        if state.envelope == 0.0 {
+            return Added::default();
+        }
         // In this order, a share that is NaN gives zero.
         let most = self.most.min(LARGEST_RATIO * used.spring);
         let share = state.envelope * (SUPPORTED - used.spring - used.limits).max(0.0).min(most);
