@@ -98,8 +98,8 @@ impl Hardware {
         self.properties.in_step
     }
 
-    /// Returns the status of a Reply. *Zero valid* cannot tell of a loss if it was clear at opening. A serial board
-    /// whose counts begin again has also lost its terms, so *configured* is clear after a loss.
+    /// Returns the status of a Reply. If the flag *zero valid* is clear from opening on, it cannot show a later loss of
+    /// the counts. *Configured* is therefore clear after a loss, as on a serial board that restarts.
     pub fn status(&self) -> Status {
         let configured = if self.lost_since_open { Status::default() } else { Status::CONFIGURED };
         let state = match self.state {

@@ -143,8 +143,6 @@ const CREEP_BANDWIDTH: f64 = 20.0;
 const STIFFENING: f64 = 0.07;
 /// See [`Numbers::identified_stiffening`]. With 0.1, steps of identified "worn" fingers settle in up to 256 ms.
 const IDENTIFIED_STIFFENING: f64 = 0.02;
-/// Rate below which the stiffness does not change, Hz. At 500 Hz, a loop with a stiff spring has little margin.
-const LEAST_STIFFENING_RATE: f64 = 750.0;
 
 /// See [`Numbers::friction_share`]. With half of the configured friction, no finger hunted, although the friction of
 /// the fingers was 0 to 3 times the configured one.
@@ -280,8 +278,8 @@ impl Numbers {
             pulley_creep: PULLEY_CREEP,
             creep_slope: CREEP_SLOPE,
             creep_bandwidth: CREEP_BANDWIDTH,
-            stiffening: if rate < LEAST_STIFFENING_RATE { 0.0 } else { STIFFENING },
-            identified_stiffening: if rate < LEAST_STIFFENING_RATE { 0.0 } else { IDENTIFIED_STIFFENING },
+            stiffening: STIFFENING,
+            identified_stiffening: IDENTIFIED_STIFFENING,
         };
         positive("controller.inertia_gain", &[numbers.inertia_gain])?;
         positive("controller.damping_ratio", &[numbers.damping_ratio])?;

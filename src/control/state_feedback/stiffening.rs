@@ -23,6 +23,8 @@ use serde::{Deserialize, Serialize};
 const SUPPORTED: f64 = 0.57;
 /// Largest c, as a fraction of the share that the spring uses. A limp finger stays limp.
 const LARGEST_RATIO: f64 = 0.5;
+/// Rate below which the stiffness does not change, Hz. At 500 Hz, a loop with a stiff spring has little margin.
+const LEAST_RATE: f64 = 750.0;
 /// Largest additional torque, as a fraction of the sum of the magnitudes of the torques that the four tendons exert on
 /// the joint at the pretension. An object in the way of the finger meets at most this additional torque.
 const LARGEST: f64 = 0.05;
@@ -85,7 +87,7 @@ impl Stiffening {
         rate: f64,
     ) -> Option<Self> {
         let most = if identified { numbers.identified_stiffening } else { numbers.stiffening };
-        (most > 0.0).then(|| Self {
+        (most > 0.0 && rate >= LEAST_RATE).then(|| Self {
             tendons,
             most,
             largest: torques * LARGEST,
@@ -116,8 +118,8 @@ impl Stiffening {
         if state.envelope == 0.0 {
             return Added::default();
         }
-        // In this order, a share that is NaN gives zero.
         let most = self.most.min(LARGEST_RATIO * used.spring);
+        // In this order, a share that is NaN gives zero.
         let share = state.envelope * (SUPPORTED - used.spring - used.limits).max(0.0).min(most);
         let stiffness = self.tendons * share;
         let torques = (stiffness * change).zip_map(&self.largest, |torque, largest| torque.clamp(-largest, largest));
