@@ -129,7 +129,7 @@ pub(super) struct Flicker {
     /// Number of consecutive samples with the same count.
     pub same: [u32; 4],
     /// Whether the gauge is at the end of its range. It then shows a constant count although it is not dead.
-    saturated: [bool; 4],
+    pub saturated: [bool; 4],
 }
 
 impl Flicker {

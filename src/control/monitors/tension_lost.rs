@@ -28,6 +28,16 @@ const GONE: f64 = 0.1;
 /// is not zero on a finger with friction along its tendons or with inexact parameters.
 const MISSED: f64 = 0.3;
 
+/// The part of a positive mean by which the tension must be missing in addition. Such a mean shows that the
+/// configuration indicates too much stretch. It indicates even more when the tensions of the other tendons rise.
+const INEXACT: f64 = 0.5;
+
+/// If another tendon became low within this time of a tendon that shows some tension, no tendon slips, s. The tendons
+/// of a finger whose clamp slips lose their tension one after the other. Two tendons of an intact finger lose it
+/// together in a push if the controller commands small pulls because the configuration is not exact. With a condition
+/// on the pull of the motor instead, a slipping tendon was reported after 56 ms.
+const TOGETHER: f64 = 0.004;
+
 /// Time constant of the mean of the missing tension before any tendon became low, s.
 const BEFORE: f64 = 0.02;
 
@@ -105,9 +115,10 @@ impl TensionLost {
                 memory.before[tendon] += change * (sample.elapsed / BEFORE).min(1.0);
             }
             let suddenly = missing.tensions[tendon] - memory.before[tendon];
+            let missed = self.missed + INEXACT * memory.before[tendon].max(0.0);
             memory.hung[tendon] = low && (memory.hung[tendon] || suddenly < -self.missed);
             let by_friction = if memory.hung[tendon] { missing.by_friction[tendon] } else { 0.0 };
-            memory.missed[tendon] = counted(memory.missed[tendon], low && suddenly > self.missed + by_friction);
+            memory.missed[tendon] = counted(memory.missed[tendon], low && suddenly > missed + by_friction);
             memory.gone[tendon] = counted(memory.gone[tendon], tension < self.gone);
             let impulse = memory.impulse[tendon] + tension * sample.elapsed;
             memory.impulse[tendon] = if low { impulse } else { 0.0 };
@@ -136,12 +147,66 @@ impl TensionLost {
             true => silent,
             false => others_hold,
         };
-        Some(if dead { gauge_stuck::alarm(sample, tendon) } else { self.lost(memory, tendon) })
+        if dead {
+            return Some(gauge_stuck::alarm(sample, tendon));
+        }
+        let together = (0..4).any(|other| {
+            let apart = memory.low[tendon] - memory.low[other];
+            other != tendon && memory.low[other] > 0.0 && apart.abs() <= TOGETHER
+        });
+        let lost = self.lost(memory, tendon);
+        (lost.symptom == Symptom::BrokenTendon || !together).then_some(lost)
     }
 
     fn lost(&self, memory: &Memory, tendon: usize) -> Alarm {
         let mean = memory.impulse[tendon] / memory.low[tendon];
         let symptom = if mean < self.gone { Symptom::BrokenTendon } else { Symptom::SlackTendon };
         Alarm { symptom, part: Part::tendon(tendon), value: mean }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::signals::{Feedback, Report};
+
+    /// Returns the fault of a finger whose tendons show 10 N and whose tendon 0 misses `before`, N. Then the tendons
+    /// show the tensions of `shown`, N, and tendon 0 misses the tension `then`, N. Each lasts 0.1 s, or until a fault.
+    fn fault(before: f64, then: f64, shown: [f64; 4]) -> Option<Symptom> {
+        let lost = TensionLost::new(&ConfiguredFinger::default());
+        let (feedback, report) = (Feedback::default(), Report::default());
+        let mut memory = Memory::default();
+        (0..200).find_map(|cycle| {
+            let (missing, tensions) = if cycle < 100 { (before, [10.0; 4]) } else { (then, shown) };
+            let sample = Sample {
+                feedback: &feedback,
+                report: &report,
+                tensions: tensions.into(),
+                travel: Vector4::zeros(),
+                turned: Vector4::zeros(),
+                pulls: Vector4::zeros(),
+                elapsed: 0.001,
+                full_scale: 4095,
+            };
+            // The gauges are known to flicker, so none of them is taken for a dead one.
+            let flicker = Flicker { known: [true; 4], same: [0; 4], saturated: [false; 4] };
+            let missing = Missing { tensions: Vector4::new(missing, 0.0, 0.0, 0.0), by_friction: Vector4::zeros() };
+            lost.watch(&mut memory, &sample, &missing, &flicker).fault.map(|alarm| alarm.symptom)
+        })
+    }
+
+    #[test]
+    fn on_a_finger_that_is_not_exact_more_tension_must_be_missing() {
+        let low = [1.1, 14.0, 15.0, 14.0];
+        assert_eq!(fault(0.0, 1.7, low), Some(Symptom::SlackTendon));
+        assert_eq!(fault(3.4, 3.4 + 1.7, low), None);
+        assert_eq!(fault(3.4, 3.4 + 4.0, low), Some(Symptom::SlackTendon));
+        assert_eq!(fault(-1.9, -1.9 + 1.7, low), Some(Symptom::SlackTendon));
+    }
+
+    #[test]
+    fn two_tendons_that_become_low_together_do_not_slip() {
+        assert_eq!(fault(0.0, 7.0, [1.1, 20.0, 20.0, 1.2]), None);
+        assert_eq!(fault(0.0, 7.0, [0.0, 20.0, 20.0, 1.2]), Some(Symptom::BrokenTendon));
     }
 }
