@@ -125,12 +125,15 @@ const DITHER_RISE: f64 = 2.0;
 /// See [`Numbers::drift_bandwidth`].
 const DRIFT_BANDWIDTH: f64 = 60.0;
 
-/// See [`Numbers::pulley_share`]. If the whole friction is fed forward and the pulley friction is 5 %, steps overshoot
-/// by 12 %. With 0.6, the slowest steps of identified "sheathed" fingers settle in 281 instead of 164 ms.
-const PULLEY_SHARE: f64 = 0.7;
+/// See [`Numbers::pulley_share`]. With 0.7, steps of identified "worn" fingers settle in 114 instead of 102 ms.
+/// [`IDENTIFIED_STIFFENING`] was 0.02 in this comparison.
+const PULLEY_SHARE: f64 = 0.8;
 
-/// See [`Numbers::pulley_creep`].
-const PULLEY_CREEP: f64 = 0.002;
+/// See [`Numbers::pulley_creep`]. The dither of the tensions keeps the tendons sliding on their pulleys, so the mean
+/// friction is small when the joints are slow. With 0.002 and a share of 0.7, steps of identified "sheathed" fingers
+/// overshoot by 5.3 instead of 2.6 %, and steps with a pulley friction of 10 % by 14.6 instead of 4.5 %. With 0.03, the
+/// slowest steps of "sheathed" fingers settle in 148 ms.
+const PULLEY_CREEP: f64 = 0.01;
 
 /// See [`Numbers::creep_slope`]. With 40, fingers are more exact, but a finger whose friction has vanished since it was
 /// identified moves by up to 104 um rms at walls.
@@ -141,8 +144,9 @@ const CREEP_BANDWIDTH: f64 = 20.0;
 
 /// See [`Numbers::stiffening`].
 const STIFFENING: f64 = 0.07;
-/// See [`Numbers::identified_stiffening`]. With 0.1, steps of identified "worn" fingers settle in up to 256 ms.
-const IDENTIFIED_STIFFENING: f64 = 0.02;
+/// See [`Numbers::identified_stiffening`]. With 0.02, steps of identified "cheap" fingers overshoot by 4.2 instead of
+/// 3.8 %. With 0.07, steps of identified "worn" fingers settle in up to 211 ms.
+const IDENTIFIED_STIFFENING: f64 = 0.04;
 
 /// See [`Numbers::friction_share`]. With half of the configured friction, no finger hunted, although the friction of
 /// the fingers was 0 to 3 times the configured one.
