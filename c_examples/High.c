@@ -23,8 +23,8 @@ int main( )
     return 1;
   }
   for (i = 1; i <= 3; i++) {
-    SendKx(i, Kx);
-    SendPos(i, Pos[i - 1]);
+    if (SendKx(i, Kx) != 0 || SendPos(i, Pos[i - 1]) != 0)
+      fprintf(stderr, "%s\n", HandError( ));
   }
 
   arrived = 0;
@@ -33,10 +33,9 @@ int main( )
     arrived = 0;
     for (i = 1; i <= 3; i++) {
       int near = GetPos(i, Now) == 0;
-      for (joint = 0; joint < 3; joint++) {
+      for (joint = 0; near && joint < 3; joint++) {
         off = Now[joint] - Pos[i - 1][joint];
-        if (off > 0.02 || off < -0.02)
-          near = 0;
+        near = off <= 0.02 && off >= -0.02;
       }
       arrived += near;
     }

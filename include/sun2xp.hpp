@@ -98,7 +98,8 @@ using event_callback = std::function<void(const struct sun2xp_event &)>;
 /// and not the address of the callback, because a callback may be destroyed just when the library begins to call it: if
 /// the callback of one hand removes the callback of another hand, sun2xp_on_event does not wait.
 #if defined(__GNUC__)
-// One table for all shared objects of the process, because one shared object can move a `hand` to another.
+// All shared objects of the process share one table, because a `hand` that was made in one shared object can be moved
+// into another shared object.
 class __attribute__((visibility("default"))) callbacks {
 #else
 class callbacks {

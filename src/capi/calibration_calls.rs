@@ -40,16 +40,16 @@ use std::ffi::c_int;
 ///   ENODEV     no such hand, or it was closed meanwhile
 ///   EINVAL     no such finger; or the configuration file has changed, and the zeros do not fit it:
 ///              they are in force until sun2xp_close and not stored
-///   EIO        the finger is faulted. If it faulted after its zeros were found, they are in force, and the next
-///              sun2xp_zero or sun2xp_identify of the finger that succeeds stores them
+///   EIO        the finger is faulted. If it faulted after its zeros were found, they are in force. The next
+///              sun2xp_zero or sun2xp_identify that succeeds for this finger stores them
 ///   EBUSY      the finger is being calibrated or recovered already
 ///   ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
 ///              joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
-///              gives the remedy. The finger is then limp. There are two exceptions. (1) With "pose" the
-///              finger moved while its encoders were read, or with "kept" the counts were not valid: the
-///              finger is then a spring or limp, as before, but a path or an interpolated motion
-///              (finger.motion.interpolate_ms) that it followed has ended. (2) Another thread has recovered the
-///              finger from a fault during the calibration: the finger then holds its pose. If its new zeros
+///              gives the remedy. The finger is then limp, with two exceptions. (1) If the finger moved while
+///              its encoders were read ("pose"), or if the counts were not valid ("kept"), the finger stays a
+///              spring or limp, as it was before the call. But a path or an interpolated motion
+///              (finger.motion.interpolate_ms) that it followed has ended. (2) If another thread has recovered
+///              the finger from a fault during the calibration, the finger holds its pose. If its new zeros
 ///              had been found before the fault, they are in force
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
 ///   EACCES, ENOSPC, EBUSY ...  the configuration file cannot be written, or another process has kept it

@@ -132,7 +132,7 @@ pub unsafe extern "C" fn sun2xp_send_group(
 ///   ENODEV   no such hand, or it was closed meanwhile
 ///   EINVAL   no such finger; no such until; seconds is negative or NaN
 ///   EIO      a finger is faulted
-///   EBUSY    a finger is limp, is being calibrated, or is closed
+///   EBUSY    a finger is limp or is being calibrated, or the process is exiting (SUN2XP_STATE_CLOSED)
 ///   ETIMEDOUT  the time has expired; sun2xp_error_text names a finger that has not arrived or settled
 ///
 /// Threads: any.

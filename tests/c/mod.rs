@@ -14,7 +14,7 @@ mod tools;
 #[allow(unused_imports)]
 pub use tool::tool;
 #[allow(unused_imports)]
-pub use tools::{python, skip};
+pub use tools::{available, python, skip};
 
 use std::env;
 use std::fs;

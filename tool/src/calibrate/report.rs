@@ -63,7 +63,7 @@ impl Measured {
             }
             Findings::Identified(found) => vec![
                 new("gauge gain / configured gain", found.gauge_gain.as_slice(), 4),
-                new("motor torque by gauges / command", found.motor_ratio.as_slice(), 3),
+                new("motor torque that the gauges measure / commanded torque", found.motor_ratio.as_slice(), 3),
                 new("viscous joint friction, N cm s/rad", found.joint_viscous.as_slice(), 3),
                 new("residual of the motor travel, cm rms", &[found.travel_residual], 5),
             ],
