@@ -51,6 +51,7 @@ fn friction(stiffness: [f64; 4], conduit: f64) -> Identified {
         motor_ratio: [1.0; 4].into(),
         joint_coulomb: Vector3::repeat(0.05),
         joint_viscous: Vector3::repeat(0.05),
+        rotor_inertia: None,
         moment_arms: None,
     }
 }
