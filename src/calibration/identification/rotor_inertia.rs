@@ -225,6 +225,14 @@ mod tests {
     }
 
     #[test]
+    fn a_pull_that_is_not_held_gives_a_wrong_inertia() {
+        let oscillation = Motor { friction: 20.0, ..MOTOR }.oscillation(17);
+        let (held, not) = (oscillation.pull.held(oscillation.step), oscillation.pull);
+        let of = |pull: &Harmonic| pull.in_phase_with(&oscillation.travel)[0];
+        assert!((of(&held) / of(&not) - 1.0).abs() > 0.05, "{} {}", of(&held), of(&not));
+    }
+
+    #[test]
     fn a_motor_that_does_not_turn_has_no_inertia() {
         assert_eq!(Motor { amplitude: 1e-4, ..MOTOR }.found(), None);
     }
