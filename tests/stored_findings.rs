@@ -62,6 +62,7 @@ impl Worker {
                 motor_ratio: [1.0; 4].into(),
                 joint_coulomb: Vector3::repeat(number),
                 joint_viscous: Vector3::repeat(0.05),
+                rotor_inertia: None,
                 moment_arms: None,
             }),
             What::Bound => return Found::bound(10.0 + number, self.finger, configuration),

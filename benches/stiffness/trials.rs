@@ -90,6 +90,7 @@ pub fn trials(
             Some(Ok(found)) => {
                 (known.tendon, known.friction, known.gauge, known.geometry) =
                     (found.tendon.clone(), found.friction.clone(), found.gauge.clone(), found.geometry.clone());
+                known.motor = found.motor.clone();
             }
             None => {}
         }

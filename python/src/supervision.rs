@@ -158,6 +158,7 @@ fn identified<'py>(py: Python<'py>, found: &Identified) -> PyResult<Bound<'py, P
     fields.set_item("motor_ratio", vector(py, &found.motor_ratio.into()))?;
     fields.set_item("joint_coulomb", vector(py, &found.joint_coulomb.into()))?;
     fields.set_item("joint_viscous", vector(py, &found.joint_viscous.into()))?;
+    fields.set_item("rotor_inertia", found.rotor_inertia.map(|inertia| vector(py, &inertia.into())))?;
     let arms = found.moment_arms.map(|arms| matrix_of_arms(py, &arms.r)).transpose()?;
     fields.set_item("moment_arms", arms)?;
     records::record(py, "Identified", &fields)

@@ -43,7 +43,7 @@ pub struct Zeros {
     pub range_error: Option<Vector3<f64>>,
 }
 
-/// Friction, elasticity, gauge gains and moment arms.
+/// Friction, elasticity, gauge gains, rotor inertia and moment arms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Identified {
     /// `tendon.stiffness`, N/cm.
@@ -72,6 +72,9 @@ pub struct Identified {
     pub joint_coulomb: Vector3<f64>,
     /// Viscous friction of the joints, N cm s/rad.
     pub joint_viscous: Vector3<f64>,
+    /// `motor.inertia`, kg m^2, if it differs from the configured one. It is divided by the ratio of the true torque to
+    /// the commanded torque, because the controller computes with commanded torques.
+    pub rotor_inertia: Option<Vector4<f64>>,
     /// The moment arms, if they differ from the configured ones.
     pub moment_arms: Option<IdentifiedArms>,
 }
@@ -149,6 +152,9 @@ impl Findings {
                 finger.monitors.gauge_tolerance = found.tolerances.gauges;
                 if let Some(tolerance) = found.tolerances.moment_arms {
                     finger.monitors.moment_arm_tolerance = tolerance;
+                }
+                if let Some(inertia) = found.rotor_inertia {
+                    finger.motor.inertia = inertia.into();
                 }
                 if let Some(arms) = &found.moment_arms {
                     finger.geometry.r = arms.rows();

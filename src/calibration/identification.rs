@@ -1,14 +1,16 @@
-//! Identifies the gains of the gauges, the friction of joints, pulleys and motors, the stiffness of the
-//! tendons, and their moment arms.
+//! Identifies the gains of the gauges, the friction of joints, pulleys and motors, the inertia of the rotors, the
+//! stiffness of the tendons, and their moment arms.
 
 mod joint_friction;
 mod least_squares;
 mod moment_arms;
 mod motor_friction;
+mod oscillating;
 mod phases;
 mod pressing;
 mod ranges;
 mod results;
+mod rotor_inertia;
 mod shaking;
 mod tendon_stiffness;
 mod winding;
@@ -24,6 +26,7 @@ use joint_friction::{FreeFinger, JointFriction};
 use moment_arms::MomentArms;
 use motor_friction::{MotorFriction, MotorFrictionFound};
 use nalgebra::{RowVector4, Vector3, Vector4};
+use oscillating::Oscillating;
 use pressing::Pressing;
 use ranges::Ranges;
 use shaking::Shaking;
@@ -54,6 +57,10 @@ pub(super) struct Identification {
     /// The results for the free finger with the configured moment arms.
     free: FreeFinger,
     motors: MotorFrictionFound,
+    /// Configured inertia, kg m^2, and viscous friction, N m s/rad, of every rotor.
+    rotors: (Vector4<f64>, Vector4<f64>),
+    /// The inertia of every rotor that could be measured, kg m^2.
+    rotor_inertia: [Option<f64>; 4],
     moment_arms: Option<MomentArms>,
     phase: Phase,
 }
@@ -64,6 +71,7 @@ pub(super) struct Identification {
 enum Phase {
     Tighten(TakeUp),
     Shake { guide: JointGuide, shaking: Shaking },
+    Oscillate { guide: JointGuide, oscillating: Oscillating },
     Seek { guide: JointGuide, joint: usize, search: StopSearch },
     Range { guide: JointGuide, ranges: Ranges },
     Press { pressing: Pressing, stiffness: TendonStiffness },
@@ -96,6 +104,8 @@ impl Identification {
                 conduit: Vector4::zeros(),
                 ratio: Vector4::repeat(1.0),
             },
+            rotors: (finger.motor.inertia.into(), finger.motor.viscous_friction.into()),
+            rotor_inertia: [None; 4],
             moment_arms: None,
             phase: Phase::Tighten(TakeUp::new()),
         }
@@ -107,6 +117,7 @@ impl Identification {
         match self.phase {
             Phase::Tighten(take_up) => self.take_up_slack(take_up, instruments, sample),
             Phase::Shake { guide, shaking } => self.shake_joints(guide, shaking, instruments, sample),
+            Phase::Oscillate { guide, oscillating } => self.oscillate(guide, oscillating, instruments, sample),
             Phase::Seek { guide, joint, search } => self.seek_stop(guide, joint, search, instruments, sample),
             Phase::Range { guide, ranges } => self.move_between_stops(guide, ranges, instruments, sample),
             Phase::Press { pressing, stiffness } => self.press_against_stops(pressing, stiffness, instruments, sample),

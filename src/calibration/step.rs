@@ -35,6 +35,8 @@ pub enum Step {
     TryingMotors,
     /// Joints move back and forth at two levels of tension.
     MovingJoints,
+    /// The tensions oscillate while the joints are held.
+    OscillatingTensions,
     /// The finger presses against its stops.
     Pressing,
     /// The finger returns to its starting pose.
@@ -51,6 +53,7 @@ impl fmt::Display for Step {
             Step::SeekingStops => "moving the joints against their stops",
             Step::TryingMotors => "turning the motors one by one",
             Step::MovingJoints => "moving the joints",
+            Step::OscillatingTensions => "making the tensions oscillate",
             Step::Pressing => "pressing against the stops",
             Step::Returning => "returning to the initial pose",
         })

@@ -111,6 +111,9 @@ impl Found {
                 if let Some(tolerance) = found.tolerances.moment_arms {
                     values.push(value("monitors", "moment_arm_tolerance", Numbers::One(tolerance)));
                 }
+                if let Some(inertia) = &found.rotor_inertia {
+                    values.push(value("motor", "inertia", Numbers::Real(inertia.as_slice().into())));
+                }
                 if let Some(arms) = &found.moment_arms {
                     let rows = arms.rows().map(|row| row.to_vec());
                     values.push(value("geometry", "r", Numbers::Rows(rows.into())));

@@ -9,3 +9,20 @@ pub(crate) const STOP_STIFFNESS: f64 = 100.0;
 
 /// Damping of the mechanical stop of a joint, N m s/rad.
 pub(crate) const STOP_DAMPING: f64 = 0.02;
+
+/// Range of the inertia of a rotor, kg m^2.
+pub(crate) const SMALLEST_INERTIA: f64 = 1e-8;
+pub(crate) const LARGEST_INERTIA: f64 = 1.0;
+
+/// Returns the smallest inertia, kg m^2, of a rotor whose motion a step can integrate. `stiffness` is that of its
+/// tendon, N/cm, and `radius` is in cm.
+pub(crate) fn least_inertia(stiffness: f64, radius: f64) -> f64 {
+    // N/m and m.
+    (stiffness * 100.0) * (radius * 0.01 * STEP).powi(2)
+}
+
+/// Returns whether a step can integrate a rotor with this inertia, kg m^2, and this viscous friction, N m s/rad.
+pub(crate) fn resolves_rotor(inertia: f64, stiffness: f64, radius: f64, viscous: f64) -> bool {
+    let least = least_inertia(stiffness, radius);
+    inertia >= least && viscous <= (inertia - least) / (2.0 * STEP)
+}

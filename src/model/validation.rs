@@ -17,6 +17,7 @@ mod touch;
 use crate::model::configuration::{
     BAUDS, Configuration, ConfiguredFinger, ConfiguredHand, LARGEST_GRAVITY, RATES, RealTime, Unusable,
 };
+use crate::model::physics::{LARGEST_INERTIA, SMALLEST_INERTIA};
 use crate::model::{FingerNumber, TendonsError};
 use ranges::{each, path, unusable, within};
 use std::fmt;
@@ -238,7 +239,7 @@ impl ConfiguredFinger {
     }
 
     fn check_mechanics(&self) -> Result<(), Unusable> {
-        each("motor.inertia", &self.motor.inertia, 1e-8, 1.0, "kg m^2")?;
+        each("motor.inertia", &self.motor.inertia, SMALLEST_INERTIA, LARGEST_INERTIA, "kg m^2")?;
         each("motor.viscous_friction", &self.motor.viscous_friction, 0.0, 1.0, "N m s/rad")?;
         each("motor.continuous_torque", &self.motor.continuous_torque, 1e-3, 6000.0, "N cm")?;
         within("motor.thermal_time", self.motor.thermal_time, 0.1, 1e4, "s")?;

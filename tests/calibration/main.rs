@@ -3,6 +3,7 @@
 mod bench;
 mod exactness;
 mod identifying;
+mod inertia;
 mod pose;
 mod refusing;
 mod rubbing;

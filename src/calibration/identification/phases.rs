@@ -1,5 +1,6 @@
 //! The phases of identification.
 
+use super::oscillating::Oscillating;
 use super::pressing::Pressing;
 use super::ranges::Ranges;
 use super::shaking::{SWING, Shaking};
@@ -61,6 +62,33 @@ impl Identification {
         self.motors = shaking.motors.solve(&self.free.gains)?;
         (self.joint_friction, self.motor_friction) = (shaking.joints, shaking.motors);
         instruments.gain = self.free.gains;
+        if !Oscillating::possible(instruments) {
+            return self.begin_search(part, instruments, sample);
+        }
+        let guide = JointGuide::new(instruments, sample, SHAKING);
+        self.phase = Phase::Oscillate { guide, oscillating: Oscillating::new(instruments, &guide, shaking.centre) };
+        going(Step::OscillatingTensions, part, guide.activity(instruments, sample))
+    }
+
+    pub(super) fn oscillate(
+        &mut self,
+        mut guide: JointGuide,
+        mut oscillating: Oscillating,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        guide.measure(instruments, sample);
+        let done = oscillating.step(instruments, sample, &mut guide);
+        let part = 0.42 + 0.04 * oscillating.part();
+        if !done {
+            self.phase = Phase::Oscillate { guide, oscillating };
+            return going(Step::OscillatingTensions, part, guide.activity(instruments, sample));
+        }
+        self.rotor_inertia = oscillating.inertia(instruments, &self.motors.ratio);
+        self.begin_search(part, instruments, sample)
+    }
+
+    fn begin_search(&mut self, part: f64, instruments: &Instruments, sample: &Sample) -> Stepped {
         let guide = JointGuide::new(instruments, sample, self.torque + self.friction_torque(instruments));
         self.phase = self.search_of(0, guide);
         going(Step::SeekingStops, part, guide.activity(instruments, sample))
@@ -81,7 +109,7 @@ impl Identification {
             Some(_) if joint < 2 => self.search_of(joint + 1, guide),
             Some(_) => Phase::Range { guide, ranges: Ranges::new(&self.stops, self.stops_known) },
         };
-        going(Step::SeekingStops, 0.42 + 0.03 * joint as f64, guide.activity(instruments, sample))
+        going(Step::SeekingStops, 0.46 + 0.02 * joint as f64, guide.activity(instruments, sample))
     }
 
     pub(super) fn move_between_stops(
@@ -92,7 +120,7 @@ impl Identification {
         sample: &Sample,
     ) -> Stepped {
         guide.measure(instruments, sample);
-        let part = 0.51 + 0.14 * ranges.part();
+        let part = 0.52 + 0.13 * ranges.part();
         self.phase = match ranges.step(instruments, sample, &mut guide, self.speed, &self.motors.conduit)? {
             None => Phase::Range { guide, ranges },
             Some(arms) => {

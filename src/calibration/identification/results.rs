@@ -10,9 +10,13 @@ use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;
 use crate::control::monitors::SHARE_OF_FRICTION;
 use crate::model::configuration::GaugeReference;
+use crate::model::physics::{LARGEST_INERTIA, SMALLEST_INERTIA, resolves_rotor};
 use crate::model::{Part, Tendons};
 use nalgebra::Vector4;
 
+/// The configured inertia of a rotor stays if it differs from the measured one by at most this part. Lags of amplifiers
+/// and gauges of a millisecond change the measured inertia by about as much.
+const SIGNIFICANT_INERTIA: f64 = 0.05;
 /// Largest configurable tolerance of moment arms and gauges.
 const LARGEST_TOLERANCE: f64 = 0.5;
 
@@ -48,12 +52,30 @@ impl Identification {
             motor_ratio: motors.ratio.map(f64::recip),
             joint_coulomb: free.coulomb,
             joint_viscous: free.viscous,
+            rotor_inertia: None,
             moment_arms,
         };
-        Ok(match self.reference {
+        let found = match self.reference {
             GaugeReference::Gauges => found,
             GaugeReference::Motors => found.scaled(self.scale(&motors)),
-        })
+        };
+        Ok(Identified { rotor_inertia: self.other_inertia(&found.tendon_stiffness, &instruments.radius), ..found })
+    }
+
+    /// Returns the inertia of the rotors, kg m^2, if one differs from its configured value. A motor that could not be
+    /// measured keeps its configured value, and so does one whose inertia no configuration may have. `stiffness` is the
+    /// new one of the tendons, N/cm, and `radius` is in cm.
+    fn other_inertia(&self, stiffness: &Vector4<f64>, radius: &Vector4<f64>) -> Option<Vector4<f64>> {
+        let (configured, viscous) = &self.rotors;
+        let inertia = Vector4::from_fn(|motor, _| {
+            let differs = |found: &f64| (found / configured[motor] - 1.0).abs() > SIGNIFICANT_INERTIA;
+            let usable = |found: &f64| {
+                (SMALLEST_INERTIA..=LARGEST_INERTIA).contains(found)
+                    && resolves_rotor(*found, stiffness[motor], radius[motor], viscous[motor])
+            };
+            self.rotor_inertia[motor].filter(differs).filter(usable).unwrap_or(configured[motor])
+        });
+        (inertia != *configured).then_some(inertia)
     }
 
     /// Returns the factor from the tensions that the gauges show to those of the configured reference.
@@ -128,6 +150,25 @@ impl Identification {
 mod tests {
     use super::*;
     use crate::model::configuration::ConfiguredFinger;
+
+    /// Returns the inertia that replaces the configured 6e-7 kg m^2 of all rotors if these were measured.
+    fn replaced(measured: [Option<f64>; 4], stiffness: f64) -> Option<[f64; 4]> {
+        let finger = ConfiguredFinger::default();
+        let mut identification = Identification::new(&finger);
+        identification.rotor_inertia = measured;
+        let radius = Vector4::from(finger.geometry.motor_radius);
+        identification.other_inertia(&Vector4::repeat(stiffness), &radius).map(Into::into)
+    }
+
+    #[test]
+    fn only_an_inertia_that_differs_and_is_usable_replaces_the_configured_one() {
+        assert_eq!(replaced([None, Some(6.2e-7), Some(5.8e-7), None], 300.0), None);
+        let some = [Some(9e-7), Some(6.2e-7), None, Some(3e-7)];
+        assert_eq!(replaced(some, 300.0), Some([9e-7, 6e-7, 6e-7, 3e-7]));
+        assert_eq!(replaced([Some(1e-9), Some(2.0), Some(f64::NAN), None], 300.0), None);
+        // The step of a simulation is too long for such a light rotor on such a stiff tendon.
+        assert_eq!(replaced([Some(1e-8); 4], 1e5), None);
+    }
 
     #[test]
     fn the_tolerated_friction_is_in_the_scale_of_the_reference() {

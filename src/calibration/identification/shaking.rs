@@ -41,7 +41,8 @@ const BLOCKED: f64 = 0.5;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shaking {
-    centre: Vector3<f64>,
+    /// The pose about which the joints move, rad.
+    pub centre: Vector3<f64>,
     motion: usize,
     /// 0: to the start of the motion. 1 and 2: back and forth.
     leg: usize,
@@ -124,7 +125,7 @@ impl Shaking {
 }
 
 /// Changes the common tension toward its lower or higher level. Returns whether it has this level.
-fn change_level(guide: &mut JointGuide, instruments: &Instruments, high: bool) -> bool {
+pub(super) fn change_level(guide: &mut JointGuide, instruments: &Instruments, high: bool) -> bool {
     let level = if high {
         (HIGH * instruments.maximum / instruments.pretension.max() - 1.0).max(0.0) * instruments.minimum
     } else {

@@ -3,7 +3,7 @@
 use super::*;
 use crate::calibration::{Findings, Identified, IdentifiedArms, Signs, Tolerances, Zeros};
 use crate::model::FingerNumber;
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector4};
 use std::fs;
 
 /// Stores `found` in a file that contains `text`, and returns the text of the file afterwards.
@@ -51,6 +51,7 @@ fn friction(stiffness: [f64; 4], conduit: f64) -> Identified {
         motor_ratio: [1.0; 4].into(),
         joint_coulomb: Vector3::repeat(0.05),
         joint_viscous: Vector3::repeat(0.05),
+        rotor_inertia: None,
         moment_arms: None,
     }
 }
@@ -86,6 +87,16 @@ fn moment_arms_are_stored_with_the_zeros_that_belong_to_them() {
                     [0.0, 0.6324, -0.6324, 0.0]] # report";
         assert!(text.contains(rows) && text.contains("zero = [5, 6, 7, 8]"), "{text}");
     }
+}
+
+#[test]
+fn an_inertia_is_stored_only_if_it_differs() {
+    let same = stored(FILE_OF_TWO, &[by_identification(FingerNumber::TWO, friction([300.0; 4], 0.05))]);
+    assert!(!same.contains("inertia"), "{same}");
+    let rotor_inertia = Some(Vector4::new(9e-7, 6e-7, 8.5e-7, 7e-7));
+    let other = by_identification(FingerNumber::TWO, Identified { rotor_inertia, ..friction([300.0; 4], 0.05) });
+    let read = parse(&stored(FILE_OF_TWO, &[other]), FingersWithIo::default()).expect("usable");
+    assert_eq!(read.fingers[1].motor.inertia, [9e-7, 6e-7, 8.5e-7, 7e-7]);
 }
 
 /// The hand keeps all digits of the moment arms and of the friction. The file has six of them.

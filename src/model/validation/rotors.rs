@@ -2,7 +2,7 @@
 
 use super::ranges::unusable;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
-use crate::model::physics::STEP;
+use crate::model::physics::{STEP, least_inertia};
 
 impl ConfiguredFinger {
     /// Checks the rotors and tendons of the controller's model, with which the tools simulate every finger.
@@ -31,9 +31,7 @@ impl ConfiguredFinger {
     fn check_step(&self, keys: [&'static str; 3], values: [&[f64; 4]; 3]) -> Result<(), Unusable> {
         let ([key, key_of_stiffness, key_of_viscous], [inertia, stiffness, viscous]) = (keys, values);
         for motor in 0..4 {
-            // N/m and m.
-            let (stiffness, radius) = (stiffness[motor] * 100.0, self.geometry.motor_radius[motor] * 0.01);
-            let least = stiffness * (radius * STEP).powi(2);
+            let least = least_inertia(stiffness[motor], self.geometry.motor_radius[motor]);
             if inertia[motor] < least {
                 let reason = format!(
                     "{} kg m^2 of motor {} is too little for its {key_of_stiffness} and geometry.motor_radius: it must \

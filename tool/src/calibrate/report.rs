@@ -91,6 +91,7 @@ impl Calibrated {
         add("monitors.friction_tolerance", "", |finger| vec![finger.monitors.friction_tolerance], 3);
         add("monitors.moment_arm_tolerance", "", |finger| vec![finger.monitors.moment_arm_tolerance], 3);
         add("monitors.gauge_tolerance", "", |finger| vec![finger.monitors.gauge_tolerance], 3);
+        add("motor.inertia", "1e-7 kg m^2", |finger| finger.motor.inertia.map(|inertia| inertia * 1e7).to_vec(), 3);
         for (row, (configured, found)) in before.geometry.r.iter().zip(&after.geometry.r).enumerate() {
             let (configured, found) = (configured.to_vec(), found.to_vec());
             self.values.push(Value {

@@ -83,6 +83,10 @@ fn report(outcome: &mut Outcome, found: &Identified) {
             outcome.wrong(Wrong::GaugeScale(motor + 1, 1.0 / found.gauge_gain[motor]));
         }
     }
+    if let Some(inertia) = found.rotor_inertia {
+        let inertia = list((inertia * 1e7).as_slice(), 2);
+        outcome.found(format!("the inertia of the rotors differs from motor.inertia: {inertia} 1e-7 kg m^2 is stored"));
+    }
     if found.moment_arms.is_some() {
         outcome.found("the moment arms differ from geometry.r: the measured ones are stored");
     }

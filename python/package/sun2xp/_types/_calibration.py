@@ -37,7 +37,7 @@ class Zeros:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Identified:
-    """Friction and elasticity of a finger."""
+    """Friction, elasticity and rotor inertia of a finger."""
 
     #: Stiffness of each tendon, `tendon.stiffness`, N/cm: shape (4,).
     tendon_stiffness: Array
@@ -60,5 +60,7 @@ class Identified:
     joint_coulomb: Array
     #: Viscous friction of the joints, N cm s/rad: shape (3,).
     joint_viscous: Array
+    #: Measured inertia of each rotor, `motor.inertia`, kg m^2: shape (4,). None if it agrees with the configured one.
+    rotor_inertia: Optional[Array]
     #: Measured moment arms `geometry.r`, cm: shape (3, 4). None if they agree with the configured ones.
     moment_arms: Optional[Array]
