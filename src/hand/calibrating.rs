@@ -204,8 +204,8 @@ impl Hand {
         self.calibrate(finger, Task::Zero, progress)
     }
 
-    /// Measures gauge gains, friction, moment arms and tendon stiffness of finger 1, 2 or 3. The finger must have been
-    /// zeroed.
+    /// Measures gauge gains, friction, moment arms, tendon stiffness and rotor inertia of finger 1, 2 or 3. The finger
+    /// must have been zeroed.
     ///
     /// # Errors
     /// Returns the errors of [`Calibrating::begin`] and [`Calibrating::poll`].

@@ -92,9 +92,9 @@ class Hand(_sun2xp.Hand):
         return self._calibrated(finger, "zero", progress, store)
 
     def identify(self, finger: int, progress: Optional[Progress] = None, *, store: bool = True) -> Identified:
-        """Measures gauge gains, friction and tendon stiffness of a finger, which must have been zeroed. Its joints move
-        between their stops, and the finger presses against its lower stops. Arguments and errors are those of
-        `zero`."""
+        """Measures gauge gains, friction, tendon stiffness and rotor inertia of a finger, which must have been zeroed.
+        Its joints move between their stops, and the finger presses against its lower stops. Arguments and errors are
+        those of `zero`."""
         return self._calibrated(finger, "identify", progress, store)
 
     def find_signs(self, finger: int, progress: Optional[Progress] = None, *, store: bool = True) -> Signs:
