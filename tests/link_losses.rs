@@ -1,6 +1,6 @@
 //! Measures the cost of lost, damaged, late, doubled and foreign bytes on the cable of a finger, on simulated time.
 //!
-//! `SUN2XP_SECONDS=60 cargo test --release --test link_losses -- --nocapture` prints the table of docs/measurements.md.
+//! `SUN2XP_SECONDS=60 cargo test --test link_losses -- --nocapture` prints the table of docs/measurements.md.
 
 #[allow(dead_code)]
 #[path = "common/finger_on_a_cable.rs"]

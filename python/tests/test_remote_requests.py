@@ -7,7 +7,7 @@ import pytest
 
 import sun2xp
 import sun2xp.remote
-from sun2xp.remote import _reading
+from sun2xp.remote import _messages, _reading
 
 
 class Clock:
@@ -99,6 +99,26 @@ def test_a_fault_has_its_finger_and_its_number(server, finger, named, fault):
     with pytest.raises(sun2xp.Fault) as refused:
         server.hand.recover(finger)
     assert (refused.value.finger, refused.value.fault) == (named, fault)
+
+
+@pytest.mark.parametrize("finger", [0, 2])
+def test_a_fault_has_its_finger_although_the_server_does_not_tell_its_status(server, monkeypatch, finger):
+    server.records["stage"][1], server.records["fault"][1] = _messages.STAGES.index("faulted"), 10
+    server.state()
+    server.code = 7
+    answers = server.get
+    monkeypatch.setattr(server, "get", lambda key, payload, timeout: answers(key, payload, timeout) if payload else [])
+    with pytest.raises(sun2xp.Fault) as refused:
+        server.hand.recover(finger)
+    assert (refused.value.finger, refused.value.fault) == (2, 10)
+
+
+def test_a_fault_that_nobody_names_any_more_has_no_finger(server):
+    """The finger was recovered since."""
+    server.code = 7
+    with pytest.raises(sun2xp.Fault) as refused:
+        server.hand.recover(0)
+    assert (refused.value.finger, refused.value.fault) == (0, 0)
 
 
 def test_closing_a_queue_of_events_ends_the_waits_for_it(server):

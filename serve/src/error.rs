@@ -23,11 +23,11 @@ pub enum ServeError {
         /// What is wrong, with the remedy.
         reason: String,
     },
-    /// An endpoint that other machines can reach is configured without TLS.
+    /// An endpoint in `listen` or `connect` that other machines can reach is configured without TLS.
     #[error(
-        "{endpoint} can be reached from other machines: the server listens there only with TLS. Make certificates with \
+        "{endpoint} needs TLS, because it is not an address that only this machine can reach: make certificates with \
          `sun2xp serve --make-certificates FOLDER --server NAME --client NAME`, name them in [serve.tls], and use \
-         tls/HOST:PORT; or listen at tcp/127.0.0.1:7447"
+         tls/HOST:PORT; or use tcp/127.0.0.1:PORT"
     )]
     NotLoopback {
         /// The endpoint.

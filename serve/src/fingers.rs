@@ -26,16 +26,16 @@ pub struct Fingers {
     goals: [Goal; FINGERS],
     /// The largest force of the lead, N.
     lead_force: f64,
-    /// Whether commands beyond the limits are refused. Otherwise they are clamped.
-    refuses: bool,
+    /// Whether the hand refuses or clamps commands beyond the limits.
+    out_of_range: OutOfRange,
 }
 
 impl Fingers {
     /// The fingers of this hand, of which nothing is wanted yet. `lead_force` is in N.
     #[must_use]
     pub fn new(hand: Arc<Hand>, lead_force: f64) -> Self {
-        let refuses = hand.configuration().hand.out_of_range == OutOfRange::Refuse;
-        Self { hand, goals: [Goal::default(); FINGERS], lead_force, refuses }
+        let out_of_range = hand.configuration().hand.out_of_range;
+        Self { hand, goals: [Goal::default(); FINGERS], lead_force, out_of_range }
     }
 
     /// Returns what is wanted of each finger.

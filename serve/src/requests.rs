@@ -1,27 +1,28 @@
-//! Requests of clients: acquire, release, recover, calibrate, identify and stop. A request that takes long runs in a
-//! thread of its own, because the threads of zenoh must not wait.
+//! Requests of clients: acquire, release, recover, calibrate, identify and stop.
 
+mod long;
 mod recovering;
+mod reply;
+
+pub use long::join;
+pub use reply::Reply;
 
 use crate::access::permission;
-use crate::desk::{Desk, Stops, code_of};
+use crate::desk::{Stops, code_of};
 use crate::epoch::new_epoch;
-use crate::output::complain;
 use crate::settings::Permission;
 use crate::shared::Shared;
+use long::{long, run};
 use recovering::recover;
+use reply::{ended, in_progress};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use sun2xp::realtime::{Priority, now, spawn, with_remedy};
+use sun2xp::realtime::now;
 use sun2xp::{Hand, HandError};
 use sun2xp_remote_protocol::{Action, Answer, ClientName, Code, DecodeError, Finger, Request};
 
 /// The text of an Answer to a client that does not own the hand.
 const NOT_OWNED: &str = "you do not own the hand, or the epoch of the request is old: acquire the hand first";
-
-/// The text of an Answer while the server ends.
-const ENDING: &str = "the server of the hand is shutting down, and its fingers go to their end states: start the \
-                      server again, and acquire the hand";
 
 /// Answers a Request. `reply` sends the Answer, at once or later. `client` is the client that the Zenoh key of the
 /// Request names.
@@ -54,12 +55,6 @@ pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload:
     }
     shared.desk.lock().note_client(&client);
     carry_out(shared, &request, client, reply);
-}
-
-/// Where an Answer goes.
-pub trait Reply: Send + 'static {
-    /// Sends the Answer.
-    fn send(self, answer: &Answer);
 }
 
 fn carry_out(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: impl Reply) {
@@ -119,11 +114,6 @@ fn carry_out(shared: &Arc<Shared>, request: &Request, client: ClientName, reply:
     });
 }
 
-/// Returns the Answer while the server ends.
-fn ended(desk: &Desk, epoch: u64) -> Answer {
-    desk.answer(Code::Closed, ENDING.into(), epoch, now())
-}
-
 /// Makes the client the owner, and recovers the fingers if this is requested.
 fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: impl Reply) {
     let epoch = match new_epoch() {
@@ -169,17 +159,18 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
     if !request.recover {
         return reply.send(&begin(shared, Ok(())));
     }
-    let started = run(shared, 0, reply, move |shared| {
+    let refused = run(shared, 0, reply, move |shared| {
         let recovered = recover(shared, None, &stops);
         begin(shared, recovered)
     });
-    if !started {
-        let mut desk = shared.desk.lock();
-        // Another client may have taken the hand over since.
-        if desk.admits(&owner, epoch) {
-            desk.abandon(now());
-        }
+    let Some((reply, answer)) = refused else { return };
+    let mut desk = shared.desk.lock();
+    // Another client may have taken the hand over since.
+    if desk.admits(&owner, epoch) {
+        desk.abandon(now());
     }
+    drop(desk);
+    reply.send(&answer);
 }
 
 /// Makes the client the owner with this epoch, and sets `busy` if the request asks for a recovery. Returns the number
@@ -202,61 +193,6 @@ fn take(shared: &Shared, request: &Request, client: &ClientName, epoch: u64) -> 
     }
 }
 
-/// Runs a request that takes long, unless another such request is running.
-fn long(shared: &Arc<Shared>, epoch: u64, reply: impl Reply, body: impl FnOnce(&Shared) -> Answer + Send + 'static) {
-    match shared.busy.swap(true, Ordering::AcqRel) {
-        true => {
-            let answer = in_progress(&shared.desk.lock(), epoch);
-            reply.send(&answer);
-        }
-        false => {
-            run(shared, epoch, reply, body);
-        }
-    }
-}
-
-/// Runs a request that takes long in a thread, and sends its Answer. The caller has set `busy`. Returns whether the
-/// thread has started. `epoch` is that of the Answer if the server ends.
-fn run(
-    shared: &Arc<Shared>,
-    epoch: u64,
-    reply: impl Reply,
-    body: impl FnOnce(&Shared) -> Answer + Send + 'static,
-) -> bool {
-    // The end of the server sets `ending` before it takes this lock, so it waits for every thread that starts here.
-    let mut threads = shared.requests.lock();
-    if shared.ending.load(Ordering::Acquire) {
-        shared.busy.store(false, Ordering::Release);
-        let answer = ended(&shared.desk.lock(), epoch);
-        reply.send(&answer);
-        return false;
-    }
-    let of_thread = shared.clone();
-    let started = spawn("sun2xp request", Priority::default(), move |_| {
-        let answer = body(&of_thread);
-        // A client that has the Answer may send the next request at once.
-        of_thread.busy.store(false, Ordering::Release);
-        reply.send(&answer);
-    });
-    match started {
-        Ok(thread) => {
-            threads.retain(|thread| !thread.is_finished());
-            threads.push(thread);
-            true
-        }
-        Err(error) => {
-            shared.busy.store(false, Ordering::Release);
-            complain(&format!("cannot start a thread for a request: {}", with_remedy(&error)));
-            false
-        }
-    }
-}
-
-fn in_progress(desk: &Desk, epoch: u64) -> Answer {
-    let text = "the hand is being recovered or calibrated already: repeat the request when that has ended".into();
-    desk.answer(Code::InProgress, text, epoch, now())
-}
-
 type Calibration = fn(&Hand, i32, fn(sun2xp::Progress)) -> Result<sun2xp::Findings, HandError>;
 
 /// Runs a calibration, and stores its results in the configuration file, if there is one.
@@ -274,15 +210,6 @@ fn result(answer: &Answer, done: Result<(), HandError>) -> Answer {
     match done {
         Ok(()) => answer.clone(),
         Err(error) => Answer { code: code_of(&error), number: 0, text: error.to_string(), ..answer.clone() },
-    }
-}
-
-/// Waits for the threads of requests. The fingers have stopped, so the requests end too.
-pub fn join(shared: &Shared) {
-    let threads: Vec<_> = shared.requests.lock().drain(..).collect();
-    for thread in threads {
-        // A panic in such a thread has been reported already.
-        let _ = thread.join();
     }
 }
 

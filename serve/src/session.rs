@@ -8,7 +8,7 @@ use crate::json::{string, strings};
 use crate::settings::{Settings, TlsFiles};
 use std::fs::File;
 use std::path::Path;
-use sun2xp::realtime::{Priority, spawn};
+use sun2xp::realtime::{Priority, spawn, with_remedy};
 use zenoh::{Config, Session, Wait};
 
 /// Largest message that the server of a hand receives, bytes. The longest Target has about 3500 bytes.
@@ -38,14 +38,17 @@ pub fn open(settings: &Settings, access: &str, largest: u16) -> Result<Session, 
     );
     let failed = |reason: String| ServeError::Network { doing: doing.clone(), reason };
     let opening = spawn("sun2xp network", Priority::default(), move |_| zenoh::open(config).wait());
-    let opening = opening.map_err(|error| failed(error.to_string()))?;
-    let opened = opening.join().map_err(|_| failed("zenoh has failed".into()))?;
+    let opening = opening.map_err(|error| failed(with_remedy(&error)))?;
+    let opened = opening
+        .join()
+        .map_err(|_| failed("Zenoh, the network library, has failed: please report this defect".into()))?;
     opened.map_err(|error| {
         let text = error.to_string();
         // zenoh appends the place in its sources.
         let cause = text.split(" at /").next().unwrap_or(&text).trim_end_matches('.');
         failed(format!(
-            "{cause}. Check that the address is one of this machine, that the port is free, and that the router runs"
+            "{cause}. The server can listen only at addresses of this machine and at free ports. With TLS, it also \
+             needs the right files in [serve.tls]"
         ))
     })
 }
@@ -101,7 +104,7 @@ fn config(settings: &Settings, access: &str, largest: u16) -> Result<Config, Ser
     for (key, value) in entries {
         config.insert_json5(key, &value).map_err(|error| ServeError::Network {
             doing: format!("configure {key} of zenoh"),
-            reason: error.to_string(),
+            reason: format!("{error}. This is a defect of the server: please report it"),
         })?;
     }
     Ok(config)

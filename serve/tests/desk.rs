@@ -44,6 +44,24 @@ fn a_part_with_a_path_and_a_stiffness_is_applied_as_a_whole() {
     assert_eq!(rig.report(1).set_point.stiffness[(0, 0)], STIFF[0][0]);
 }
 
+/// The hand admits more rounding at the lower limit of joint 2, 5 degrees, than this limit itself has as `float`.
+#[test]
+fn the_lead_bounds_the_force_of_a_limit_that_was_rounded() {
+    let mut rig = Rig::new("lead_force = 1.0");
+    rig.acquire("alice");
+    let limits = rig.hand.limits(1).expect("finger 1");
+    let (low, high) = (limits.joint_minimum[2], limits.joint_maximum[2]);
+    let rounding = f64::from(f32::EPSILON) * high;
+    assert!(rounding > 2.0 * f64::from(f32::EPSILON) * low);
+    let start = rig.report(1).set_point.joints;
+    let place = [start[0], start[1], low - rounding / 2.0];
+    let number = rig.report(1).set_point_number;
+    assert_eq!(rig.send(&[joints(1, 1, place)]), None);
+    let first = rig.wait_for("set point", |rig| Some(rig.report(1)).filter(|report| report.set_point_number > number));
+    assert!(first.set_point.joints[2] > low + 0.05, "{} is ahead by the lead only", first.set_point.joints);
+    rig.wait_until("set point at the limit", &[joints(1, 1, place)], |rig| rig.report(1).set_point.joints[2] == low);
+}
+
 /// The owner commands Kx only. A push moves the finger away from where it was caught.
 #[test]
 fn a_stiffness_that_comes_back_pulls_with_the_force_of_the_lead_only() {

@@ -55,7 +55,8 @@ pub(super) fn with_culprit(
     let others = KEYS.iter().filter(|(key, _)| *key != named);
     match own.chain(others).find(|(_, reset)| permits(*reset)) {
         Some(&(key, _)) if key != named => {
-            Unusable { key, reason: format!("must be corrected first, because with it {named} {reason}") }
+            let reason = format!("must be corrected first, because with its present value {named} {reason}");
+            Unusable { key, reason }
         }
         _ => Unusable { key: named, reason },
     }

@@ -11,6 +11,7 @@ mod dither;
 mod dither_burst;
 mod dither_scale;
 mod friction_feed_forward;
+mod full_rate;
 mod matrix_exponential;
 mod numbers;
 mod observer;

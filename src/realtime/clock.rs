@@ -54,14 +54,48 @@ fn sleep(deadline: u64) -> libc::c_int {
 
 /// The time of CLOCK_MONOTONIC, ns.
 pub fn now() -> u64 {
+    read(libc::CLOCK_MONOTONIC)
+}
+
+/// The time of CLOCK_BOOTTIME, ns. It also passes while the machine is suspended.
+pub fn boot_time() -> u64 {
+    read(libc::CLOCK_BOOTTIME)
+}
+
+fn read(clock: libc::clockid_t) -> u64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: `time` is writable; CLOCK_MONOTONIC exists on every Linux, so the call cannot fail.
-    unsafe { libc::clock_gettime(libc::CLOCK_MONOTONIC, &mut time) };
+    // SAFETY: `time` is writable. Both clocks exist on every Linux, so the call cannot fail.
+    unsafe { libc::clock_gettime(clock, &mut time) };
     time.tv_sec as u64 * 1_000_000_000 + time.tv_nsec as u64
 }
 
 /// The time since 1970 minus the time of CLOCK_MONOTONIC, ns.
 pub fn clock_offset() -> i64 {
-    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as i64);
-    since_1970.wrapping_sub(now() as i64)
+    (since_1970() as i64).wrapping_sub(now() as i64)
+}
+
+/// Converts a past time of CLOCK_BOOTTIME, ns, to s since 1970, with the system's clock as it is set now. So the
+/// difference to the present time is right, even if the clock has been corrected since.
+pub fn seconds_since_1970(past: u64) -> u64 {
+    since_1970().saturating_sub(boot_time().saturating_sub(past)) / 1_000_000_000
+}
+
+/// The time since 1970, ns.
+fn since_1970() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_past_time_is_as_far_from_the_present_time_as_on_the_clock_that_nobody_corrects() {
+        let present = seconds_since_1970(boot_time());
+        assert!(present.abs_diff(since_1970() / 1_000_000_000) <= 1);
+        // A machine in a test may have been started less than a minute ago.
+        let past = boot_time().saturating_sub(60_000_000_000);
+        let passed = (boot_time() - past) / 1_000_000_000;
+        assert!((present - seconds_since_1970(past)).abs_diff(passed) <= 1);
+    }
 }

@@ -28,7 +28,7 @@ mod triple_buffer;
 mod wake_up;
 
 pub use cancellation::{DeferredCancellation, NoCancellation};
-pub use clock::{Clock, MonotonicClock, clock_offset, now};
+pub use clock::{Clock, MonotonicClock, boot_time, clock_offset, now, seconds_since_1970};
 pub use delegated_call::DelegatedCall;
 pub use event_count::EventCount;
 pub use floating_point::Environment;

@@ -35,7 +35,8 @@ pub(super) fn listen(name: &str) -> io::Result<(Socket, String)> {
             result => return result.map(|socket| (socket, candidate)),
         }
     }
-    Err(io::ErrorKind::AddrInUse.into())
+    let reason = format!("{MOST_HANDS} open hands have the name {name}: set another telemetry.name, or close a hand");
+    Err(io::Error::new(io::ErrorKind::AddrInUse, reason))
 }
 
 /// Returns the names of the open hands of this user whose telemetry is enabled, in alphabetical order.
@@ -90,5 +91,14 @@ mod tests {
             0000000000000000: 00000002 00000000 00010000 0001 01 5\n";
         assert_eq!(listed(table, "sun2xp/7/"), ["left".to_owned()].into());
         assert!(listed("@sun2xp/7/x", "sun2xp/7/").is_empty());
+    }
+
+    #[test]
+    fn a_name_of_which_no_number_is_free_is_refused_with_the_remedy() {
+        let name = format!("crowded-{}", std::process::id());
+        let _taken: Vec<_> = (0..MOST_HANDS).map(|_| listen(&name).expect("a free number")).collect();
+        let refused = listen(&name).err().expect("no free number");
+        assert_eq!(refused.kind(), io::ErrorKind::AddrInUse);
+        assert!(refused.to_string().contains("set another telemetry.name"), "{refused}");
     }
 }

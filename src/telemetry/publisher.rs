@@ -11,9 +11,8 @@ use crate::board::descriptor::Descriptor;
 use crate::finger::{Outlet, Stage};
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, FINGERS};
-use crate::realtime::{clock_offset, with_remedy};
+use crate::realtime::{boot_time, clock_offset, seconds_since_1970, with_remedy};
 use std::io;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Length of the ring, s. A reader that sleeps for a shorter time loses nothing.
 const HELD: f64 = 2.0;
@@ -24,6 +23,8 @@ const BYTES_OF_CYCLE: f64 = 1000.0;
 /// Publishes the messages of a hand. It is used by one ordinary thread.
 pub struct Publisher {
     description: Description,
+    /// When the hand was opened, ns of [`boot_time`].
+    opened: u64,
     readers: Readers,
     /// The ring; none while there is no reader.
     ring: Option<Ring>,
@@ -69,12 +70,13 @@ impl Publisher {
             name,
             process: std::process::id(),
             library: env!("CARGO_PKG_VERSION").into(),
-            started: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()),
+            started: 0,
             clock_offset: 0,
             fingers,
             configuration,
         };
-        Ok(Self { description, readers: Readers::new(listener), ring: None, last: [None; FINGERS] })
+        let readers = Readers::new(listener);
+        Ok(Self { description, opened: boot_time(), readers, ring: None, last: [None; FINGERS] })
     }
 
     /// The name of the hand.
@@ -98,7 +100,10 @@ impl Publisher {
             }
         }
         let new = !requests.is_empty();
-        self.description.clock_offset = clock_offset();
+        if new {
+            self.description.clock_offset = clock_offset();
+            self.description.started = seconds_since_1970(self.opened);
+        }
         if let Some(ring) = &self.ring {
             for socket in requests {
                 let reply = Reply::Attached {

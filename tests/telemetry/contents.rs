@@ -3,7 +3,7 @@
 use crate::support::{configuration, name, open, read_for, read_until, reader};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeSet;
-use std::time::Duration;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use sun2xp::control::{Controller, Feedback};
 use sun2xp::finger::events::EventKind;
 use sun2xp::finger::{ControllerSource, CycleRecord, Fault, FaultKind, Keyframe, Outlet, Stage};
@@ -25,6 +25,8 @@ fn the_description_names_hand_process_and_configuration() {
     assert_eq!(description.configuration, configured);
     assert_eq!(description.library, env!("CARGO_PKG_VERSION"));
     assert_eq!(description.fingers, FingerNumber::ALL);
+    let present = SystemTime::now().duration_since(UNIX_EPOCH).expect("after 1970").as_secs();
+    assert!(present.abs_diff(description.started) < 60, "{}", description.started);
     drop(hand);
 }
 

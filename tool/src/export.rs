@@ -173,9 +173,10 @@ impl Files<'_> {
         for output in self.open.into_values() {
             match output.place(force) {
                 Ok(path) => paths.extend(path),
+                Err(failure) if force => return Err(in_part(failure, paths)),
                 Err(failure) => {
-                    // Without --force, none of these names existed before.
-                    for path in paths.iter().filter(|_| !force) {
+                    // None of these names existed before.
+                    for path in &paths {
                         let _ = fs::remove_file(path);
                     }
                     return Err(failure);
@@ -223,6 +224,18 @@ impl Arguments {
     }
 }
 
+/// Adds the files that are in place already to the failure of another file. The files that they have replaced cannot be
+/// restored.
+fn in_part(failure: Failure, mut paths: Vec<PathBuf>) -> Failure {
+    if paths.is_empty() {
+        return failure;
+    }
+    paths.sort();
+    let names = paths.iter().map(|path| ShownPath(path).to_string()).collect::<Vec<_>>().join(", ");
+    let remedy = "remove the cause, and export again, so that all files are of the same recording";
+    format!("{failure}. This export has written {names} already, and no other file: {remedy}").into()
+}
+
 /// A field of a CSV file (RFC 4180).
 fn quoted(text: &str) -> String {
     let special = text.contains([',', '"', '\n', '\r']);
@@ -250,5 +263,22 @@ mod tests {
             fs::read_dir(folder.path()).expect("a folder").flatten().map(|one| one.file_name()).collect();
         assert_eq!(names, ["hand-finger2.csv"]);
         assert_eq!(fs::read_to_string(path("hand-finger2.csv")).expect("read"), "other");
+    }
+
+    #[test]
+    fn a_forced_export_that_fails_names_the_files_that_it_has_replaced() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |name: &str| folder.path().join(name);
+        let (file, output) = (path("hand.mcap"), Some(folder.path().to_path_buf()));
+        let arguments = Arguments { file, output, format: Format::Wide, fingers: Vec::new(), force: true };
+        let mut files = Files { arguments: &arguments, standard_output: false, start: None, open: BTreeMap::new() };
+        for finger in [1, 2, 3] {
+            files.file(finger, "time_s").expect("begun");
+        }
+        // Somebody else makes a folder meanwhile, which no file can replace.
+        fs::create_dir(path("hand-finger2.csv")).expect("made");
+        let failure = files.finish().expect_err("no file can replace a folder").to_string();
+        let written = format!("has written {} already", ShownPath(&path("hand-finger1.csv")));
+        assert!(failure.contains(&written) && !failure.contains("finger3"), "{failure}");
     }
 }

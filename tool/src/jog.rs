@@ -115,8 +115,9 @@ fn confirm(configuration: &Configuration) -> Result<(), Failure> {
         };
         writeln!(output, "    finger {number}: {port}")?;
     }
-    writeln!(output, "The tendons will be tightened. Steps are at most 3 degrees or 0.3 cm. Space stops all fingers.")?;
-    write!(output, "Keep hands and cables clear. Type yes to continue: ")?;
+    writeln!(output, "The tendons will be tightened. A step turns a joint by at most 3 degrees,")?;
+    writeln!(output, "or moves a tip by at most 0.3 cm and each joint by at most 9 degrees.")?;
+    write!(output, "Space stops all fingers. Keep hands and cables clear. Type yes to continue: ")?;
     output.flush()?;
     let mut answer = String::new();
     io::stdin().read_line(&mut answer)?;

@@ -107,8 +107,10 @@ class Fault(Error):
     """The finger has stopped because of a fault. `hand.recover(finger)` makes it a spring again.
 
     Attributes:
-        finger: number of the finger, 1 to 3.
-        fault: number of the fault, as in docs/faults.md.
+        finger: number of the finger, 1 to 3. It is 0 if a request to a remote hand concerns all fingers, and the server
+            does not say which one has stopped.
+        fault: number of the fault, as in docs/faults.md. It is 0 if the server of a remote hand does not say which
+            fault it was.
     """
 
     finger: int

@@ -3,10 +3,11 @@
 use super::Fingers;
 use crate::goal::{Destination, Goal, matrix};
 use crate::lead::admitted_part;
-use sun2xp::HandError;
 use sun2xp::finger::FingerReport;
+use sun2xp::hand::Ranges;
 use sun2xp::motion::Pose;
 use sun2xp::nalgebra::Vector3;
+use sun2xp::{FingerNumber, HandError};
 
 /// A set point on the way to a destination is not sent if it would move the one in force by less than this, rad.
 const SMALLEST_STEP: f64 = 1e-4;
@@ -86,13 +87,17 @@ impl Fingers {
         }
     }
 
-    /// Returns joint angles within the limits, rad; none if the hand refuses these angles.
-    pub(super) fn within_limits(&self, number: i32, joints: &[f64; 3]) -> Result<Option<Vector3<f64>>, HandError> {
-        let clamped = self.clamped(number, joints)?;
-        // The hand admits a limit that was rounded to `float`.
-        let rounding = |limit: f64| f64::from(f32::EPSILON) * limit.abs();
-        let admitted = (0..3).all(|joint| (joints[joint] - clamped[joint]).abs() <= rounding(clamped[joint]));
-        Ok((admitted || !self.refuses).then(|| clamped.into()))
+    /// Returns the joint angles within the limits that the hand uses if these are sent, rad; none if the hand refuses
+    /// these angles. The check is that of the hand: angles that only the hand admits would be sent without the lead.
+    pub(super) fn within_limits(
+        &self,
+        finger: FingerNumber,
+        joints: &[f64; 3],
+    ) -> Result<Option<Vector3<f64>>, HandError> {
+        let limits = self.hand.limits(finger.get())?;
+        let joint_limits = (limits.joint_minimum.into(), limits.joint_maximum.into());
+        let (stiffness_bound, out_of_range) = (limits.stiffness, self.out_of_range);
+        Ok(Ranges { finger, joint_limits, stiffness_bound, out_of_range }.joints(*joints).ok())
     }
 
     /// Returns the nearest joint angles within the limits, rad.

@@ -57,7 +57,7 @@ impl Fingers {
         let mut command = FingerCommand::new(number).validity(valid);
         (command.stiffness, command.damping) = (part.stiffness, part.damping);
         if let Place::Joints(joints) = &part.place {
-            match self.within_limits(number, joints)? {
+            match self.within_limits(known, joints)? {
                 Some(admitted) => goal.destination = Destination::Joints(admitted),
                 // The hand refuses the group, with the reason.
                 None => command.pose = Some(Pose::Joints(*joints)),

@@ -100,6 +100,54 @@ fn a_server_that_ends_carries_out_stops_only() {
     assert_eq!(ask(&shared, "bob", Request { action: Action::Stop, ..ACQUIRE }).code, Code::Done);
 }
 
+/// A filter of system calls holds for one thread, and for those that it starts. Here it cannot start any.
+#[allow(unsafe_code, reason = "a filter of system calls")]
+fn without_threads<T: Send>(body: impl FnOnce() -> T + Send) -> T {
+    let code = |code: u32, yes, no, k: u32| libc::sock_filter { code: code as u16, jt: yes, jf: no, k };
+    let (load, equal, end) = (libc::BPF_LD | libc::BPF_W | libc::BPF_ABS, libc::BPF_JMP | libc::BPF_JEQ, libc::BPF_RET);
+    let filter = || {
+        let mut program = [
+            code(load, 0, 0, 0), // the number of the system call
+            code(equal, 1, 0, libc::SYS_clone as u32),
+            code(equal, 0, 1, libc::SYS_clone3 as u32),
+            code(end, 0, 0, libc::SECCOMP_RET_ERRNO | libc::EAGAIN as u32),
+            code(end, 0, 0, libc::SECCOMP_RET_ALLOW),
+        ];
+        let program = libc::sock_fprog { len: program.len() as u16, filter: program.as_mut_ptr() };
+        // SAFETY: the first call takes no pointer. The program is valid during the second call.
+        let refused = unsafe {
+            libc::prctl(libc::PR_SET_NO_NEW_PRIVS, 1_u64, 0_u64, 0_u64, 0_u64) != 0
+                || libc::prctl(libc::PR_SET_SECCOMP, u64::from(libc::SECCOMP_MODE_FILTER), &program) != 0
+        };
+        assert!(!refused, "{}", std::io::Error::last_os_error());
+    };
+    std::thread::scope(|scope| {
+        let thread = scope.spawn(|| {
+            filter();
+            body()
+        });
+        thread.join().expect("no panic")
+    })
+}
+
+#[test]
+fn a_request_for_which_no_thread_can_be_started_is_answered() {
+    let shared = shared();
+    let epoch = ask(&shared, "alice", ACQUIRE).epoch;
+    let recovering = Request { recover: true, ..ACQUIRE };
+    let calibrate = Request { action: Action::Calibrate, finger: Finger::new(1), epoch, ..ACQUIRE };
+    for (request, epoch) in [(calibrate, epoch), (recovering, 0)] {
+        let refused = without_threads(|| ask(&shared, "alice", request));
+        assert_eq!((refused.code, refused.epoch), (Code::Argument, epoch), "{refused:?}");
+        assert!(refused.text.starts_with("cannot start a thread for a request: "), "{refused:?}");
+        assert!(refused.text.contains("(ulimit -u)"), "{refused:?}");
+        assert!(!shared.busy.load(Ordering::Acquire));
+    }
+    assert!(shared.desk.lock().may_acquire(&"bob".parse().expect("a name"), false), "nobody owns the hand");
+    assert_eq!(ask(&shared, "bob", recovering).code, Code::Done);
+    join(&shared);
+}
+
 /// Without the code of the end, the client would be told to calibrate the finger again.
 #[test]
 fn a_calibration_that_the_end_of_the_server_interrupts_has_the_code_of_the_end() {

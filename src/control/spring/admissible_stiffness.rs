@@ -5,13 +5,17 @@ use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Scheme};
 use nalgebra::{Matrix3, Matrix3x4, Vector3};
 
+/// Rate from which K_theta may use the large fraction, Hz. It applies to Figures 9 and 10 too, so it is not the rate
+/// from which state feedback has all its parts.
+const LARGE_SHARE_RATE: f64 = 750.0;
+
 /// Returns the fraction of R k R^T that K_theta may use; see [`AdmissibleStiffness`]. It is somewhat smaller than the
-/// largest fraction with which the loop was stable. The fraction is smaller below 750 Hz than above. With Figure 11,
-/// which has no gain on the tension error, the small fraction applies at every rate.
+/// largest fraction with which the loop was stable. The fraction is smaller below [`LARGE_SHARE_RATE`] than above. With
+/// Figure 11, which has no gain on the tension error, the small fraction applies at every rate.
 fn share(scheme: Scheme, rate: f64) -> f64 {
     match scheme {
         Scheme::Figure11 => 0.7,
-        _ if rate >= 750.0 => 0.95,
+        _ if rate >= LARGE_SHARE_RATE => 0.95,
         // With a share of 0.95 at 500 Hz, the motion of a stretched finger at 5 N/cm grew instead of decaying.
         Scheme::StateFeedback => 0.75,
         Scheme::Figure9 | Scheme::Figure10 => 0.7,

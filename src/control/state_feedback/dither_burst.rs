@@ -5,6 +5,7 @@
 //! over some periods removes this difference, as an alternating field that decays demagnetises iron. Afterwards the
 //! small dither suffices.
 
+use super::full_rate::FULL_RATE;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -31,16 +32,14 @@ const STAYING: f64 = 0.1;
 /// Time constant with which the envelope decays, s: some periods of the dither.
 const DECAYING: f64 = 0.08;
 
-/// Longest period of the servo with which `DitherBurst::waits` is ever true, s. At 500 Hz, nominal fingers at walls
-/// moved by 65 um rms.
-const LONGEST_PERIOD: f64 = 1.0 / 750.0;
-
 /// Computes the envelope from the reference and the torque of the spring. The dither itself cannot trigger it, because
 /// the rates of the reference do not depend on measurements.
 #[derive(Clone, Debug)]
 pub(super) struct DitherBurst {
     /// Largest torque of the spring with which a burst begins, N cm.
     held: Vector3<f64>,
+    /// Whether [`DitherBurst::waits`] is ever true.
+    can_wait: bool,
     period: f64,
     rising: f64,
     decay: f64,
@@ -62,6 +61,8 @@ impl DitherBurst {
     pub fn new(torques: &Vector3<f64>, rate: f64) -> Self {
         Self {
             held: torques * HELD,
+            // At 500 Hz, nominal fingers at walls moved by 65 um rms.
+            can_wait: rate >= FULL_RATE,
             period: 1.0 / rate,
             rising: (1.0 / (RISING * rate)).min(1.0),
             decay: (-1.0 / (DECAYING * rate)).exp(),
@@ -77,7 +78,7 @@ impl DitherBurst {
     /// almost slack. `rates` are the joint rates of the reference, rad/s. The result is valid while the envelope is
     /// small, because the burst also counts as awaited while the envelope rises.
     pub fn waits(&self, state: &DitherBurstState, rates: &Vector3<f64>) -> bool {
-        state.awaited && rates.amax() < SLOW && self.period <= LONGEST_PERIOD
+        state.awaited && rates.amax() < SLOW && self.can_wait
     }
 
     /// Returns the envelope. `rates` are the joint rates of the reference, rad/s. `sprung` is the joint torque of the

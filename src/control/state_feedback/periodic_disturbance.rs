@@ -6,6 +6,7 @@
 //! the joints, because the errors of the motors differ. But at a known frequency, the delay is a known phase, so the
 //! disturbance can be predicted.
 
+use super::full_rate::FULL_RATE;
 use super::observer::TendonObserver;
 use nalgebra::{Vector2, Vector4, Vector6};
 use serde::{Deserialize, Serialize};
@@ -15,10 +16,6 @@ use serde::{Deserialize, Serialize};
 const OSCILLATION: f64 = 0.15;
 /// Time constant with which the mean of the disturbance is found, s.
 const MEAN: f64 = 0.05;
-
-/// Rate below which nothing is predicted, Hz. At 500 Hz, the delay is so long that some fingers with the stiffest joint
-/// springs oscillate with the prediction.
-const LEAST_RATE: f64 = 750.0;
 
 /// Change of the phasors below which they count as steady.
 const ACCURACY: f64 = 1e-12;
@@ -57,7 +54,9 @@ pub(super) struct PeriodicDisturbanceState {
 impl PeriodicDisturbance {
     /// `frequency` is omega in rad/s, and `rate` is in Hz.
     pub fn new(observers: &[TendonObserver; 4], frequency: f64, rate: f64) -> Self {
-        let leads: [Vector2<f64>; 4] = match rate < LEAST_RATE {
+        // At 500 Hz, the delay is so long that some fingers with the stiffest joint springs oscillate with the
+        // prediction.
+        let leads: [Vector2<f64>; 4] = match rate < FULL_RATE {
             true => [Vector2::zeros(); 4],
             false => std::array::from_fn(|motor| lead(&observers[motor], frequency / rate)),
         };

@@ -13,6 +13,7 @@
 //! rest.
 
 use super::dither_burst::{FAST, SLOW};
+use super::full_rate::FULL_RATE;
 use super::numbers::Numbers;
 use crate::control::spring::admissible_stiffness::UsedShares;
 use nalgebra::{Matrix3, Vector3};
@@ -23,8 +24,6 @@ use serde::{Deserialize, Serialize};
 const SUPPORTED: f64 = 0.57;
 /// Largest c, as a fraction of the share that the spring uses. A limp finger stays limp.
 const LARGEST_RATIO: f64 = 0.5;
-/// Rate below which the stiffness does not change, Hz. At 500 Hz, a loop with a stiff spring has little margin.
-const LEAST_RATE: f64 = 750.0;
 /// Largest additional torque, as a fraction of the sum of the magnitudes of the torques that the four tendons exert on
 /// the joint at the pretension. An object in the way of the finger meets at most this additional torque.
 const LARGEST: f64 = 0.05;
@@ -87,7 +86,8 @@ impl Stiffening {
         rate: f64,
     ) -> Option<Self> {
         let most = if identified { numbers.identified_stiffening } else { numbers.stiffening };
-        (most > 0.0 && rate >= LEAST_RATE).then(|| Self {
+        // At 500 Hz, a loop with a stiff spring has little margin.
+        (most > 0.0 && rate >= FULL_RATE).then(|| Self {
             tendons,
             most,
             largest: torques * LARGEST,

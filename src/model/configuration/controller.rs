@@ -33,6 +33,10 @@ pub enum Law {
     Exact,
 }
 
+/// Rate from which state feedback is the default, Hz. A file may select state feedback at any rate, so its parts have a
+/// least rate of their own.
+const STATE_FEEDBACK_RATE: f64 = 750.0;
+
 /// `[finger.controller]`. Values that are absent get defaults for the scheme and the rate.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
@@ -107,6 +111,6 @@ impl ConfiguredController {
     /// of the replies are lost (`docs/stiffness.md`).
     #[must_use]
     pub fn scheme(&self, rate: f64) -> Scheme {
-        self.scheme.unwrap_or(if rate >= 750.0 { Scheme::StateFeedback } else { Scheme::Figure10 })
+        self.scheme.unwrap_or(if rate >= STATE_FEEDBACK_RATE { Scheme::StateFeedback } else { Scheme::Figure10 })
     }
 }

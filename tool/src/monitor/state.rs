@@ -28,7 +28,7 @@ pub struct HandState {
     pub process: u32,
     /// Version of the library in that process.
     pub library: String,
-    /// Time at which the hand was opened, s since 1970.
+    /// Time at which the hand was opened, s since 1970, on the system's clock as it was set when this program attached.
     pub opened: u64,
     /// Configured rate, Hz.
     pub rate: f64,

@@ -37,8 +37,10 @@ pub struct Files {
     description: Description,
     controllers: BTreeMap<FingerNumber, VecDeque<Message>>,
     file: OpenFile,
-    /// The files that may still have to be deleted, from the oldest to the present one.
+    /// The files that are kept, from the oldest to the present one.
     paths: VecDeque<PathBuf>,
+    /// Old files that could not be deleted. The deletion is tried again whenever a new file begins.
+    undeleted: Vec<PathBuf>,
     /// Number of files that have been begun.
     begun: u32,
     /// Number in the name of the present file.
@@ -87,6 +89,7 @@ impl Files {
         let file = OpenFile::begin(first.clone(), created, description, time)?;
         Ok(Self {
             paths: [first.clone()].into(),
+            undeleted: Vec::new(),
             first,
             limits,
             description: description.clone(),
@@ -175,16 +178,16 @@ impl Files {
         }
     }
 
-    /// Deletes the oldest file if there are too many. If that fails, returns the reason. The recording then continues,
-    /// because the cycles matter more than the space.
+    /// Deletes the oldest file if there are too many, and earlier ones that could not be deleted. Returns the reason if
+    /// the oldest file cannot be deleted. The recording then continues, because the cycles matter more than the space.
     fn delete_oldest(&mut self) -> Option<String> {
+        self.undeleted.retain(|path| delete(path).is_err());
         let superfluous = self.limits.keep.is_some_and(|keep| self.paths.len() > keep as usize);
         let path = superfluous.then(|| self.paths.pop_front()).flatten()?;
-        match fs::remove_file(&path) {
-            // The user may have moved or deleted the file.
-            Err(error) if error.kind() != ErrorKind::NotFound => Some(undeleted(&path, &error)),
-            _ => None,
-        }
+        let error = delete(&path).err()?;
+        let message = undeleted(&path, &error);
+        self.undeleted.push(path);
+        Some(message)
     }
 
     /// Ends the last file.
@@ -248,8 +251,16 @@ fn create_new(path: &Path) -> io::Result<File> {
     OpenOptions::new().write(true).create_new(true).open(path)
 }
 
-/// The failure of a file to which the writer of recordings cannot write. The text of this writer's error says only that
-/// writing failed, so the error of the system is taken, which is behind it.
+/// Deletes a file, unless the user has moved or deleted it already.
+fn delete(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        deleted => deleted,
+    }
+}
+
+/// The failure of a file to which the writer of recordings cannot write. The text of the writer's error says only that
+/// writing failed, so the message contains the error of the system that caused it.
 fn unwritten(path: &Path, error: &(dyn Error + 'static)) -> Failure {
     match successors(Some(error), |&error| error.source()).find_map(|error| error.downcast_ref::<io::Error>()) {
         Some(of_system) => unwritable(path, of_system),
@@ -261,7 +272,8 @@ fn unwritten(path: &Path, error: &(dyn Error + 'static)) -> Failure {
 
 /// The message about a file that cannot be deleted.
 fn undeleted(path: &Path, error: &io::Error) -> String {
-    format!("cannot delete {}: {error}{}. The file stays", ShownPath(path), write_remedy(error))
+    let later = "The file stays for now: sun2xp record tries again to delete it with each new file";
+    format!("cannot delete {}: {error}{}. {later}", ShownPath(path), write_remedy(error))
 }
 
 fn uncreated(path: &Path, error: &io::Error) -> Failure {

@@ -164,7 +164,8 @@ class StatusMessage:
 @dataclasses.dataclass
 class Answer:
     """The answer to a Request, or the reason why a Target was refused. For a refused Target, `number` is its sequence
-    number. For acquire, it is the number of the new epoch."""
+    number. For acquire, it is the public number of the new epoch; `epoch` is the epoch itself, a random number that
+    only its owner knows."""
 
     code: int
     catch_ms: int

@@ -35,7 +35,8 @@ PAUSE = 0.2
 #: the server may have carried out the request.
 NOBODY = 0.5
 
-#: Pauses between the attempts to connect, at first and after a loss of the connection, ms.
+#: Pauses between the attempts to connect, ms: the first pause, the longest, and the factor by which they grow. They
+#: are the same for the first connection and after a loss of the connection.
 _RETRY = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
 
 _HAND = re.compile(r"[a-z0-9-]{1,32}\Z")

@@ -73,7 +73,7 @@ class Owner:
         """Processes what a State has shown: the number of the owner's epoch, and the records of this epoch."""
         if self._receiver.restarts != self._restarts:
             self._epoch = 0
-        # An earlier State shows another epoch, in which other clients had the same command numbers.
+        # An earlier State belongs to another epoch, in which another client may have used the same command numbers.
         if self._epoch == 0 or state.published <= self._since:
             return
         if state.owner != self._number:

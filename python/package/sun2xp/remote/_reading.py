@@ -141,13 +141,14 @@ class Reading:
 
     def _stopped(self, finger: int) -> Tuple[int, int]:
         """Returns the finger that an Answer concerns, and the number of its fault, or 0 if the fault is not known. If
-        `finger` is 0, the Answer concerns the first finger that has stopped."""
+        `finger` is 0, the Answer concerns the first finger that has stopped. If none has, for example because it was
+        recovered since, the finger that is returned is 0 too."""
         try:
-            fingers = self._ask_status().fingers
+            faults = {number: status.fault for number, status in self._ask_status().fingers.items()}
         except NoAnswer:
-            fingers = {}
-        stopped = [number for number in sorted(fingers) if fingers[number].fault and finger in (0, number)]
-        return (stopped[0], fingers[stopped[0]].fault) if stopped else (finger, 0)
+            faults = self._receiver.faults()
+        stopped = [number for number in sorted(faults) if faults[number] and finger in (0, number)]
+        return (stopped[0], faults[stopped[0]]) if stopped else (finger, 0)
 
     def _answers(self, key: str, payload: Optional[bytes], timeout: float) -> List[tuple]:
         """Asks again if a get has reached nobody: just after a client has connected, Zenoh may not know the way to the

@@ -240,6 +240,11 @@ class Receiver:
             raise Stale(text, number=ErrorNumber.TIMED_OUT)
         return record
 
+    def faults(self) -> Dict[int, int]:
+        """Returns the number of the fault of each finger in the newest State, or 0 if the finger has no fault."""
+        with self.changed:
+            return {finger: int(record["fault"]) for finger, record in self._newest.items()}
+
     def take(self) -> List[Records]:
         """Returns the records of the States that have arrived since the last call."""
         with self.changed:

@@ -24,7 +24,7 @@ const JOG_KEYS: &[(&str, &str)] = &[
     ("[ ]", "smaller or larger steps"),
     ("- +", "softer or stiffer: Kx times 0.8 or 1.25"),
     ("0", "end the push"),
-    ("o c", "open or close the hand"),
+    ("o c", "open or close the grip"),
     ("r", "recover the finger"),
     ("d p s", "detail, freeze the picture, snapshot"),
     ("{ }", "scroll long fault texts"),
