@@ -14,8 +14,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub(super) enum Refusal {
     #[error(
-        "this process was forked from a process that has called the library, and only that process has the servo \
-         threads: make the call in that process, or call exec first"
+        "this process was forked from a process that has opened a hand, or has tried to open one, and only that \
+         process has the threads of the library: make the call in that process, or call exec first"
     )]
     Forked,
     #[error("{name} is a null pointer: pass {wanted}")]

@@ -51,6 +51,8 @@ pub use mailbox::paths::PreparedPath;
 pub use order::{CalibrationRun, Order};
 pub use outlet::{Keyframe, Outlet};
 pub use path_buffer::{MOST_PIECES, MOST_POSES};
+#[cfg(feature = "internals")]
+pub use recording::ALTERED;
 pub use recording::{Origin, Recording, RecordingError};
 pub use reference::Reference;
 pub use reflexes::{

@@ -18,6 +18,10 @@ use thiserror::Error;
 /// Version of the format.
 const VERSION: u32 = 1;
 
+/// The cause and the remedy of a value in a recorded file that no library has written there. It is a sentence after the
+/// text of an error.
+pub const ALTERED: &str = "The file was altered or damaged after it was written: copy it again";
+
 /// Consecutive cycles of a finger, and everything that is needed to compute them again.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -109,7 +113,7 @@ pub enum RecordingError {
         expected: usize,
     },
     /// The file has more cycles than its first line announces, or than a black box can have.
-    #[error("{file} has more than {most} cycles: the file was altered after it was written, copy it again")]
+    #[error("{file} has more than {most} cycles. {ALTERED}")]
     Long {
         /// The file.
         file: String,
@@ -121,7 +125,7 @@ pub enum RecordingError {
 /// Returns the cause and the remedy of a wrong line. Versions of the library record different data.
 fn written_by(library: &str) -> String {
     match env!("CARGO_PKG_VERSION") {
-        own if own == library => ". The file was altered or damaged after it was written: copy it again".into(),
+        own if own == library => format!(". {ALTERED}"),
         own => format!(". Library {library} wrote it, and this is library {own}: replay it with library {library}"),
     }
 }

@@ -6,6 +6,7 @@ mod soundness;
 pub use continuous::{ContinuousReplay, Recomputed, Step, Unsound};
 
 use crate::control::Controller;
+use crate::finger::recording::ALTERED;
 use crate::finger::{ControlRecord, Origin, Recording};
 use crate::model::configuration::Unusable;
 use nalgebra::Vector4;
@@ -38,7 +39,7 @@ pub struct Difference {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum NotReplayable {
     /// The hand's configuration, or a number in the data that all cycles start from, is invalid.
-    #[error("line 1: {key} {reason}")]
+    #[error("line 1: {key} {reason}. {ALTERED}")]
     Origin {
         /// The key, with dots.
         key: String,
@@ -46,7 +47,7 @@ pub enum NotReplayable {
         reason: String,
     },
     /// No controller can be constructed from a configuration.
-    #[error("line 1: controller {number}: {key} {reason}")]
+    #[error("line 1: controller {number}: {key} {reason}. {ALTERED}")]
     Unusable {
         /// Number of the controller.
         number: u32,
@@ -56,10 +57,7 @@ pub enum NotReplayable {
         reason: String,
     },
     /// A cycle names a controller that the recording does not describe.
-    #[error(
-        "cycle {cycle} names controller {number}, which the recording does not describe: the file was altered or \
-         damaged after it was written, copy it again"
-    )]
+    #[error("cycle {cycle} names controller {number}, which the recording does not describe. {ALTERED}")]
     UnknownController {
         /// Number of the cycle.
         cycle: u64,
@@ -67,7 +65,7 @@ pub enum NotReplayable {
         number: u32,
     },
     /// A cycle contains a value that no servo can have recorded.
-    #[error("cycle {cycle}, line {line}: {key} {reason}")]
+    #[error("cycle {cycle}, line {line}: {key} {reason}. {ALTERED}")]
     Cycle {
         /// Number of the cycle.
         cycle: u64,
@@ -79,9 +77,7 @@ pub enum NotReplayable {
         reason: String,
     },
     /// A controller computes a command that is not a finite number.
-    #[error(
-        "cycle {0}: the controller commands a torque that is not a finite number: a number of the recording was altered"
-    )]
+    #[error("cycle {0}: the controller commands a torque that is not a finite number. {ALTERED}")]
     NotFinite(u64),
 }
 

@@ -7,8 +7,8 @@ impl Hand {
     /// Sets gravity in the palm's frame, m/s^2. It replaces `hand.gravity` until the hand is closed. Every finger takes
     /// the new gravity within a cycle. The compensated gravity changes by at most 2 m/s^2 per millisecond, so that the
     /// torque does not jump. A large change therefore takes several cycles to compensate. The new gravity also acts on
-    /// simulated fingers and on a simulated object. In the black box and in telemetry, every
-    /// record of a cycle in which the controller ran contains the gravity of this cycle.
+    /// simulated fingers and on a simulated object. In the black box and in telemetry, every record of a cycle in which
+    /// the controller ran contains the gravity of this cycle.
     ///
     /// Gravity is an input of the servos, as a set point is. The call does not allocate memory and does not replace a
     /// controller, so a planner can make it in every cycle. Set points, paths, monitors and the estimate of contacts

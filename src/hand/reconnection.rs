@@ -20,7 +20,8 @@ pub(super) struct RepairablePort {
     /// The fingers at this port.
     pub fingers: Vec<FingerNumber>,
     /// For each finger, in the order of `fingers`: the number of repairs that included the finger. The servo counts the
-    /// recoveries of each finger. A repaired finger has more repairs than recoveries until the servo takes it over.
+    /// recoveries of each finger. After a repair, the finger has more repairs than recoveries until the servo takes the
+    /// finger.
     pub repairs: [AtomicU32; FINGERS],
     /// Locked during a repair, which takes long. `None` after the hand is closed.
     pub repair: Mutex<Option<PortRepair>>,

@@ -45,7 +45,7 @@ static int zero_finger(void) { return sun2xp_zero(HAND, 1); }
 static int identify_refused(void) { return sun2xp_identify(HAND, 7) + SUN2XP_ERROR_ARGUMENT; }
 static int recover_hand(void) { sun2xp_stop_all(); PAUSE_MS(50); return sun2xp_recover(HAND, 1); }
 
-/* A function that gets a struct with a call. */
+/* Defines a function that makes a call, which fills a struct. */
 #define GETTER(function, type, call) \
     static int function(void) \
     { \

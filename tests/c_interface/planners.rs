@@ -90,6 +90,18 @@ fn the_example_of_events_reports_a_refused_command_and_does_not_wait() {
 }
 
 #[test]
+fn the_example_of_events_says_that_a_finger_has_not_come_to_rest() {
+    let bench = Bench::new();
+    let source = std::fs::read_to_string(c::root().join("c_examples/Settle.c")).expect("the example");
+    let impatient = source.replace("LONGEST_WAIT 5.0", "LONGEST_WAIT 0.0");
+    assert_ne!(impatient, source);
+    let source = bench.write("impatient.c", &impatient);
+    let run = bench.run(Command::new(bench.build(c_compiler(), &["-std=c89"], &[&source])));
+    assert_eq!(run.status.code(), Some(1), "{}", said(&run));
+    assert!(said(&run).contains("has not come to rest in time: "), "{}", said(&run));
+}
+
+#[test]
 fn reflexes_fire_and_are_refused_and_removed() {
     succeed(&strict(&["-std=c99"]), &["reflex.c"]);
 }

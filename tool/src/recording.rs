@@ -4,6 +4,7 @@
 //! and so on have the messages of telemetry with every bit, from which this program reads the cycles again. The other
 //! channels are JSON. docs/recordings.md describes the format.
 
+mod altered;
 mod black_box;
 mod cdr;
 mod channels;
@@ -13,6 +14,7 @@ mod reading;
 mod tests;
 mod writing;
 
+pub use altered::or_by;
 pub use entry::{Entry, Item};
 pub use reading::Recording;
 pub use writing::RecordingWriter;

@@ -100,6 +100,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
 }
 
 fn read(file: &Path) -> Result<Costs, Failure> {
-    let text = read_regular_file(file, LARGEST_COSTS).map_err(|error| format!("{}: {error}", ShownPath(file)))?;
+    let text = read_regular_file(file, LARGEST_COSTS)
+        .map_err(|error| format!("cannot read {}: {error}. Name a readable file with --costs", ShownPath(file)))?;
     Ok(Costs::parse(&text).map_err(|reason| format!("{}:{reason}", ShownPath(file)))?)
 }

@@ -18,9 +18,9 @@ const AVERAGED: u64 = 200;
 
 /// Prints what the encoders and gauges of a finger measure, twice a second, with the motors off, until Ctrl-C.
 ///
-/// Turn a motor by hand, and see which encoder counts; hang a weight on a tendon, and see which gauge measures how
-/// much. Turns and tensions are relative to the first line. They include the signs and scales of the configuration, and
-/// the gauges are averaged over 200 cycles. A fault, such as a board that no longer answers, ends the command.
+/// Turn a motor by hand, and see which encoder moves; hang a weight on a tendon, and see which gauge responds, and by
+/// how much. Turns and tensions are relative to the first line. They include the signs and scales of the configuration,
+/// and the gauges are averaged over 200 cycles. A fault, such as a board that no longer answers, ends the command.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file.

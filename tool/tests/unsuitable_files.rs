@@ -89,6 +89,7 @@ fn a_black_box_with_an_impossible_rate_is_refused() {
     ] {
         let said = refusal(&arguments, None);
         assert!(said.contains("cannot be used: rate 0 Hz"), "{arguments:?}: {said}");
+        assert!(said.contains("altered or damaged after it was written: copy it again"), "{arguments:?}: {said}");
     }
     assert!(!path("altered.mcap").exists());
 }

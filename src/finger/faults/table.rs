@@ -236,14 +236,15 @@ faults! {
          finger.motion.on_expiry is \"end state\" or finger.motion.end_state_ms (with sun2xp serve: \
          serve.end_ms) has passed as well",
         "the planner hangs, is stopped in a debugger, or plans for longer than its set points are valid",
-        "Recover the finger and send set points in time, or raise finger.motion.valid_ms or serve.end_ms", [Recover];
+        "Recover the finger and send set points in time, or raise finger.motion.valid_ms, finger.motion.end_state_ms \
+         or serve.end_ms", [Recover];
     52 ReflexStop "REFLEX_STOP" Fault Finger Nothing "stopped by a reflex",
         "the condition of a reflex was true, and its reaction stops the finger",
         "the planner installed the reflex for this case; the last event \"reflex fired\" has the number of the rule",
         "Remove the cause, or remove the reflex, then recover the finger", [Recover];
     53 HardwareFailed "HARDWARE_FAILED" Refusal Finger Errno "hardware failed",
         "the hardware that the program provides for this finger does not start or stop",
-        "the function start or stop of the program has returned this error",
+        "the program's own function \"start\" or \"stop\" for this hardware has returned this errno",
         "Follow the documentation of the program or of its hardware", [];
     54 WrongWiring "WRONG_WIRING" Refusal Finger Nothing "wrong wiring",
         "the self-test at open has found a part that is wired wrongly or dead; the error names it",

@@ -3,6 +3,7 @@
 use super::same;
 use super::soundness::{InputLimits, check_source, within_bounds};
 use crate::control::{Controller, State};
+use crate::finger::recording::ALTERED;
 use crate::finger::{ControlRecord, ControllerSource, CycleRecord, Stage};
 use crate::model::configuration::{ConfiguredHand, Unusable};
 use std::collections::BTreeMap;
@@ -17,7 +18,8 @@ const MOST_SOURCES: usize = 4096;
 const MOST_READY: usize = 8;
 
 /// Recomputes the cycles of one finger. Keyframes and controllers must arrive before the cycles that need them. The
-/// cycles must arrive in their order. Cycles may be missing: the replay continues with the next keyframe.
+/// cycles must arrive in their order. Cycles and controllers may be missing: the replay continues with the next
+/// keyframe before a cycle whose controllers are known.
 #[derive(Default)]
 pub struct ContinuousReplay {
     hand: Option<ConfiguredHand>,
@@ -48,6 +50,8 @@ pub enum Step {
     Idle,
     /// Nothing, because no keyframe has arrived since the beginning or since a gap.
     Waiting,
+    /// Nothing, because the cycle names the controller with this number, which has not arrived.
+    UnknownController(u32),
     /// The recorded command and report.
     Same,
     /// Another command or report.
@@ -58,7 +62,7 @@ pub enum Step {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum Unsound {
     /// The hand's configuration is invalid.
-    #[error("hand.{key} {reason}")]
+    #[error("hand.{key} {reason}. {ALTERED}")]
     Hand {
         /// The key, with dots.
         key: String,
@@ -66,7 +70,7 @@ pub enum Unsound {
         reason: String,
     },
     /// No controller can be constructed from a configuration.
-    #[error("controller {number}: {key} {reason}")]
+    #[error("controller {number}: {key} {reason}. {ALTERED}")]
     Controller {
         /// Number of the controller.
         number: u32,
@@ -76,7 +80,7 @@ pub enum Unsound {
         reason: String,
     },
     /// A keyframe contains a number that is out of bounds.
-    #[error("the state before cycle {cycle}: {key} {reason}")]
+    #[error("the state before cycle {cycle}: {key} {reason}. {ALTERED}")]
     Keyframe {
         /// Number of the cycle.
         cycle: u64,
@@ -86,7 +90,7 @@ pub enum Unsound {
         reason: String,
     },
     /// A cycle contains a value that no servo can have recorded.
-    #[error("cycle {cycle}: {key} {reason}")]
+    #[error("cycle {cycle}: {key} {reason}. {ALTERED}")]
     Cycle {
         /// Number of the cycle.
         cycle: u64,
@@ -95,26 +99,11 @@ pub enum Unsound {
         /// What is wrong with it.
         reason: String,
     },
-    /// A cycle names a controller that the recording does not describe.
-    #[error(
-        "cycle {cycle} names controller {number}, which the recording does not describe before this cycle: the \
-         description was lost during the recording, or the file was altered. Record again, or copy the file again"
-    )]
-    UnknownController {
-        /// Number of the cycle.
-        cycle: u64,
-        /// Number of the controller.
-        number: u32,
-    },
     /// A cycle does not come after the previous one.
-    #[error(
-        "cycle {0} comes after a cycle with a higher number: the file was altered after it was written, copy it again"
-    )]
+    #[error("cycle {0} comes after a cycle with a higher number. {ALTERED}")]
     Order(u64),
     /// A controller computes a command that is not a finite number.
-    #[error(
-        "cycle {0}: the controller commands a torque that is not a finite number: a number of the recording was altered"
-    )]
+    #[error("cycle {0}: the controller commands a torque that is not a finite number. {ALTERED}")]
     NotFinite(u64),
 }
 
@@ -158,15 +147,19 @@ impl ContinuousReplay {
     /// Recomputes a cycle.
     ///
     /// # Errors
-    /// Returns an error if the cycle contains a number that no servo can have recorded, if its controller is unknown,
-    /// if it is out of order, or if the controller computes a torque that is not finite.
+    /// Returns an error if the cycle contains a number that no servo can have recorded, if it is out of order, or if
+    /// the controller computes a torque that is not finite.
     pub fn cycle(&mut self, record: &CycleRecord) -> Result<Recomputed, Unsound> {
         let cycle = record.cycle;
         let gap = self.advance(record)?;
         let idle = |step| Ok(Recomputed { gap: gap.clone(), step });
         let Some(recorded) = record.control else { return idle(Step::Idle) };
+        if let Some(number) = self.prepare(cycle, &recorded)? {
+            // The state after this cycle is not known either.
+            self.state = None;
+            return idle(Step::UnknownController(number));
+        }
         let Some(mut state) = self.state else { return idle(Step::Waiting) };
-        self.prepare(cycle, &recorded)?;
         let present = &self.ready[&recorded.controller];
         let previous = (recorded.previous != recorded.controller).then(|| &self.ready[&recorded.previous]);
         let (command, report) = recorded.input.run(present, previous, &mut state, record.feedback.as_ref());
@@ -197,10 +190,10 @@ impl ContinuousReplay {
         Ok(gap)
     }
 
-    /// Checks the input of a cycle, and makes its controllers ready.
-    fn prepare(&mut self, cycle: u64, recorded: &ControlRecord) -> Result<(), Unsound> {
-        let unknown = || Unsound::UnknownController { cycle, number: recorded.controller };
-        let hand = self.hand.as_ref().ok_or_else(unknown)?;
+    /// Checks the input of a cycle, and makes its controllers ready. Returns the number of a controller that has not
+    /// arrived, if there is one.
+    fn prepare(&mut self, cycle: u64, recorded: &ControlRecord) -> Result<Option<u32>, Unsound> {
+        let Some(hand) = &self.hand else { return Ok(Some(recorded.controller)) };
         let wrong = |(key, reason)| Unsound::Cycle { cycle, key: format!("control.input.{key}"), reason };
         InputLimits::new(hand).check(&recorded.input).map_err(wrong)?;
         let named = [recorded.controller, recorded.previous];
@@ -211,12 +204,12 @@ impl ContinuousReplay {
             if self.ready.contains_key(&number) {
                 continue;
             }
-            let source = self.sources.get(&number).ok_or(Unsound::UnknownController { cycle, number })?;
+            let Some(source) = self.sources.get(&number) else { return Ok(Some(number)) };
             let made = Controller::in_gravity(&source.finger, &source.gravity, hand.rate);
             let unusable = |Unusable { key, reason }| Unsound::Controller { number, key, reason };
             self.ready.insert(number, made.map_err(unusable)?);
         }
-        Ok(())
+        Ok(None)
     }
 }
 

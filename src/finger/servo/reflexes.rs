@@ -9,8 +9,8 @@ use crate::finger::{Fault, FaultKind, Reaction, ReflexServer, Reflexes, Stage, r
 use crate::model::{FingerNumber, Part};
 
 impl FingerServo {
-    /// Lets planners install rules for the finger with the returned value. The rules of each finger read the events of
-    /// all fingers from clones of `bulletin`.
+    /// Returns the servo, and a `Reflexes` with which planners install rules for the finger. The rules of each finger
+    /// read the events of all fingers from clones of `bulletin`.
     pub fn with_reflexes(mut self, finger: FingerNumber, bulletin: &Bulletin) -> (Self, Reflexes) {
         let (planners, server) = reflexes(finger, bulletin);
         self.memory.append(server.memory());
@@ -61,11 +61,11 @@ impl FingerServo {
         if self.answered { 0 } else { self.sample_age.saturating_sub(1 + skipped) }
     }
 
-    /// Begins a spring phase (`FingerReport::springs`) with the set point in force. Planners count their next set
-    /// points from its number. They may already have given the next numbers to set points that the finger has not
-    /// followed, so these numbers can occur again. The renewal of the previous phase is therefore discarded: it could
-    /// renew a new set point with the same number. Before this call, the finger may also accept set points of a phase
-    /// that ended because a set point expired (`FingerReport::expired_phase`). After it they are discarded.
+    /// Begins a spring phase (`FingerReport::springs`) with the set point in force. Planners number their next set
+    /// points from the number of this set point on. They may already have given these numbers to set points that the
+    /// finger did not follow. The renewal of the previous phase is therefore discarded: it could renew a new set point
+    /// with the same number. If the previous phase began because a set point expired, the finger has until now also
+    /// accepted late set points of the phase before it (`FingerReport::expired_phase`). This call ends that.
     fn begin_phase(&mut self) {
         self.report.springs += 1;
         self.report.expired_phase = None;

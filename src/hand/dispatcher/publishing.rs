@@ -7,7 +7,7 @@ use crate::hand::dispatcher::member::Member;
 use crate::hand::events::{EventSource, MergedEvents, Next};
 use crate::hand::notice::print_notice;
 use crate::model::configuration::{Configuration, ConfiguredHand};
-use crate::realtime::{CycleStage, Mutex, is_memory_free, now};
+use crate::realtime::{CycleStage, Mutex, is_memory_free, now, with_remedy};
 use crate::simulated::ObjectView;
 use crate::telemetry::{Outgoing, Publisher, Serving, Status};
 use std::io;
@@ -68,8 +68,9 @@ impl Publishing {
             }),
             Err(error) => {
                 print_notice(&format!(
-                    "no process can attach to this hand, because its socket cannot be made: {error} (the hand opens \
-                     nevertheless; with `telemetry.enabled = false` it makes no socket)"
+                    "no process can attach to this hand, because its socket cannot be made: {} (the hand opens \
+                     nevertheless; with `telemetry.enabled = false` it makes no socket)",
+                    with_remedy(&error)
                 ));
                 None
             }

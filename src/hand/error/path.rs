@@ -63,7 +63,7 @@ pub enum PathError {
     /// The path leaves the joint limits between two poses.
     #[error(
         "on the way to pose {pose}, joint {joint} of finger {finger} would go to {value:.4} rad, outside its limits, \
-         {low:.4} to {high:.4} rad: add poses, or move more slowly at this pose"
+         {low:.4} to {high:.4} rad: add poses on this way, or give the steps before and after it more time"
     )]
     BeyondJointLimit {
         /// The finger.

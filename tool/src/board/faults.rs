@@ -1,6 +1,7 @@
 //! Orders of `sun2xp board` that cause faults.
 
 use sun2xp::model::Shown;
+use sun2xp::realtime::with_remedy;
 use sun2xp::simulated::{Defect, LineFault, SimulatedFinger, SimulatedPort, WiredPart};
 
 /// A fault of the board or its cable, or the end of faults.
@@ -152,7 +153,7 @@ impl Trouble {
             }
             Trouble::PlugIn => match port.plug_in() {
                 Ok(()) => format!("ok {}", port.path().display()),
-                Err(error) => format!("error {error}"),
+                Err(error) => format!("error {}", with_remedy(&error)),
             },
         }
     }

@@ -4,7 +4,7 @@ use super::port_search::{Answer, search};
 use crate::failure::{Failure, wrong_usage};
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
-use sun2xp::files::create_file;
+use sun2xp::files::{create_file, write_remedy};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::model::{FingerNumber, ShownPath};
 
@@ -31,7 +31,7 @@ fn place(file: &Path, text: &str) -> Result<(), Failure> {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
             Err(format!("another process has created {shown} meanwhile: run the tool again").into())
         }
-        Err(error) => Err(format!("cannot create {shown}: {error}").into()),
+        Err(error) => Err(format!("cannot create {shown}: {error}{}", write_remedy(&error)).into()),
     }
 }
 

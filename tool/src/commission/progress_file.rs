@@ -54,7 +54,13 @@ impl ProgressFile {
         let text = match read_regular_file(path, LARGEST) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Self::default()),
-            Err(error) => return Err(format!("{}: {error}", ShownPath(path)).into()),
+            Err(error) => {
+                let text = format!(
+                    "cannot read {}: {error}. Make the file readable for this user, or move it away to begin anew",
+                    ShownPath(path)
+                );
+                return Err(text.into());
+            }
         };
         Self::parse(&text, path)
     }

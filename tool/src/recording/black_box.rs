@@ -1,5 +1,6 @@
 //! A black box as a recording of one finger.
 
+use super::altered::unusable;
 use super::entry::{Entry, Item};
 use crate::failure::Failure;
 use std::fs::File;
@@ -7,7 +8,7 @@ use std::io::{self, Read};
 use std::path::Path;
 use sun2xp::finger::{self, CycleRecord, Fault, FaultKind, Origin, Stage};
 use sun2xp::model::configuration::Configuration;
-use sun2xp::model::{FingerNumber, Part, ShownPath};
+use sun2xp::model::{FingerNumber, Part};
 use sun2xp::telemetry::{Description, Message};
 
 /// Returns whether a file begins like JSON text, as a black box does. An MCAP file begins with another byte.
@@ -20,8 +21,10 @@ pub fn is_one(path: &Path) -> io::Result<bool> {
 pub fn read(path: &Path) -> Result<(Description, Vec<Entry>), Failure> {
     let recording = finger::Recording::open(path)?;
     let finger::Recording { origin, library, clock_offset, cycles, .. } = recording;
-    check(&origin).map_err(|reason| format!("{} cannot be used: {reason}", ShownPath(path)))?;
-    let number = FingerNumber::new(origin.finger).ok_or("the black box names no finger")?;
+    check(&origin).map_err(|reason| unusable(path, &library, &reason))?;
+    let number = FingerNumber::new(origin.finger).ok_or_else(|| {
+        unusable(path, &library, &format!("finger {} does not exist: fingers are 1, 2 and 3", origin.finger))
+    })?;
     let mut configuration = Configuration { hand: origin.hand.clone(), ..Default::default() };
     if let Some(first) = origin.controllers.first() {
         configuration.fingers[number.index()] = first.finger.clone();
@@ -50,12 +53,7 @@ pub fn read(path: &Path) -> Result<(Description, Vec<Entry>), Failure> {
     for record in cycles {
         let CycleRecord { cycle, began, stage, timing, feedback, status, control } = record;
         let stage = stage_of(&stage).ok_or_else(|| {
-            format!(
-                "{}: cycle {cycle} has the unknown stage \"{stage}\": the file was altered, or it needs the program of \
-                 library {}, which wrote it",
-                ShownPath(path),
-                description.library
-            )
+            unusable(path, &description.library, &format!("cycle {cycle} has the unknown stage \"{stage}\""))
         })?;
         let record = CycleRecord { cycle, began, stage, timing, feedback, status, control };
         add(began, Message::Cycle { finger: number, record });

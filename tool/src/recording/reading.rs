@@ -1,5 +1,6 @@
 //! Reading a recording: an MCAP file that `sun2xp record` has written, complete or not, or a black box.
 
+use super::altered::{or_by, unusable};
 use super::black_box;
 use super::channels::{DESCRIPTION, EVENTS, FORMAT, LOST, OBJECT, POSTCARD, STATUS, VERSION};
 use super::entry::{Entry, Item};
@@ -9,9 +10,10 @@ use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOp
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use sun2xp::files::open_regular_file;
+use sun2xp::finger::ALTERED;
 use sun2xp::model::{FingerNumber, ShownPath};
 use sun2xp::telemetry::{Description, Message};
 
@@ -74,9 +76,19 @@ impl Recording {
             LinearReaderOptions::default().with_prevalidate_chunk_crcs(true).with_record_length_limit(LARGEST_RECORD);
         let reader = LinearReader::new_with_options(options);
         let mut mcap = Mcap { file, reader, channels: BTreeMap::new(), bytes };
-        let foreign = |reason: &str| format!("{} is not a recording of sun2xp: {reason}", ShownPath(path));
+        let foreign = |reason: &str| {
+            format!(
+                "{} is not a recording of sun2xp: {reason}. Use a file of `sun2xp record` or a black box, and copy it \
+                 again if it was damaged",
+                ShownPath(path)
+            )
+        };
         loop {
-            match mcap.next().map_err(|error| foreign(&error.to_string()))? {
+            let next = mcap.next().map_err(|error| match error.downcast_ref::<io::Error>() {
+                Some(error) => format!("cannot read {}: {error}", ShownPath(path)),
+                None => foreign(&error.to_string()),
+            });
+            match next? {
                 Some(Found::Format { version, .. }) if version == VERSION => {}
                 Some(Found::Format { version, library }) => {
                     let text = format!(
@@ -88,7 +100,8 @@ impl Recording {
                 }
                 Some(Found::Description(description)) => {
                     description.configuration.check().map_err(|wrong| {
-                        foreign(&format!("{}.{} {}", wrong.section, wrong.unusable.key, wrong.unusable.reason))
+                        let reason = format!("{}.{} {}", wrong.section, wrong.unusable.key, wrong.unusable.reason);
+                        unusable(path, &description.library, &reason)
                     })?;
                     return Ok(Self::new(path, Source::Mcap(Box::new(mcap)), *description));
                 }
@@ -157,10 +170,19 @@ impl Iterator for Recording {
                 }
                 Err(error) => {
                     self.ended = true;
-                    return Some(Err(format!("{}: {error}", ShownPath(&self.path)).into()));
+                    return Some(Err(unreadable(&self.path, &self.description.library, &error)));
                 }
             }
         }
+    }
+}
+
+/// The failure of a file that cannot be read further.
+fn unreadable(path: &Path, library: &str, error: &Failure) -> Failure {
+    let path = ShownPath(path);
+    match error.downcast_ref::<io::Error>() {
+        Some(error) => format!("cannot read {path}: {error}").into(),
+        None => format!("{path}: {error}. {ALTERED}{}", or_by(library)).into(),
     }
 }
 
@@ -237,7 +259,8 @@ fn message(topic: &str, encoding: &str, time: u64, data: &[u8]) -> Result<Option
             Item::Lost { finger, cycles }
         }
         (_, POSTCARD) => {
-            let message = Message::decode(data).map_err(|error| format!("a message of {topic}: {error}"))?;
+            let message =
+                Message::decode(data).map_err(|error| format!("a message of {topic} cannot be read: {error}"))?;
             if let Message::Controller { source, .. } = &message {
                 let refused = |key: &str, reason: &str| format!("a controller of {topic}: {key} {reason}");
                 source.finger.check().map_err(|wrong| refused(wrong.key, &wrong.reason))?;

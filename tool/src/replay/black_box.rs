@@ -4,6 +4,7 @@ use super::in_file;
 use super::report::{FingerReport, FirstDifference, Report};
 use crate::failure::Failure;
 use crate::print::Progress;
+use crate::recording::or_by;
 use std::path::Path;
 use sun2xp::finger::{Difference, Recording};
 
@@ -13,7 +14,7 @@ pub fn replay(file: &Path) -> Result<Report, Failure> {
     let progress = Progress::new("replay", recording.cycles.len() as u64);
     let replayed = recording.replay_with(|index| progress.reach(index as u64));
     drop(progress);
-    let replayed = replayed.map_err(|error| in_file(file, error))?;
+    let replayed = replayed.map_err(|error| in_file(file, format_args!("{error}{}", or_by(&recording.library))))?;
     if replayed.cycles == 0 {
         return Err(in_file(file, "it contains no cycles that can be replayed"));
     }

@@ -4,7 +4,7 @@ use super::in_file;
 use super::report::{FingerReport, FirstDifference, Report};
 use crate::failure::Failure;
 use crate::print::Progress;
-use crate::recording::{Item, Recording};
+use crate::recording::{Item, Recording, or_by};
 use std::collections::BTreeMap;
 use std::path::Path;
 use sun2xp::finger::{ContinuousReplay, Step, Unsound};
@@ -48,6 +48,7 @@ impl Replaying {
                 }
                 match (recomputed.step, &record.control) {
                     (Step::Waiting, _) => report.without_state += 1,
+                    (Step::UnknownController(number), _) => report.add_without_controller(record.cycle, number),
                     (Step::Same, _) => report.replayed += 1,
                     (Step::Different(replayed), Some(recorded)) => {
                         report.replayed += 1;
@@ -78,16 +79,22 @@ pub fn replay(file: &Path) -> Result<Report, Failure> {
             _ => newest,
         };
         let replaying = fingers.entry(finger).or_insert_with(|| Replaying::new(finger));
-        replaying.take(message).map_err(|error| in_file(file, format_args!("finger {finger}: {error}")))?;
+        replaying.take(message).map_err(|error| {
+            let other_remedy = or_by(&recording.description().library);
+            in_file(file, format_args!("finger {finger}: {error}{other_remedy}"))
+        })?;
         progress.reach((recording.progress() * STEPS as f64) as u64);
     }
     drop(progress);
     let reports: Vec<FingerReport> = fingers.into_values().map(|finger| finger.report).collect();
     if reports.iter().all(|report| report.replayed == 0) {
-        let without_state = reports.iter().any(|report| report.without_state > 0);
-        let reason = match without_state {
-            true => "it has no recorded state before any of its cycles, so none can be replayed: record for a second",
-            false => "it contains no cycles in which a controller has run",
+        let reason = if reports.iter().any(|report| report.without_controller > 0) {
+            "it does not describe the controllers of its cycles, so none can be replayed: the descriptions were lost \
+             during the recording, or the file was altered. Record again, or copy the file again"
+        } else if reports.iter().any(|report| report.without_state > 0) {
+            "it has no recorded state before any of its cycles, so none can be replayed: record for a second"
+        } else {
+            "it contains no cycles in which a controller has run"
         };
         return Err(in_file(file, reason));
     }
@@ -98,7 +105,7 @@ pub fn replay(file: &Path) -> Result<Report, Failure> {
 fn after(newest: Option<(FingerNumber, u64)>, error: &Failure) -> String {
     match newest {
         None => error.to_string(),
-        Some((finger, cycle)) => format!("{error} (after cycle {cycle} of finger {finger})"),
+        Some((finger, cycle)) => format!("{error}. The last cycle that was read is cycle {cycle} of finger {finger}"),
     }
 }
 

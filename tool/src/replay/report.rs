@@ -36,6 +36,9 @@ pub struct FingerReport {
     pub replayed: u64,
     /// Number of cycles that were not computed again, because no recorded state precedes them.
     pub without_state: u64,
+    /// Number of cycles that were not computed again, because the file does not describe their controller.
+    pub without_controller: u64,
+    first_without_controller: Option<WithoutController>,
     /// Number of cycles that differ from the recorded ones.
     pub different: u64,
     /// Number of recorded states.
@@ -55,6 +58,14 @@ pub struct FingerReport {
 struct Gap {
     first: u64,
     last: u64,
+}
+
+/// A cycle whose controller the file does not describe.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct WithoutController {
+    cycle: u64,
+    /// Number of the controller.
+    controller: u32,
 }
 
 /// The first difference: a cycle, or the recorded state before it.
@@ -104,6 +115,8 @@ impl FingerReport {
             contents: Tally::default(),
             replayed: 0,
             without_state: 0,
+            without_controller: 0,
+            first_without_controller: None,
             different: 0,
             states: 0,
             different_states: 0,
@@ -121,6 +134,12 @@ impl FingerReport {
         if self.first_gaps.len() < MOST_GAPS {
             self.first_gaps.push(Gap { first: missing.start, last: missing.end - 1 });
         }
+    }
+
+    /// Counts a cycle whose controller has this number and is not described.
+    pub fn add_without_controller(&mut self, cycle: u64, controller: u32) {
+        self.without_controller += 1;
+        self.first_without_controller.get_or_insert(WithoutController { cycle, controller });
     }
 
     fn pass(&self) -> bool {
@@ -185,11 +204,22 @@ impl FingerReport {
             let text = format!("{}, which no recorded state precedes", Counted(self.without_state, "cycle", "cycles"));
             table.row([Cell::new(Look::Dim, "not replayed"), text.into()]);
         }
+        if let Some(WithoutController { cycle, controller }) = self.first_without_controller {
+            let cycles = Counted(self.without_controller, "cycle", "cycles");
+            let text = format!(
+                "{cycles}, from cycle {cycle} on, because the file does not describe controller {controller}: \
+                 the description was lost during the recording, or the file was altered. Record again, or copy the \
+                 file again"
+            );
+            table.row([Cell::new(Look::Dim, "not replayed"), Cell::new(Look::Warning, text)]);
+        }
     }
 
     fn add_result_to(&self, table: &mut Table) {
         let result = match self.pass() {
-            true if self.replayed == 0 && self.without_state > 0 => Cell::new(Look::Warning, "no cycle"),
+            true if self.replayed == 0 && self.without_state + self.without_controller > 0 => {
+                Cell::new(Look::Warning, "no cycle")
+            }
             true => {
                 let text = format!(
                     "{}, every motor command the same to the last bit",

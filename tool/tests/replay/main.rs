@@ -119,6 +119,43 @@ fn a_gap_is_reported_and_the_replay_continues_after_it() {
     assert!(number(&finger["replayed"]) > 600 && number(&finger["without_state"]) < 200, "{finger:#}");
 }
 
+/// The number of the second controller of a finger. The run of these tests adjusts finger 2.
+fn second_controller(recording: &Recorded, finger: FingerNumber) -> u32 {
+    let mut numbers = recording.messages.iter().filter_map(|message| match message {
+        Message::Controller { finger: of, source, .. } if *of == finger => Some(source.number),
+        _ => None,
+    });
+    let first = numbers.next().expect("a controller");
+    numbers.find(|number| *number != first).expect("a second controller")
+}
+
+#[test]
+fn a_lost_controller_leaves_out_its_cycles_only() {
+    let recording = recorded();
+    let lost = second_controller(recording, FingerNumber::TWO);
+    let is_lost = |message: &Message| {
+        matches!(message, Message::Controller { finger, source, .. }
+            if *finger == FingerNumber::TWO && source.number == lost)
+    };
+    let rest: Vec<Message> = recording.messages.iter().filter(|message| !is_lost(message)).cloned().collect();
+    let (status, told) = replay(recording, &rest);
+    assert_eq!(status, Some(0), "{told:#}");
+    let [one, two, three] = [0, 1, 2].map(|finger| &told["fingers"][finger]);
+    assert!(number(&two["without_controller"]) > 0 && number(&two["replayed"]) > 0, "{two:#}");
+    assert_eq!(number(&two["first_without_controller"]["controller"]), u64::from(lost));
+    for whole in [one, three] {
+        assert_eq!(number(&whole["without_controller"]), 0, "{whole:#}");
+        assert!(number(&whole["replayed"]) > 800, "{whole:#}");
+    }
+    let (_, told) = replayed_with(recording.write(&rest).path(), &[]);
+    assert!(told.contains(&format!("does not describe controller {lost}: ")), "{told}");
+
+    let rest = recording.messages.iter().filter(|message| !matches!(message, Message::Controller { .. }));
+    let file = recording.write(&rest.cloned().collect::<Vec<_>>());
+    let (status, told) = replayed_with(file.path(), &[]);
+    assert!(status == Some(1) && told.contains("does not describe the controllers of its cycles"), "{told}");
+}
+
 #[test]
 fn a_recording_without_states_is_refused() {
     let recording = recorded();
@@ -156,10 +193,13 @@ fn a_recording_without_an_end_is_replayed_and_a_damaged_one_is_refused() {
     // The checksum of the chunk detects one altered bit, and the message names the last good cycle.
     std::fs::write(file.path(), damaged(&whole)).expect("written");
     let (status, told) = replayed_with(file.path(), &[]);
-    assert!(status == Some(1) && told.contains("after cycle ") && told.lines().count() == 1, "{told}");
+    assert!(status == Some(1) && told.lines().count() == 1, "{told}");
+    for part in ["The file was altered or damaged", "copy it again", "The last cycle that was read is cycle "] {
+        assert!(told.contains(part), "{told}");
+    }
     let (status, told) = replayed_with(recording.write(&[]).path(), &[]);
     assert!(status == Some(1) && told.contains("no cycles"), "{told}");
     std::fs::write(file.path(), &whole[..8]).expect("written");
     let (status, told) = replayed_with(file.path(), &[]);
-    assert!(status == Some(1) && told.contains("is not a recording"), "{told}");
+    assert!(status == Some(1) && told.contains("is not a recording") && told.contains("copy it again"), "{told}");
 }

@@ -139,7 +139,7 @@ fn jog_asks_before_a_real_hand_moves_and_limits_its_steps() {
     fs::write(&file, text).expect("written");
     let command = format!("{TOOL} jog --config {}", file.display());
     let terminal = Terminal::start("asks", (100, 30), &command);
-    terminal.until(&["This moves a real hand", "finger 3: /", "Type yes"]);
+    terminal.until(&["This moves a real hand", "finger 3: /", "at most 9 degrees", "Type yes"]);
     terminal.run("no");
     terminal.until(&["not confirmed, and nothing has moved", "status 1"]);
     drop(terminal);

@@ -107,7 +107,7 @@ impl Wrong {
     fn remedy_of_tendons(&self) -> String {
         match self {
             Self::TendonLoose(tendon) => {
-                format!("Check tendon {tendon}: it is off its drum or a pulley, broken, or looser than 8 mm")
+                format!("Check tendon {tendon}: it is off its drum or a pulley, broken, or has more than 8 mm of slack")
             }
             Self::TendonTension(tendon, part) if *part < 1.0 => {
                 format!("Shorten tendon {tendon}, or look for friction in its path")

@@ -1,0 +1,32 @@
+//! The failure of a file with values that no hand records.
+
+use crate::failure::Failure;
+use std::path::Path;
+use sun2xp::finger::ALTERED;
+use sun2xp::model::ShownPath;
+
+/// Returns the failure of a file that `library` has written, with the cause and the remedy.
+pub fn unusable(path: &Path, library: &str, reason: &str) -> Failure {
+    format!("{} cannot be used: {reason}. {ALTERED}{}", ShownPath(path), or_by(library)).into()
+}
+
+/// Returns the other remedy if another library has written the file, as the end of a sentence. Libraries of other
+/// versions may permit other values.
+pub fn or_by(library: &str) -> String {
+    match env!("CARGO_PKG_VERSION") {
+        own if own == library => String::new(),
+        _ => format!(", or use the program of library {library}, which wrote it"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_file_of_another_library_has_the_second_remedy() {
+        let text = |library: &str| unusable(Path::new("hand.mcap"), library, "rate 0 Hz").to_string();
+        assert!(text(env!("CARGO_PKG_VERSION")).ends_with("copy it again"));
+        assert!(text("0.0.9").ends_with("copy it again, or use the program of library 0.0.9, which wrote it"));
+    }
+}
