@@ -40,9 +40,9 @@
            return CloseHand();
        }
 
-   Example, how to compile and run it:
+   Example, how to compile and run it after make install:
 
-       cc planner.c -I include -L lib -lsun2xp -Wl,-rpath,lib
+       cc planner.c $(pkg-config --cflags --libs sun2xp)
        ./a.out
 
    Angles are in rad, stiffness in N/cm. Each finger is a spring: it pulls its tip toward the pose
@@ -100,8 +100,8 @@
    SendPos, SendKx and GetPos take arrays of float and arrays of double. The compiler chooses by the
    type of the argument (Pos[3], Kx[3][3] or Kx[9], const or not), in C with macros and in C++ with
    templates. Other types do not compile: cast a void * pointer to float * or double *. NULL and 0
-   compile, and are refused with EFAULT. C arrays of variable length compile, but their lengths are
-   not checked.
+   compile, and are refused with EFAULT. C arrays of variable length compile too. An array that is too
+   short also compiles: the compiler checks at most the length of the rows of a matrix.
 
    The C macros are function-like, so they do not work for a planner that declares the functions
    itself or takes their addresses. Compile such a planner with

@@ -41,9 +41,9 @@
            return sun2xp_close(hand) != 0;
        }
 
-   Example, how to compile and run it:
+   Example, how to compile and run it after make install:
 
-       cc planner.c -I include -L lib -lsun2xp -Wl,-rpath,lib
+       cc planner.c $(pkg-config --cflags --libs sun2xp)
        ./a.out
 
    Each finger is a spring: it pulls its tip toward the position sent last, with the stiffness sent last.
@@ -256,9 +256,12 @@ typedef struct sun2xp_hand sun2xp_hand;
 #define SUN2XP_ERROR_EXITING 3              /* The process is exiting, and its hands are closed. */
 #define SUN2XP_ERROR_NO_HAND 4              /* The handle does not belong to an open hand. */
 #define SUN2XP_ERROR_BUSY 5                 /* Hand or finger is busy: it is being opened, closed, calibrated or
-                                               recovered, or 16 groups of sun2xp_send_group have not taken effect
-                                               yet. Call again later. If a finger is limp (SUN2XP_STATE_LIMP), zero
-                                               it first. */
+                                               recovered, it left the pose at which a path begins during
+                                               sun2xp_send_path, or 16 groups of sun2xp_send_group have not taken
+                                               effect yet. Call again later. If a finger is limp (SUN2XP_STATE_LIMP),
+                                               zero it first. Three other calls get this number too: OpenHand while
+                                               its hand is open, sun2xp_set_log in the log callback, and a call for a
+                                               hand on another machine that another client commands. */
 #define SUN2XP_ERROR_TOO_MANY 6             /* Too many hands or reflexes. */
 #define SUN2XP_ERROR_ARGUMENT 7             /* An argument makes no sense: null, NaN, no such finger, a struct that
                                                is too small. */
@@ -1093,7 +1096,7 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
    ENODEV   no such hand, or it was closed meanwhile
    EINVAL   no such finger; no such until; seconds is negative or NaN
    EIO      a finger is faulted
-   EBUSY    a finger is limp, is being calibrated, or is closed
+   EBUSY    a finger is limp or is being calibrated, or the process is exiting (SUN2XP_STATE_CLOSED)
    ETIMEDOUT  the time has expired; sun2xp_error_text names a finger that has not arrived or settled
 
  Threads: any.
@@ -2012,16 +2015,16 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
    ENODEV     no such hand, or it was closed meanwhile
    EINVAL     no such finger; or the configuration file has changed, and the zeros do not fit it:
               they are in force until sun2xp_close and not stored
-   EIO        the finger is faulted. If it faulted after its zeros were found, they are in force, and the next
-              sun2xp_zero or sun2xp_identify of the finger that succeeds stores them
+   EIO        the finger is faulted. If it faulted after its zeros were found, they are in force. The next
+              sun2xp_zero or sun2xp_identify that succeeds for this finger stores them
    EBUSY      the finger is being calibrated or recovered already
    ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
               joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
-              gives the remedy. The finger is then limp. There are two exceptions. (1) With "pose" the
-              finger moved while its encoders were read, or with "kept" the counts were not valid: the
-              finger is then a spring or limp, as before, but a path or an interpolated motion
-              (finger.motion.interpolate_ms) that it followed has ended. (2) Another thread has recovered the
-              finger from a fault during the calibration: the finger then holds its pose. If its new zeros
+              gives the remedy. The finger is then limp, with two exceptions. (1) If the finger moved while
+              its encoders were read ("pose"), or if the counts were not valid ("kept"), the finger stays a
+              spring or limp, as it was before the call. But a path or an interpolated motion
+              (finger.motion.interpolate_ms) that it followed has ended. (2) If another thread has recovered
+              the finger from a fault during the calibration, the finger holds its pose. If its new zeros
               had been found before the fault, they are in force
    ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
    EACCES, ENOSPC, EBUSY ...  the configuration file cannot be written, or another process has kept it
@@ -2038,15 +2041,16 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
 int sun2xp_zero(sun2xp_hand *hand, int finger);
 
 /*
- sun2xp_identify - measure gauge gains, friction and tendon stiffness of a finger
+ sun2xp_identify - measure gauge gains, friction, tendon stiffness and rotor inertia of a finger
 
    finger   1 to 3; it must have been zeroed
 
  Moves the joints back and forth around their present angles, moves each joint between its two stops,
  presses against the lower stops with up to 0.6 of finger.tendon.maximum, and returns to the start.
- Measures the gains of the gauges, the stiffness of each tendon, its moment arms, and the friction of
- motors, conduits, pulleys and joints. The results take effect and are stored like those of sun2xp_zero.
- Takes about 80 s, and needs free space over the whole range of the joints.
+ Measures the gains of the gauges, the stiffness of each tendon, its moment arms, the friction of motors,
+ conduits, pulleys and joints, and the inertia of the rotors. The results take effect and are stored like
+ those of sun2xp_zero.
+ Takes about 85 s, and needs free space over the whole range of the joints.
 
  Returns and waits as sun2xp_zero does.
 

@@ -75,7 +75,8 @@ pub extern "C" fn sun2xp_zero(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
 /// Moves the joints back and forth around their present angles, moves each joint between its two stops,
 /// presses against the lower stops with up to 0.6 of finger.tendon.maximum, and returns to the start.
 /// Measures the gains of the gauges, the stiffness of each tendon, its moment arms, the friction of motors,
-/// conduits, pulleys and joints, and the inertia of the rotors. The results take effect and are stored like those of sun2xp_zero.
+/// conduits, pulleys and joints, and the inertia of the rotors. The results take effect and are stored like
+/// those of sun2xp_zero.
 /// Takes about 85 s, and needs free space over the whole range of the joints.
 ///
 /// Returns and waits as sun2xp_zero does.

@@ -92,7 +92,8 @@ pub fn help() -> String {
         "Orders:\n{}\nDefects, each of which lasts until `mend` (`reset` only for a moment). Tendons, motors, gauges \
          and encoders are numbered 1 to 4:\n{}\nLine faults, each of which lasts until `good` (`unplug` until \
          `replug`), or for MS milliseconds if MS is given. PROBABILITY applies to each frame from the board, or with \
-         `commands` to each frame to the board:\n{}\nPositions and forces are in the finger's frame, lengths in cm.\n\n{}",
+         `commands` to each frame to the board:\n{}\nPositions and forces are in the finger's frame, lengths in \
+         cm.\n\n{}",
         list(&ACTIONS),
         list(&DEFECTS),
         list(&LINE_FAULTS),

@@ -235,14 +235,13 @@ class RemoteHand(Reading):
         """Zeros gauges and encoders of a finger. Its joints may move between their stops. Waits up to ten minutes.
 
         Raises:
-            Error: the calibration failed, and the previous one is in force. If the finger faulted after its zeros had
-                been found, or if the server could not store the zeros, the new zeros are in force.
+            Error: the calibration failed. The new one is in force if storing it failed or a fault followed it.
         """
         self._check(finger)
         self._request("calibrate", finger, self._epoch(), timeout=_CALIBRATION_TIME)
 
     def identify(self, finger: int) -> None:
-        """Measures gauge gains, friction, tendon stiffness and rotor inertia of a finger. Errors are those of `zero`."""
+        """Measures gauge gains, friction, tendons and rotors of a finger. Errors are those of `zero`."""
         self._check(finger)
         self._request("identify", finger, self._epoch(), timeout=_CALIBRATION_TIME)
 
