@@ -129,12 +129,10 @@ impl TensionLost {
         // After a tendon has torn, the others lose their tension too, because nothing balances them. So the tendon that
         // lost its tension first is reported.
         let (missed, lowest) = (memory.missed.imax(), memory.low.imax());
-        let fault = if memory.missed[missed] >= DURATION {
-            self.fault(memory, sample, flicker, missed)
-        } else {
-            (memory.low[lowest] >= TOO_LONG).then(|| self.lost(memory, lowest))
-        };
-        Alarms { fault, warning }
+        let suddenly =
+            if memory.missed[missed] >= DURATION { self.fault(memory, sample, flicker, missed) } else { None };
+        let too_long = || (memory.low[lowest] >= TOO_LONG).then(|| self.lost(memory, lowest));
+        Alarms { fault: suddenly.or_else(too_long), warning }
     }
 
     fn fault(&self, memory: &Memory, sample: &Sample, flicker: &Flicker, tendon: usize) -> Option<Alarm> {
@@ -170,13 +168,18 @@ mod tests {
     use super::*;
     use crate::control::signals::{Feedback, Report};
 
-    /// Returns the fault of a finger whose tendons show 10 N and whose tendon 0 misses `before`, N. Then the tendons
-    /// show the tensions of `shown`, N, and tendon 0 misses the tension `then`, N. Each lasts 0.1 s, or until a fault.
+    /// Returns the fault that a finger has within 0.1 s after its tendons have lost tension.
     fn fault(before: f64, then: f64, shown: [f64; 4]) -> Option<Symptom> {
+        fault_within(100, before, then, shown)
+    }
+
+    /// Returns the fault of a finger whose tendons show 10 N and whose tendon 0 misses `before`, N, for 0.1 s. Then the
+    /// tendons show the tensions of `shown`, N, and tendon 0 misses the tension `then`, N, for this number of ms.
+    fn fault_within(time: usize, before: f64, then: f64, shown: [f64; 4]) -> Option<Symptom> {
         let lost = TensionLost::new(&ConfiguredFinger::default());
         let (feedback, report) = (Feedback::default(), Report::default());
         let mut memory = Memory::default();
-        (0..200).find_map(|cycle| {
+        (0..100 + time).find_map(|cycle| {
             let (missing, tensions) = if cycle < 100 { (before, [10.0; 4]) } else { (then, shown) };
             let sample = Sample {
                 feedback: &feedback,
@@ -207,6 +210,8 @@ mod tests {
     #[test]
     fn two_tendons_that_become_low_together_do_not_slip() {
         assert_eq!(fault(0.0, 7.0, [1.1, 20.0, 20.0, 1.2]), None);
+        assert_eq!(fault_within(495, 0.0, 7.0, [1.1, 20.0, 20.0, 1.2]), None);
+        assert_eq!(fault_within(505, 0.0, 7.0, [1.1, 20.0, 20.0, 1.2]), Some(Symptom::SlackTendon));
         assert_eq!(fault(0.0, 7.0, [0.0, 20.0, 20.0, 1.2]), Some(Symptom::BrokenTendon));
     }
 }
