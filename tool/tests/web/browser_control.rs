@@ -110,8 +110,7 @@ fn a_held_button_ends_when_another_finger_is_selected() {
     let Some((_alone, _program, _folder, browser)) = page() else { return };
     browser.wait_for(&format!("return !!{}", button("+z")));
     browser.run(NOTE_COMMANDS);
-    mouse(&browser, &button("+z"), &[json!({ "type": "pointerDown", "button": 0 })]);
-    browser.wait_for("return window.sent.length > 2");
+    press(&browser, &button("+z"), "return true", "return window.sent.length > 2 && 'held'");
     browser.act(&key("2"));
     browser.wait_for("return document.querySelector('#control h3').textContent === 'Finger 2'");
     commands(&browser);
@@ -121,31 +120,32 @@ fn a_held_button_ends_when_another_finger_is_selected() {
     release(&browser);
 }
 
-/// Presses the button of a push that the hand refuses, because it is too strong. Waits for the answer `refused`. On a
-/// busy machine, the page may change between the calls for the press. If the press was therefore another one, releases
-/// the button and returns what happened.
-fn press_too_strongly(browser: &Browser, refused: &str) -> Option<String> {
+/// Presses a button until the page shows an answer, and returns it. `prepared` is true when the button may
+/// be pressed, and `answer` is the text of the answer. On a busy machine, the page may change between the calls for the
+/// press. If the press was therefore another one, releases the button, prints what happened, and presses again.
+fn press(browser: &Browser, button: &str, prepared: &str, answer: &str) -> String {
     browser.run("addEventListener('pointerdown', (event) => { window.pressed = event.target; }, { capture: true })");
-    browser.wait_for(
-        "const force = document.querySelector('#control input[aria-label^=\"force of the push\"]');
-        if (!force || document.getElementById('link').dataset.state !== 'live') return false;
-        force.max = 2000;
-        force.value = 2000;
-        window.force = force;
-        window.pressed = null;
-        return true;",
-    );
-    mouse(browser, PUSH, &[json!({ "type": "pointerDown", "button": 0 })]);
-    let outcome = browser.wait_for(&format!(
-        "if ((() => {{ {refused} }})()) return 'refused';
-        if (!window.force.isConnected) return 'the page has built its panel anew';
-        return window.pressed !== {PUSH} && 'the mouse pressed ' + (window.pressed?.outerHTML ?? 'nothing');",
-    ));
-    let outcome = outcome.as_str().expect("a text");
-    (outcome != "refused").then(|| {
+    loop {
+        browser.wait_for(&format!(
+            "if (!(() => {{ {prepared} }})()) return false;
+            window.button = {button};
+            window.pressed = null;
+            return !!window.button;"
+        ));
+        mouse(browser, button, &[json!({ "type": "pointerDown", "button": 0 })]);
+        let outcome = browser.wait_for(&format!(
+            "const answer = (() => {{ {answer} }})();
+            if (answer) return 'answer: ' + answer;
+            if (!window.button.isConnected) return 'the page has built its panel anew';
+            return window.pressed !== {button} && 'the mouse pressed ' + (window.pressed?.outerHTML ?? 'nothing');"
+        ));
+        let outcome = outcome.as_str().expect("a text");
+        if let Some(answer) = outcome.strip_prefix("answer: ") {
+            return answer.to_owned();
+        }
+        println!("The button is pressed again, because {outcome}.");
         release(browser);
-        outcome.to_owned()
-    })
+    }
 }
 
 /// A push lasts while its button is held, so the page must not show a push that does not act.
@@ -154,39 +154,17 @@ fn a_button_whose_push_was_refused_does_not_stay_pressed() {
     let Some((_alone, _program, _folder, browser)) = page() else { return };
     let refused = "const message = document.querySelector('#control .message');
         return message.className === 'message refused' && message.textContent.includes('use a smaller force')";
-    while let Some(why) = press_too_strongly(&browser, refused) {
-        println!("The button is pressed again, because {why}.");
-    }
+    let strong = "const force = document.querySelector('#control input[aria-label^=\"force of the push\"]');
+        if (!force || document.getElementById('link').dataset.state !== 'live') return false;
+        force.max = 2000;
+        force.value = 2000;
+        return true;";
+    press(&browser, PUSH, strong, &format!("return (() => {{ {refused} }})() && 'refused'"));
     browser.wait_for(&format!("return !{PUSH}.classList.contains('held')"));
     release(&browser);
     // The answer to the end of the push arrives meanwhile.
     browser.run("await new Promise((resolve) => setTimeout(resolve, 600))");
     assert_eq!(browser.run(refused), true);
-}
-
-/// Holds the button of a push. On a busy machine, the page may change between the calls for the press, or end the push.
-/// If the button is then not held, releases it and returns what happened.
-fn hold_push(browser: &Browser) -> Option<String> {
-    browser.run(&format!(
-        "addEventListener('pointerdown', (event) => {{ window.pressed = event.target; }}, {{ capture: true }});
-        window.pressed = null;
-        window.push = {PUSH};"
-    ));
-    mouse(browser, PUSH, &[json!({ "type": "pointerDown", "button": 0 })]);
-    let outcome = browser.wait_for(&format!(
-        "if ({PUSH}.classList.contains('held')) return 'held';
-        window.since ??= performance.now();
-        if (performance.now() - window.since < 2000) return false;
-        window.since = undefined;
-        const message = document.querySelector('#control .message')?.textContent;
-        const place = window.push.isConnected ? 'the same panel' : 'another panel';
-        return 'the mouse pressed ' + (window.pressed?.outerHTML ?? 'nothing') + ' of ' + place + ': ' + message;"
-    ));
-    let outcome = outcome.as_str().expect("a text");
-    (outcome != "held").then(|| {
-        release(browser);
-        outcome.to_owned()
-    })
 }
 
 #[test]
@@ -199,10 +177,13 @@ fn a_held_button_ends_with_the_connection() {
           return send.call(this, text);
         };",
     );
-    browser.wait_for("return window.socket && document.getElementById('link').dataset.state === 'live'");
-    while let Some(why) = hold_push(&browser) {
-        println!("The button is pressed again, because {why}.");
-    }
+    let live = "return window.socket && document.getElementById('link').dataset.state === 'live'";
+    let held_or_refused = format!(
+        "if ({PUSH}?.classList.contains('held')) return 'held';
+        const message = document.querySelector('#control .message');
+        return message?.className === 'message refused' && message.textContent;"
+    );
+    assert_eq!(press(&browser, PUSH, live, &held_or_refused), "held");
     browser.run("window.socket.close()");
     browser.wait_for(&format!("return !{PUSH}.classList.contains('held')"));
     release(&browser);
