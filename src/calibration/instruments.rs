@@ -46,6 +46,11 @@ pub(super) struct Instruments {
 }
 
 impl Instruments {
+    /// Returns the cm of tendon per count of each encoder, with sign.
+    pub fn cm_per_count(&self) -> Vector4<f64> {
+        self.radius.component_mul(&self.radians_per_count)
+    }
+
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
         let sensors = SensorScales::new(finger)?;

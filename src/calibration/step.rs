@@ -35,7 +35,7 @@ pub enum Step {
     TryingMotors,
     /// Joints move back and forth at two levels of tension.
     MovingJoints,
-    /// The tensions oscillate while the joints are held.
+    /// The common tension oscillates while the joints move slowly.
     OscillatingTensions,
     /// The finger presses against its stops.
     Pressing,

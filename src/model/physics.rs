@@ -21,8 +21,13 @@ pub(crate) fn least_inertia(stiffness: f64, radius: f64) -> f64 {
     (stiffness * 100.0) * (radius * 0.01 * STEP).powi(2)
 }
 
+/// Returns the largest viscous friction, N m s/rad, of such a rotor. `inertia` is at least `least`, its smallest one.
+pub(crate) fn largest_viscous_friction(inertia: f64, least: f64) -> f64 {
+    (inertia - least) / (2.0 * STEP)
+}
+
 /// Returns whether a step can integrate a rotor with this inertia, kg m^2, and this viscous friction, N m s/rad.
 pub(crate) fn resolves_rotor(inertia: f64, stiffness: f64, radius: f64, viscous: f64) -> bool {
     let least = least_inertia(stiffness, radius);
-    inertia >= least && viscous <= (inertia - least) / (2.0 * STEP)
+    inertia >= least && viscous <= largest_viscous_friction(inertia, least)
 }

@@ -246,12 +246,16 @@ fn quoted(text: &str) -> String {
 mod tests {
     use super::*;
 
+    fn arguments(folder: &Path, force: bool) -> Arguments {
+        let (file, output) = (folder.join("hand.mcap"), Some(folder.to_path_buf()));
+        Arguments { file, output, format: Format::Wide, fingers: Vec::new(), force }
+    }
+
     #[test]
     fn if_a_file_does_not_get_its_name_no_file_gets_one() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = |name: &str| folder.path().join(name);
-        let (file, output) = (path("hand.mcap"), Some(folder.path().to_path_buf()));
-        let arguments = Arguments { file, output, format: Format::Wide, fingers: Vec::new(), force: false };
+        let arguments = arguments(folder.path(), false);
         let mut files = Files { arguments: &arguments, standard_output: false, start: None, open: BTreeMap::new() };
         for finger in [1, 2] {
             files.file(finger, "time_s").expect("begun");
@@ -269,8 +273,7 @@ mod tests {
     fn a_forced_export_that_fails_names_the_files_that_it_has_replaced() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = |name: &str| folder.path().join(name);
-        let (file, output) = (path("hand.mcap"), Some(folder.path().to_path_buf()));
-        let arguments = Arguments { file, output, format: Format::Wide, fingers: Vec::new(), force: true };
+        let arguments = arguments(folder.path(), true);
         let mut files = Files { arguments: &arguments, standard_output: false, start: None, open: BTreeMap::new() };
         for finger in [1, 2, 3] {
             files.file(finger, "time_s").expect("begun");

@@ -120,7 +120,7 @@ impl Oscillating {
 
     /// Returns the inertia of every rotor, kg m^2, that was found. `ratio` is the ratio of commanded pull to tension.
     pub fn inertia(&self, instruments: &Instruments, ratio: &Vector4<f64>) -> [Option<f64>; 4] {
-        let motors = Motors { ratio: *ratio, radius: instruments.radius, count: counts(instruments) };
+        let motors = Motors { ratio: *ratio, radius: instruments.radius, count: instruments.cm_per_count().abs() };
         inertia(&self.measured, &motors, instruments.period)
     }
 
@@ -180,7 +180,7 @@ impl Oscillating {
 
     fn large_enough(&self, instruments: &Instruments) -> bool {
         let wanted = match self.tone {
-            0 => counts(instruments).map(|count| TRAVEL.max(COUNTS * count)),
+            0 => instruments.cm_per_count().map(|count| TRAVEL.max(COUNTS * count.abs())),
             // Both frequencies have the same amplitude, because the part of a tendon that slides in its conduit depends
             // on the amplitude.
             _ => self.measured[0].travel(),
@@ -195,9 +195,4 @@ impl Oscillating {
 /// Returns the cycles in a period of a frequency.
 fn cycles(instruments: &Instruments, tone: usize) -> usize {
     (1.0 / (FREQUENCIES[tone] * instruments.period)).round().max(1.0) as usize
-}
-
-/// Returns the cm of tendon per count of every encoder.
-fn counts(instruments: &Instruments) -> Vector4<f64> {
-    instruments.radius.component_mul(&instruments.radians_per_count.abs())
 }

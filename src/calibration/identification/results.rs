@@ -135,13 +135,12 @@ impl Identification {
             // `at_zero` is measured from the configured zero and does not include any stretch. The zeros of the
             // encoders are defined at the pretension, so the stretch by the pretension is added. A counter rounds down
             // to whole counts, so its count is half a count too low on average.
-            let cm_per_count = instruments.radius.component_mul(&instruments.radians_per_count);
-            arms.at_zero + stretched(pretension) + cm_per_count * 0.5
+            arms.at_zero + stretched(pretension) + instruments.cm_per_count() * 0.5
         } else {
             let change = instruments.tendons.r - arms.r;
             change.tr_mul(&self.pose) + stretched(pretension) - stretched(&instruments.pretension)
         };
-        let counts = too_far.component_div(&instruments.radius.component_mul(&instruments.radians_per_count));
+        let counts = too_far.component_div(&instruments.cm_per_count());
         std::array::from_fn(|motor| self.zero[motor].wrapping_add(counts[motor].round() as i32))
     }
 }

@@ -69,9 +69,8 @@ impl Reading {
         configured: [i32; 4],
     ) -> [i32; 4] {
         let too_far = self.travel.mean() - instruments.travel_at(joints, &(self.tensions() - offset));
-        let cm_per_count = instruments.radius.component_mul(&instruments.radians_per_count);
         // A counter rounds down to whole counts, so its count is half a count too low on average.
-        let counts = too_far.component_div(&cm_per_count).add_scalar(0.5);
+        let counts = too_far.component_div(&instruments.cm_per_count()).add_scalar(0.5);
         std::array::from_fn(|motor| configured[motor].wrapping_add(counts[motor].round() as i32))
     }
 }

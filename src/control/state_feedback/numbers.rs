@@ -131,7 +131,7 @@ const PULLEY_SHARE: f64 = 0.8;
 
 /// See [`Numbers::pulley_creep`]. The dither of the tensions keeps the tendons sliding on their pulleys, so the mean
 /// friction is small when the joints are slow. With 0.002 and a share of 0.7, steps of identified "sheathed" fingers
-/// overshoot by 5.3 instead of 2.6 %, and steps with a pulley friction of 10 % by 14.6 instead of 4.5 %. With 0.03, the
+/// overshoot by 5.3 instead of 2.6 %, and steps with a pulley friction of 10 % by 14.6 instead of 5.2 %. With 0.03, the
 /// slowest steps of "sheathed" fingers settle in 148 ms.
 const PULLEY_CREEP: f64 = 0.01;
 

@@ -2,7 +2,7 @@
 
 use super::ranges::unusable;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
-use crate::model::physics::{STEP, least_inertia};
+use crate::model::physics::{largest_viscous_friction, least_inertia};
 
 impl ConfiguredFinger {
     /// Checks the rotors and tendons of the controller's model, with which the tools simulate every finger.
@@ -41,7 +41,7 @@ impl ConfiguredFinger {
                 );
                 return unusable(key, reason);
             }
-            let most = (inertia[motor] - least) / (2.0 * STEP);
+            let most = largest_viscous_friction(inertia[motor], least);
             if viscous[motor] > most {
                 let reason = format!(
                     "{} N m s/rad of motor {} is too much for its {key}: it must be at most {:.2e}. Check both values",
