@@ -2,7 +2,7 @@
 
 use super::block_ring::{BlockReader, BlockWriter, CONTROL_WORDS, Found};
 use crate::realtime::atomics::AtomicU64;
-use loom::thread;
+use crate::spawn;
 use std::sync::Arc;
 
 /// Number of blocks that the writer writes. The ring has room for one.
@@ -37,7 +37,7 @@ pub fn blocks_are_whole_and_the_newest_arrives() {
     let memory = Memory((0..CONTROL_WORDS + BLOCK_WORDS).map(|_| AtomicU64::new(0)).collect());
     let mut reader = BlockReader::new(memory.clone(), 0).expect("a ring");
     let mut writer = BlockWriter::new(memory);
-    let writing = thread::spawn(move || {
+    let writing = spawn(move || {
         for number in 1..=BLOCKS {
             assert!(writer.write([number], &number.to_le_bytes()));
         }

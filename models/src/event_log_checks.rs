@@ -3,7 +3,7 @@
 use super::log::{EventWriter, event_log_of};
 use super::{Event, Occurrence};
 use crate::model::FingerNumber;
-use loom::thread;
+use crate::spawn;
 use std::iter::from_fn;
 
 /// Number of events that the servo writes.
@@ -22,7 +22,7 @@ fn write_events(mut writer: EventWriter) -> EventWriter {
 pub fn events_are_whole_and_lost_events_are_counted() {
     let (writer, log) = event_log_of(FingerNumber::ONE, 1);
     let mut reader = log.reader();
-    let servo = thread::spawn(move || write_events(writer));
+    let servo = spawn(move || write_events(writer));
     let mut arrived: Vec<Event> = reader.take().into_iter().collect();
     let _writer = servo.join().expect("no panic");
     arrived.extend(from_fn(|| reader.take()));
@@ -38,7 +38,7 @@ pub fn events_are_whole_and_lost_events_are_counted() {
 pub fn no_later_event_is_before_the_horizon() {
     let (writer, log) = event_log_of(FingerNumber::ONE, EVENTS as usize);
     let mut reader = log.reader();
-    let servo = thread::spawn(move || write_events(writer));
+    let servo = spawn(move || write_events(writer));
     let horizon = reader.horizon();
     while reader.take().is_some() {}
     let _writer = servo.join().expect("no panic");

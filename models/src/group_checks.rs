@@ -6,8 +6,8 @@ use super::mailbox_checks::running;
 use super::{Adjustable, Replaced, Validity};
 use crate::control::SetPoint;
 use crate::realtime::atomics::{AtomicU64, Ordering};
+use crate::spawn;
 use loom::sync::Arc;
-use loom::thread;
 
 /// If two servos see a group, the group takes effect in both in the same period, whatever the times at which they see
 /// it.
@@ -17,7 +17,7 @@ pub fn a_group_takes_effect_in_one_period() {
     let clock = Arc::new(AtomicU64::new(1));
     let group = gate.number();
     let (other, others_clock) = (gate.clone(), clock.clone());
-    let servo = thread::spawn(move || other.period(group, || others_clock.fetch_add(1, Ordering::SeqCst)));
+    let servo = spawn(move || other.period(group, || others_clock.fetch_add(1, Ordering::SeqCst)));
     gate.post(group);
     let own = gate.period(group, || clock.fetch_add(1, Ordering::SeqCst)).expect("it is posted");
     // A servo that has not seen the group waits for a later cycle.
@@ -32,7 +32,7 @@ pub fn a_posted_group_has_its_set_points() {
     let (planner, mut servo, mut memory) = mailbox(report, &Adjustable { number: 0 }, &[0.0; 3]);
     let gate = GroupGate::new();
     servo.set_gate(gate.clone(), &mut memory);
-    let thread = thread::spawn(move || {
+    let thread = spawn(move || {
         let change = |set_point: &mut SetPoint| {
             set_point.damping = 7.0;
             Ok::<_, ()>(())

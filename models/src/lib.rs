@@ -152,14 +152,29 @@ pub use realtime::atomics::weakened;
 pub use telemetry::block_ring_checks;
 
 use loom::model::Builder;
+use loom::thread::{self, JoinHandle};
+use std::sync::Arc;
 
 /// Largest number of preemptions in one run of a check. Loom's authors found that most defects show with 2, and advise
 /// 2 or 3.
 const PREEMPTIONS: usize = 3;
 
+/// Size of the stack of a thread, in machine words, as loom's generators count it although loom's documentation says
+/// bytes. Loom gives 4096 words, which copies of a finger's report fill.
+const STACK_WORDS: usize = 32 * 1024;
+
 /// Runs `check` in every order of its threads.
 pub fn explore(check: impl Fn() + Send + Sync + 'static) {
     let mut builder = Builder::new();
     builder.preemption_bound = Some(PREEMPTIONS);
-    builder.check(check);
+    let check = Arc::new(check);
+    builder.check(move || {
+        let check = check.clone();
+        spawn(move || check()).join().expect("no panic");
+    });
+}
+
+/// Starts a thread of a check.
+fn spawn<T: Send + 'static>(run: impl FnOnce() -> T + Send + 'static) -> JoinHandle<T> {
+    thread::Builder::new().stack_size(STACK_WORDS).spawn(run).expect("loom's threads always start")
 }

@@ -3,6 +3,7 @@
 use super::mailbox::{ServoEnd, mailbox};
 use super::{Adjustable, FingerReport, Order, Stage};
 use crate::control::SetPoint;
+use crate::spawn;
 use loom::thread;
 
 /// Returns the report of a finger that is a spring for the first time.
@@ -26,7 +27,7 @@ fn cycle(servo: &mut ServoEnd, report: &mut FingerReport) -> Option<Order> {
 pub fn an_order_comes_after_its_data() {
     let mut report = running();
     let (planner, mut servo, _) = mailbox(report, &Adjustable { number: 0 }, &[0.0; 3]);
-    let thread = thread::spawn(move || {
+    let thread = spawn(move || {
         let mut accepted = 0;
         for number in 1..=2 {
             let given = planner.restart(Adjustable { number }, false).expect("the finger is healthy");
@@ -48,7 +49,7 @@ pub fn an_order_comes_after_its_data() {
 pub fn a_set_point_is_for_one_spring() {
     let mut report = running();
     let (planner, mut servo, _) = mailbox(report, &Adjustable { number: 0 }, &[0.0; 3]);
-    let thread = thread::spawn(move || {
+    let thread = spawn(move || {
         planner.send(|set_point| set_point.damping += 1.0).expect("the finger is healthy");
         planner
     });
@@ -69,7 +70,7 @@ pub fn a_set_point_is_for_one_spring() {
 pub fn a_request_to_close_is_answered() {
     let mut report = running();
     let (planner, mut servo, _) = mailbox(report, &Adjustable { number: 0 }, &[0.0; 3]);
-    let thread = thread::spawn(move || {
+    let thread = spawn(move || {
         while !servo.closing() {
             thread::yield_now();
         }

@@ -1,6 +1,7 @@
 //! Checks of `src/realtime/ring.rs`, and of the handover of a link over two rings (`src/finger/link_handover.rs`).
 
 use crate::realtime::ring;
+use crate::spawn;
 use crate::tracked::Tracked;
 use loom::thread;
 use std::sync::Arc;
@@ -8,7 +9,7 @@ use std::sync::Arc;
 /// A reader gets every value that was accepted, whole, once and in order. A ring that is full gives the value back.
 pub fn values_arrive_once_and_in_order() {
     let (mut producer, mut consumer) = ring(2);
-    let writer = thread::spawn(move || {
+    let writer = spawn(move || {
         let accepted: Vec<u32> = (1..=4).filter(|&number| producer.push(Tracked::new(number)).is_ok()).collect();
         (producer, accepted)
     });
@@ -23,7 +24,7 @@ pub fn values_that_were_not_taken_are_dropped() {
     let witness = Arc::new(());
     let (mut producer, mut consumer) = ring(2);
     let values = [(); 2].map(|()| witness.clone());
-    let writer = thread::spawn(move || {
+    let writer = spawn(move || {
         values.into_iter().for_each(|value| assert!(producer.push(value).is_ok(), "there is room"));
     });
     drop(consumer.pop());
@@ -38,7 +39,7 @@ pub fn a_link_goes_to_and_fro() {
     const ROUNDS: u32 = 2;
     let (mut released, mut arriving) = ring(1);
     let (mut repaired, mut returning) = ring(1);
-    let repairing = thread::spawn(move || {
+    let repairing = spawn(move || {
         for _ in 0..ROUNDS {
             let mut link: Tracked = loop {
                 match arriving.pop() {

@@ -2,7 +2,7 @@
 
 use super::FaultKind;
 use super::stop_signal::{StopCounts, StopSignal, stop_all, stop_calls};
-use loom::thread;
+use crate::spawn;
 
 /// Returns the calls and faults that a recovery answers if it begins now.
 fn answered(signal: &StopSignal) -> StopCounts {
@@ -16,7 +16,7 @@ pub fn a_stop_call_during_a_recovery_is_not_lost() -> (Option<FaultKind>, Option
     stop_all();
     assert_eq!(signal.pending(), Some(FaultKind::EmergencyStopCall));
     let requested = answered(&signal);
-    let caller = thread::spawn(stop_all);
+    let caller = spawn(stop_all);
     signal.forget(&requested);
     let at_once = signal.pending();
     caller.join().expect("no panic");
@@ -28,7 +28,7 @@ pub fn a_stop_call_during_a_recovery_is_not_lost() -> (Option<FaultKind>, Option
 pub fn a_fault_stops_the_companion_once() {
     let first = StopSignal::new(true, stop_calls());
     let mut second = first.clone();
-    let faulting = thread::spawn(move || {
+    let faulting = spawn(move || {
         first.raise(FaultKind::SlackTendon);
         first
     });

@@ -1,15 +1,15 @@
 //! Checks of `src/realtime/triple_buffer.rs`.
 
 use crate::realtime::triple_buffer;
+use crate::spawn;
 use crate::tracked::Tracked;
-use loom::thread;
 
 /// A reader gets whole values. It never gets an older value after a newer one. After the last publication, it gets the
 /// last value.
 pub fn values_are_whole_and_in_order() {
     const LAST: u32 = 3;
     let (mut input, mut output) = triple_buffer(&[Tracked::new(0), Tracked::new(0)]);
-    let writer = thread::spawn(move || {
+    let writer = spawn(move || {
         for number in 1..=LAST {
             input.input_buffer_mut().iter_mut().for_each(|entry| entry.set(number));
             input.publish();
@@ -31,7 +31,7 @@ pub fn values_are_whole_and_in_order() {
 /// Every published value counts as new at most once, and the last one counts as new exactly once.
 pub fn a_value_is_new_once() {
     let (mut input, mut output) = triple_buffer(&0);
-    let writer = thread::spawn(move || {
+    let writer = spawn(move || {
         (1..=2).for_each(|number| input.write(number));
         input
     });
