@@ -188,7 +188,7 @@ fn what_is_wrong_is_said_with_its_remedy() {
     write(&file, table(busy.local_addr().expect("an address").port())).expect("a file");
     let output = run(&["--config", name]);
     let error = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.code() == Some(1) && error.contains("port is free"), "{error}");
+    assert!(output.status.code() == Some(1) && error.contains("free port"), "{error}");
 }
 
 #[test]
