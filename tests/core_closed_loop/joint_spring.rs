@@ -91,14 +91,15 @@ fn a_finger_with_a_stiffness_at_the_bound_settles() {
                     let of_joints = residual_rate(&finger, rate, &set_point);
                     let case = format!("{scheme:?}, {rate} Hz, {pose:?}, {shape}");
                     println!("{of_joints:.4} of {of_tip:.4} rad/s with Kx");
-                    assert!(of_joints < 0.01 + 1.1 * of_tip, "{case}: {of_joints} rad/s, and {of_tip} with Kx");
+                    assert!(of_joints < 0.007 + 1.1 * of_tip, "{case}: {of_joints} rad/s, and {of_tip} with Kx");
                 }
             }
         }
     }
 }
 
-/// Returns the largest joint rate, rad/s, that remains 1.5 s after a push. A joint without stiffness does not count.
+/// Returns the joint rate, rad/s rms, that remains 1.5 s after a push. A joint without stiffness does not count. The
+/// largest rate in a short time would depend on the phase of the dither.
 fn residual_rate(finger: &ConfiguredFinger, rate: f64, set_point: &SetPoint) -> f64 {
     let mut finger = finger.clone();
     finger.simulation.start_degrees = set_point.joints.map(f64::to_degrees).into();
@@ -110,10 +111,11 @@ fn residual_rate(finger: &ConfiguredFinger, rate: f64, set_point: &SetPoint) -> 
     servo.plant.set_external_force(Vector3::zeros());
     servo.run(1.5, &follow);
     let k_theta = set_point.joint_spring.map_or(Matrix3::identity(), |spring| spring.k_theta);
-    let mut fastest: f64 = 0.0;
-    for _ in 0..(0.1 * rate) as usize {
+    let cycles = rate as usize;
+    let mut squares = 0.0;
+    for _ in 0..cycles {
         servo.cycle(&follow);
-        fastest = fastest.max((k_theta * servo.plant.joint_rates()).amax() / k_theta.amax());
+        squares += ((k_theta * servo.plant.joint_rates()).amax() / k_theta.amax()).powi(2);
     }
-    fastest
+    (squares / cycles as f64).sqrt()
 }

@@ -40,8 +40,8 @@ pub struct Numbers {
     /// arms R and the masses m of the motors at the tendons.
     pub damped_inertia: f64,
     /// Natural frequency of the common component of the tensions, rad/s. This component is proportional to the null
-    /// vector of R and causes no joint torque. A high frequency needs a high gain, with which differences between motors
-    /// convert more of the common component to joint torque.
+    /// vector of R and causes no joint torque. With a higher frequency, differences between motors convert more of it
+    /// to joint torque.
     pub common_frequency: f64,
     /// Damping ratio of the common component of the tensions.
     pub common_damping_ratio: f64,
