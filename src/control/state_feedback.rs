@@ -84,10 +84,7 @@ pub(super) struct StateFeedback {
     inertia_gain: f64,
     /// c: damping of the speed of a motor relative to the joint side of its tendon, N s/m.
     relative_damping: f64,
-    /// alpha for the common component of the tendons, divided by alpha for the components that turn the joints.
-    common_gain: f64,
-    /// c for the common component of the tendons, divided by c for the components that turn the joints.
-    common_damping: f64,
+    common_factors: CommonFactors,
     /// Viscous friction of the joints, N m s/rad.
     joint_viscous: Vector3<f64>,
     /// Coulomb friction of the joints, N m.
@@ -106,6 +103,16 @@ pub(super) struct StateFeedback {
     pub lower_reserve: f64,
     /// Margins to the upper tension bounds, N. Near t_max friction varies the tensions too.
     pub upper_reserve: Vector4<f64>,
+}
+
+/// Factors of the common component of the tensions, which causes no joint torque, relative to the components that turn
+/// the joints.
+#[derive(Clone, Copy, Debug)]
+struct CommonFactors {
+    /// Factor on alpha.
+    gain: f64,
+    /// Factor on c.
+    damping: f64,
 }
 
 /// The state of the control law.

@@ -2,6 +2,7 @@
 
 mod adjustment;
 mod behaviour;
+mod bumps;
 mod damping;
 mod figure11;
 mod joint_solutions;

@@ -1,7 +1,7 @@
 //! Construction of state feedback from the configuration of a finger.
 
-use super::StateFeedback;
 use super::numbers::Numbers;
+use super::{CommonFactors, StateFeedback};
 use crate::control::motors::motor_friction::MotorFriction;
 use crate::control::number_checks::positive;
 use crate::control::spring::admissible_stiffness::stiffness_of_tendons;
@@ -119,17 +119,17 @@ impl Drives {
         2.0 * numbers.relative_damping * mass * frequency
     }
 
-    /// Returns alpha and c for the common component of the tensions, divided by alpha and by c (`relative_damping`) for
-    /// the components that turn the joints. The joints do not move with the common component, so the stretch x of the
-    /// tendons obeys m x'' + c x' + alpha k x = 0. Frequency and damping ratio do not depend on the mass m of the
-    /// rotors. With factors that did not depend on m, the tensions of fingers with rotors of 2.5 times the inertia were
-    /// low for up to 287 ms after a bump.
-    fn common_factors(&self, numbers: &Numbers, relative_damping: f64) -> (f64, f64) {
+    /// Returns the factors on alpha and on c, which is `relative_damping`, for the common component of the tensions.
+    /// The joints do not move with this component. With its own alpha and c, the stretch x of the tendons obeys
+    /// m x'' + c x' + alpha k x = 0. Frequency and damping ratio do not depend on the mass m of the rotors. With
+    /// factors that did not depend on m, the tensions of fingers with rotors of 2.5 times the inertia were low for up
+    /// to 287 ms after a bump.
+    fn common_factors(&self, numbers: &Numbers, relative_damping: f64) -> CommonFactors {
         let (mass, stiffness) = (self.mass.mean(), self.stiffness.mean());
         let frequency = numbers.common_frequency;
         let gain = mass * frequency * frequency / stiffness;
         let damping = 2.0 * numbers.common_damping_ratio * mass * frequency;
-        (gain / numbers.inertia_gain, damping / relative_damping)
+        CommonFactors { gain: gain / numbers.inertia_gain, damping: damping / relative_damping }
     }
 
     /// Returns R m R^T / alpha, kg m^2: the inertia of the motors that acts on the joints.
@@ -201,7 +201,6 @@ impl StateFeedback {
         let r = tendons.r * 0.01;
         let pseudo_inverse = right_inverse(&r)?;
         let relative_damping = drives.relative_damping(numbers, &dynamics, &r);
-        let (common_gain, common_damping) = drives.common_factors(numbers, relative_damping);
         let joint_coulomb = Vector3::from(finger.friction.joint_coulomb) * 0.01;
         let shaken = joint_coulomb * numbers.dither;
         let apparent_motors = drives.apparent_inertia(numbers, &r);
@@ -239,8 +238,7 @@ impl StateFeedback {
             stiffness: drives.stiffness,
             inertia_gain: numbers.inertia_gain,
             relative_damping,
-            common_gain,
-            common_damping,
+            common_factors: drives.common_factors(numbers, relative_damping),
             joint_viscous: Vector3::from(finger.friction.joint_viscous) * 0.01,
             joint_coulomb,
             drift_gain: -(-numbers.drift_bandwidth / rate).exp_m1(),

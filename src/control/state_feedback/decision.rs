@@ -241,11 +241,11 @@ impl StateFeedback {
         let tension_accelerations = self.pseudo_inverse * (inertia * reference.snap);
         let motor_rates = self.r.tr_mul(&reference.rates);
         let omega_squared = self.dither.frequency * self.dither.frequency;
-        let error = self.scale_common(error, self.common_gain);
+        let error = self.scale_common(error, self.common_factors.gain);
         // The coefficient of the joints' speed must be exactly 1. A coefficient of 0.94 acted as an additional damping
         // of three times the spring's damping.
         let stretching = now.motor_speeds - now.speeds - (tension_rates + shake.rates).component_div(&self.stiffness);
-        let stretching = self.scale_common(&stretching, self.common_damping);
+        let stretching = self.scale_common(&stretching, self.common_factors.damping);
         let yielding = (tension_accelerations - shake.tensions * omega_squared).component_div(&self.stiffness);
         now.tensions + error * self.inertia_gain - stretching * self.relative_damping - now.disturbances
             + self.viscous.component_mul(&motor_rates)
