@@ -255,13 +255,14 @@ typedef struct sun2xp_hand sun2xp_hand;
 #define SUN2XP_ERROR_FORKED 2               /* The process is a forked child, which has no servo threads. */
 #define SUN2XP_ERROR_EXITING 3              /* The process is exiting, and its hands are closed. */
 #define SUN2XP_ERROR_NO_HAND 4              /* The handle does not belong to an open hand. */
-#define SUN2XP_ERROR_BUSY 5                 /* Hand or finger is busy: it is being opened, closed, calibrated or
-                                               recovered, it left the pose at which a path begins during
-                                               sun2xp_send_path, or 16 groups of sun2xp_send_group have not taken
-                                               effect yet. Call again later. If a finger is limp (SUN2XP_STATE_LIMP),
-                                               zero it first. Three other calls get this number too: OpenHand while
-                                               its hand is open, sun2xp_set_log in the log callback, and a call for a
-                                               hand on another machine that another client commands. */
+#define SUN2XP_ERROR_BUSY 5                 /* Hand or finger is busy. It is being opened, closed, calibrated or
+                                               recovered; or the finger left its pose while sun2xp_send_path computed
+                                               a path that begins at this pose; or 16 groups of sun2xp_send_group
+                                               have not taken effect yet. Call again later. If a finger is limp
+                                               (SUN2XP_STATE_LIMP), zero it first. Three other calls get this number
+                                               too: OpenHand while its hand is open, sun2xp_set_log in the log
+                                               callback, and a call for a hand on another machine that another client
+                                               commands. */
 #define SUN2XP_ERROR_TOO_MANY 6             /* Too many hands or reflexes. */
 #define SUN2XP_ERROR_ARGUMENT 7             /* An argument makes no sense: null, NaN, no such finger, a struct that
                                                is too small. */
@@ -424,7 +425,7 @@ unsigned int sun2xp_abi_version(void);
    EINVAL   the configuration is unusable; sun2xp_error_text names file, line and reason
    ENOENT, EACCES, EBUSY ...  a port cannot be opened; errno of the system
    ETIMEDOUT ...  a board does not answer, or the device is not a board. The errno is ENODEV if the board
-            that finger.board names is not found
+            that finger.board names is not found, or is found at several ports
    EIO      the tendons of a finger do not come under tension in time, the finger faults before that, or
             the self-test finds wrong wiring (hand.self_test)
    EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
@@ -916,9 +917,11 @@ int sun2xp_send_contact(sun2xp_hand *hand, int finger, int dimensions, const dou
  table is above 1, or the largest is below 1, the limit is 1 instead: 1 is always admitted. For a
  finger with other links or tendons, k is first multiplied by 12.3 N/cm divided by S. S is the smallest
  stiffness that the tendons give the tip in any direction, with locked motors and with the joints in the
- middle of their ranges. For the default finger S is 12.3 N/cm. sun2xp_send_stiffness and
- sun2xp_send_contact refuse a stiffness whose range does not include the ratio sent last. While a path
- changes Kx, k is that of the stiffest Kx from the beginning to the end of the path.
+ middle of their ranges. For the default finger S is 12.3 N/cm. For the stiffness of
+ sun2xp_send_joint_stiffness, k is its largest eigenvalue divided by l2 l2, where l2 is the length of the
+ last link. While a path changes Kx, k is that of the stiffest Kx from the beginning to the end of the
+ path. Every call that sends a stiffness is refused if the range for this stiffness does not include the
+ ratio sent last. With hand.out_of_range = "clamp" the ratio is clamped instead.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1041,9 +1044,9 @@ struct sun2xp_set_point {
  refused, no finger gets its command.
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
- "board" the periods of the threads follow different clocks. Then a finger may follow a single group one
- period later. This happens at most about once in the time in which the drift between two of the clocks
- grows by one period.
+ "board" the periods of the threads follow different clocks. Then a finger may follow one of the groups one
+ period later than the other fingers do. This happens at most about once in the time in which the drift
+ between two of the clocks grows by one period.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1952,8 +1955,9 @@ int sun2xp_stop(sun2xp_hand *hand, int finger);
  tension. If the port has failed and finger.reconnect is true, the call reopens the port first. The finger
  holds its present pose at the configured initial stiffness. If another finger on the same port runs, it
  continues unchanged, and only this finger recovers. Otherwise all fingers on the port recover together,
- and the call is not refused if another one of them faults again. A finger that is not faulted continues
- unchanged. Remove the cause of the fault first: sun2xp_fault and sun2xp_fault_text name it.
+ and the call is not refused if another one of them faults again. If the finger to be recovered is not
+ faulted, the call changes nothing. It then only waits for a recovery that another call has begun. Remove
+ the cause of the fault first: sun2xp_fault and sun2xp_fault_text name it.
 
  Waits until the finger holds its pose or faults again, up to some seconds, also if another call has begun
  the recovery. Other calls work meanwhile. sun2xp_close works too, and this call is then refused.
@@ -2019,13 +2023,13 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
               sun2xp_zero or sun2xp_identify that succeeds for this finger stores them
    EBUSY      the finger is being calibrated or recovered already
    ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
-              joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
-              gives the remedy. The finger is then limp, with two exceptions. (1) If the finger moved while
-              its encoders were read ("pose"), or if the counts were not valid ("kept"), the finger stays a
-              spring or limp, as it was before the call. But a path or an interpolated motion
+              joint meets no stop or meets it too early ...). sun2xp_error_text gives the remedy. The finger
+              is then limp and has its previous zeros, with two exceptions. (1) If the finger moved while its
+              encoders were read ("pose"), or if the counts were not valid ("kept"), the zeros stay, and the
+              finger stays a spring or limp, as it was before the call. But a path or an interpolated motion
               (finger.motion.interpolate_ms) that it followed has ended. (2) If another thread has recovered
               the finger from a fault during the calibration, the finger holds its pose. If its new zeros
-              had been found before the fault, they are in force
+              had been found before the fault, they are in force. Otherwise its zeros have not changed
    ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
    EACCES, ENOSPC, EBUSY ...  the configuration file cannot be written, or another process has kept it
               locked for 30 s. The zeros are in force until sun2xp_close. If the results of a later

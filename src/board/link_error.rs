@@ -98,7 +98,7 @@ impl LinkError {
                 format!("protocol versions {lowest} to {highest}, not {VERSION}: update board or library")
             }
             // A search for boards sends only Hello, which every board must answer.
-            _ => "faulty firmware, or several boards: update it, or connect one".into(),
+            _ => "faulty firmware, or several boards: update firmware, or connect only one board".into(),
         }
     }
 
@@ -142,7 +142,7 @@ mod tests {
             (PortError::Forbidden(path()).into(), "no permission"),
             (PortError::Busy(path()).into(), "in use by another program"),
             (PortError::NotASerialPort(path()).into(), "not a serial port"),
-            (PortError::Baud { path: path(), wanted: 2_000_000, offered: 9600 }.into(), "not at 2000000 bit/s"),
+            (PortError::Baud { path: path(), wanted: 2_000_000, offered: 9600 }.into(), "cannot run at 2000000 bit/s"),
             (PortError::Opening { path: path(), source: broken() }.into(), "Protocol error"),
             (PortError::Vanished.into(), "disappeared"),
             (LinkError::Silent { milliseconds: 160 }, "nothing answers"),

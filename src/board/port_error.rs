@@ -91,7 +91,7 @@ impl PortError {
             PortError::Forbidden(_) => "no permission: join the port's group (usually dialout)".into(),
             PortError::Busy(_) => "in use by another program: end it".into(),
             PortError::NotASerialPort(_) => "not a serial port: name another port".into(),
-            PortError::Baud { wanted, .. } => format!("not at {wanted} bit/s: choose another bit rate"),
+            PortError::Baud { wanted, .. } => format!("cannot run at {wanted} bit/s: choose another bit rate"),
             PortError::Opening { source, .. }
             | PortError::SetUp { source, .. }
             | PortError::Hardware { source, .. }

@@ -104,8 +104,8 @@ pub enum Obstacle {
     },
     /// The range of a joint between its stops differs from the configured range.
     #[error(
-        "joint {joint} moves {degrees:.1} degrees between its stops, but {expected:.1} are configured: {}, or the \
-         range from zeroing.lower_stop_degrees to upper_stop_degrees or geometry.r is wrong. Check them",
+        "joint {joint} moves {degrees:.1} degrees between its stops, but {expected:.1} are configured: {}, geometry.r \
+         is wrong, or the range from zeroing.lower_stop_degrees to upper_stop_degrees is wrong. Check them",
         if degrees < expected { NARROW } else { WIDE }
     )]
     WrongRange {

@@ -44,13 +44,13 @@ use std::ffi::c_int;
 ///              sun2xp_zero or sun2xp_identify that succeeds for this finger stores them
 ///   EBUSY      the finger is being calibrated or recovered already
 ///   ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
-///              joint meets no stop or meets it too early ...). No zero has changed, and sun2xp_error_text
-///              gives the remedy. The finger is then limp, with two exceptions. (1) If the finger moved while
-///              its encoders were read ("pose"), or if the counts were not valid ("kept"), the finger stays a
-///              spring or limp, as it was before the call. But a path or an interpolated motion
+///              joint meets no stop or meets it too early ...). sun2xp_error_text gives the remedy. The finger
+///              is then limp and has its previous zeros, with two exceptions. (1) If the finger moved while its
+///              encoders were read ("pose"), or if the counts were not valid ("kept"), the zeros stay, and the
+///              finger stays a spring or limp, as it was before the call. But a path or an interpolated motion
 ///              (finger.motion.interpolate_ms) that it followed has ended. (2) If another thread has recovered
 ///              the finger from a fault during the calibration, the finger holds its pose. If its new zeros
-///              had been found before the fault, they are in force
+///              had been found before the fault, they are in force. Otherwise its zeros have not changed
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
 ///   EACCES, ENOSPC, EBUSY ...  the configuration file cannot be written, or another process has kept it
 ///              locked for 30 s. The zeros are in force until sun2xp_close. If the results of a later

@@ -32,8 +32,10 @@ use std::ffi::{c_char, c_int};
 ///   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
 ///   EINVAL   the configuration is unusable; HandError names file, line and reason
 ///   ENOENT, EACCES, EBUSY ...  a port cannot be opened; errno of the system
-///   ETIMEDOUT ...  a board does not answer, or the device at the port is not a board
-///   EIO      a finger does not come under tension in time, or faults before it does
+///   ETIMEDOUT ...  a board does not answer, or the device at the port is not a board. The errno is
+///            ENODEV if the board that finger.board names is not found, or is found at several ports
+///   EIO      the tendons of a finger do not come under tension in time, the finger faults before
+///            that, or the self-test finds wrong wiring (hand.self_test)
 ///   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
 ///            configured core is not available; HandError says what to change
 ///

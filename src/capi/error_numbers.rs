@@ -16,10 +16,11 @@ pub const SUN2XP_ERROR_EXITING: c_int = 3;
 /// The handle does not belong to an open hand.
 pub const SUN2XP_ERROR_NO_HAND: c_int = 4;
 
-/// Hand or finger is busy: it is being opened, closed, calibrated or recovered, it left the pose at which a path begins
-/// during sun2xp_send_path, or 16 groups of sun2xp_send_group have not taken effect yet. Call again later. If a finger
-/// is limp (SUN2XP_STATE_LIMP), zero it first. Three other calls get this number too: OpenHand while its hand is open,
-/// sun2xp_set_log in the log callback, and a call for a hand on another machine that another client commands.
+/// Hand or finger is busy. It is being opened, closed, calibrated or recovered; or the finger left its pose while
+/// sun2xp_send_path computed a path that begins at this pose; or 16 groups of sun2xp_send_group have not taken effect
+/// yet. Call again later. If a finger is limp (SUN2XP_STATE_LIMP), zero it first. Three other calls get this number
+/// too: OpenHand while its hand is open, sun2xp_set_log in the log callback, and a call for a hand on another machine
+/// that another client commands.
 pub const SUN2XP_ERROR_BUSY: c_int = 5;
 
 /// Too many hands or reflexes.

@@ -190,9 +190,11 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 /// table is above 1, or the largest is below 1, the limit is 1 instead: 1 is always admitted. For a
 /// finger with other links or tendons, k is first multiplied by 12.3 N/cm divided by S. S is the smallest
 /// stiffness that the tendons give the tip in any direction, with locked motors and with the joints in the
-/// middle of their ranges. For the default finger S is 12.3 N/cm. sun2xp_send_stiffness and
-/// sun2xp_send_contact refuse a stiffness whose range does not include the ratio sent last. While a path
-/// changes Kx, k is that of the stiffest Kx from the beginning to the end of the path.
+/// middle of their ranges. For the default finger S is 12.3 N/cm. For the stiffness of
+/// sun2xp_send_joint_stiffness, k is its largest eigenvalue divided by l2 l2, where l2 is the length of the
+/// last link. While a path changes Kx, k is that of the stiffest Kx from the beginning to the end of the
+/// path. Every call that sends a stiffness is refused if the range for this stiffness does not include the
+/// ratio sent last. With hand.out_of_range = "clamp" the ratio is clamped instead.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

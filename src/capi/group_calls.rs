@@ -55,9 +55,9 @@ pub struct sun2xp_set_point {
 /// refused, no finger gets its command.
 ///
 /// If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
-/// "board" the periods of the threads follow different clocks. Then a finger may follow a single group one
-/// period later. This happens at most about once in the time in which the drift between two of the clocks
-/// grows by one period.
+/// "board" the periods of the threads follow different clocks. Then a finger may follow one of the groups one
+/// period later than the other fingers do. This happens at most about once in the time in which the drift
+/// between two of the clocks grows by one period.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

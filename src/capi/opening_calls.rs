@@ -32,7 +32,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///   EINVAL   the configuration is unusable; sun2xp_error_text names file, line and reason
 ///   ENOENT, EACCES, EBUSY ...  a port cannot be opened; errno of the system
 ///   ETIMEDOUT ...  a board does not answer, or the device is not a board. The errno is ENODEV if the board
-///            that finger.board names is not found
+///            that finger.board names is not found, or is found at several ports
 ///   EIO      the tendons of a finger do not come under tension in time, the finger faults before that, or
 ///            the self-test finds wrong wiring (hand.self_test)
 ///   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the

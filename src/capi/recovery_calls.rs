@@ -82,8 +82,9 @@ pub extern "C" fn sun2xp_stop(hand: *mut sun2xp_hand, finger: c_int) -> c_int {
 /// tension. If the port has failed and finger.reconnect is true, the call reopens the port first. The finger
 /// holds its present pose at the configured initial stiffness. If another finger on the same port runs, it
 /// continues unchanged, and only this finger recovers. Otherwise all fingers on the port recover together,
-/// and the call is not refused if another one of them faults again. A finger that is not faulted continues
-/// unchanged. Remove the cause of the fault first: sun2xp_fault and sun2xp_fault_text name it.
+/// and the call is not refused if another one of them faults again. If the finger to be recovered is not
+/// faulted, the call changes nothing. It then only waits for a recovery that another call has begun. Remove
+/// the cause of the fault first: sun2xp_fault and sun2xp_fault_text name it.
 ///
 /// Waits until the finger holds its pose or faults again, up to some seconds, also if another call has begun
 /// the recovery. Other calls work meanwhile. sun2xp_close works too, and this call is then refused.

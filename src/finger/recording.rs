@@ -18,8 +18,8 @@ use thiserror::Error;
 /// Version of the format.
 const VERSION: u32 = 1;
 
-/// The cause and the remedy of a value in a recorded file that no library has written there. It is a sentence after the
-/// text of an error.
+/// The last sentence of an error about content that the library does not write into a recorded file. It tells the cause
+/// and the remedy.
 pub const ALTERED: &str = "The file was altered or damaged after it was written: copy it again";
 
 /// Consecutive cycles of a finger, and everything that is needed to compute them again.

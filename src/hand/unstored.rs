@@ -26,7 +26,8 @@ impl Unstored {
         self.0.lock().iter().find(|found| found.finger() == finger).cloned()
     }
 
-    /// Removes results that have been stored. If others have been added since, all of them stay.
+    /// Removes the results of a finger that have been stored. If results of the same finger have been added since, all
+    /// its results stay, the stored ones too.
     pub fn remove(&self, stored: &Found) {
         self.0.lock().retain(|found| found != stored);
     }

@@ -92,8 +92,8 @@ impl SimulatedBoard {
         &mut self.fingers
     }
 
-    /// Advances the physics to `now`, ns. The first call sets the board's clock. A `now` before the present time has no
-    /// effect.
+    /// Advances the physics to `now`, ns. The first call only sets the time at which the physics begins. A `now` that
+    /// the physics has already reached has no effect.
     pub fn advance(&mut self, now: u64) {
         let mut time = *self.time.get_or_insert(now);
         while time + STEP <= now {

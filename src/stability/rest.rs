@@ -5,8 +5,9 @@ use crate::model::Links;
 use crate::model::configuration::Surface;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-/// Lever below which a joint counts as unable to exert a force at the tip, cm. A moment that only such a joint could
-/// balance is not balanced, and the finger rests at a slightly different pose.
+/// Lever below which a joint counts as unable to exert a force at the tip, cm. A force at the tip balances the joint
+/// torques of the spring, also those of its rotational stiffness. It does not balance a torque of the rotational
+/// stiffness at a joint with such a short lever, so the finger rests at a slightly different pose.
 const LEAST_LEVER: f64 = 0.5;
 
 /// An eigenvalue of a stiffness is zero if it is at most this fraction of the largest.

@@ -98,7 +98,8 @@ impl View {
             _ => None,
         });
         let running = record.stage == Stage::Running;
-        // A calibration that begins at rest leaves the finger a spring at first, so there is an estimate of a contact.
+        // A running finger remains a spring until its calibration gives the first activity. In this time the report
+        // still has an estimate of a contact, but a sample has one only in the stage `Running`.
         let contact = if running { report.contact } else { ContactEstimate::default() };
         let springs = mechanics.springs.as_ref().filter(|_| running);
         let spring = springs.zip(set_point.as_ref());

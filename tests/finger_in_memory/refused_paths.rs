@@ -29,7 +29,7 @@ fn refused_paths_name_the_pose_and_the_remedy() {
         (vec![joints(0.5, [0.2, f64::NAN, 1.1])], "NaN", libc::EINVAL),
         (vec![joints(0.5, [0.2, 2.6, 1.1])], "outside the limits", libc::ERANGE),
         (vec![joints(0.05, [0.3, 0.7, 1.2])], "multiply all times by", libc::ERANGE),
-        (vec![joints(0.8, [0.2, 1.74, 1.1]), joints(1.6, [0.2, 1.74, 1.2])], "outside its limits", libc::ERANGE),
+        (vec![joints(0.8, [0.2, 1.74, 1.1]), joints(1.6, [0.2, 1.74, 1.2])], "permitted range", libc::ERANGE),
         (vec![tip(1.0, [0.0, 0.0, 20.0])], "pose 0", libc::ERANGE),
         (vec![stiff], "eigenvalue of Kx", libc::ERANGE),
         // The kind of the error counts, and not the order of the poses.

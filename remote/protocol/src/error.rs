@@ -52,7 +52,8 @@ pub enum DecodeError {
 pub struct FieldError {
     /// The name of the field.
     pub field: &'static str,
-    /// For a field of a part or record: its name, and its place in the message, from 0.
+    /// For a field of a part or of a record: "part" or "record", and the index of that part or record in the message,
+    /// from 0.
     pub number: Option<(&'static str, usize)>,
     /// What is wrong.
     pub reason: Reason,

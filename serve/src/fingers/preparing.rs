@@ -1,4 +1,5 @@
-//! Prepares the new parts of a Target: what the fingers get, before any of it is sent.
+//! Prepares the new parts of a Target that has arrived. No finger gets its part until all parts are prepared, because
+//! the server applies all of them or none.
 
 use super::Fingers;
 use crate::goal::{Destination, Goal, is_path, rows};
@@ -9,11 +10,12 @@ use sun2xp::nalgebra::Vector3;
 use sun2xp::{FingerNumber, HandError, Stage};
 use sun2xp_remote_protocol::{Part, Place};
 
-/// A part of a Target before it is sent: the goal that results, the command for the group, and the poses of its path.
+/// What a part of a Target becomes for its finger: the new goal, the command in the group that the hand gets, and the
+/// poses of the path.
 pub(super) struct Prepared {
     pub finger: usize,
     pub goal: Goal,
-    /// None if the part gives nothing but a path, or nothing at all.
+    /// None if the hand needs nothing but the path, or nothing at all.
     pub command: Option<FingerCommand>,
     pub path: Vec<PathPose>,
 }

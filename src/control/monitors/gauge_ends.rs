@@ -2,8 +2,8 @@
 
 use crate::model::configuration::ConfiguredFinger;
 
-/// The direction of the counts of each gauge. The counts of a falling gauge fall with the tension, so its largest count
-/// is the end at which its tendon is slack.
+/// The direction of the counts of each gauge. The counts of a falling gauge fall when the tension rises, so its largest
+/// count is the end at which its tendon is slack.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GaugeEnds {
     falling: [bool; 4],

@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn the_peaks_of_a_dither_reveal_a_jammed_motor() {
         let alarmed = alarmed(1.0 / DITHER, 0.0).expect("an alarm");
-        // The second peak contains the twelfth sample.
+        // The twelfth sample with an excessive imbalance is in the second peak.
         assert!((23..46).contains(&alarmed), "{alarmed} ms");
     }
 

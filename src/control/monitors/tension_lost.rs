@@ -28,14 +28,15 @@ const GONE: f64 = 0.1;
 /// is not zero on a finger with friction along its tendons or with inexact parameters.
 const MISSED: f64 = 0.3;
 
-/// The part of a positive mean by which the tension must be missing in addition. Such a mean shows that the
-/// configuration indicates too much stretch. It indicates even more when the tensions of the other tendons rise.
+/// If the mean is positive, the tension that must be missing is larger by this fraction of the mean. A positive mean
+/// shows that the configuration indicates too much stretch. The configuration indicates even more stretch when the
+/// tensions of the other tendons rise.
 const INEXACT: f64 = 0.5;
 
-/// If another tendon became low within this time of a tendon that shows some tension, no tendon slips, s. The tendons
-/// of a finger whose clamp slips lose their tension one after the other. Two tendons of an intact finger lose it
-/// together in a push if the controller commands small pulls because the configuration is not exact. With a condition
-/// on the pull of the motor instead, a slipping tendon was reported after 56 ms.
+/// A low tendon that shows some tension does not count as slipping if another tendon became low within this time before
+/// or after it, s. The tendons of a finger whose clamp slips lose their tension one after the other. Two tendons of an
+/// intact finger lose it together in a push if the controller commands small pulls because the configuration is not
+/// exact. With a condition on the pull of the motor instead, a slipping tendon was reported only after 56 ms.
 const TOGETHER: f64 = 0.004;
 
 /// Time constant of the mean of the missing tension before any tendon became low, s.

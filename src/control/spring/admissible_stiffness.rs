@@ -5,8 +5,8 @@ use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Scheme};
 use nalgebra::{Matrix3, Matrix3x4, Vector3};
 
-/// Rate from which K_theta may use the large fraction, Hz. It applies to Figures 9 and 10 too, so it is not the rate
-/// from which state feedback has all its parts.
+/// Rate from which K_theta may use the larger fraction of R k R^T, Hz; see [`share`]. `FULL_RATE` of state feedback has
+/// the same value, but is another limit: this one applies to Figures 9 and 10 too.
 const LARGE_SHARE_RATE: f64 = 750.0;
 
 /// Returns the fraction of R k R^T that K_theta may use; see [`AdmissibleStiffness`]. It is somewhat smaller than the

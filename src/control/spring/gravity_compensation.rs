@@ -17,7 +17,7 @@ pub(crate) struct GravityCompensation {
     /// Gravity for which the controller was constructed, m/s^2 in the finger's frame. It acts until the servo has
     /// another value.
     initial: Vector3<f64>,
-    /// Whether `initial` is zero, as on a hand whose planner does not set gravity.
+    /// Whether `initial` is zero, as with the default of `hand.gravity`.
     weightless: bool,
     /// Largest change of gravity in a cycle, m/s^2.
     step: f64,

@@ -5,7 +5,8 @@ use crate::control::spring::spring_transition::Spring;
 use crate::model::{JointSines, Links};
 use nalgebra::{Matrix3, Matrix6, Matrix6x3, Vector3};
 
-/// Stiffness Kx at which beta equals `rate_time`, N/cm.
+/// Stiffness Kx, N/cm, at which beta equals `controller.rate_time` in a bent finger. beta is the ratio of the damping
+/// of a joint to its stiffness.
 const REFERENCE_STIFFNESS: f64 = 3.0;
 
 /// Damping of a finger without stiffness, N cm s/rad. It is a few times the viscous friction of its joints, and a fifth
@@ -132,7 +133,8 @@ fn k_theta(jacobian: &Matrix6x3<f64>, stiffened: &Matrix6x3<f64>, hold: f64) -> 
 }
 
 /// Returns the position of the tip, cm, from the Jacobian of its motion, which already contains the sines of the pose.
-/// Joint 0 moves the tip by the reach of the tip, and joint 1 by the height of the tip, which is y.
+/// Joint 0 turns the tip about the y axis, so column 0 contains x and z of the tip. For each radian, joint 1 moves the
+/// tip away from the y axis by the height of the tip, which is y.
 fn tip(jacobian: &Matrix6x3<f64>) -> Vector3<f64> {
     let (cosine, sine) = (jacobian[(3, 1)], -jacobian[(5, 1)]);
     let height = sine * jacobian[(0, 1)] + cosine * jacobian[(2, 1)];

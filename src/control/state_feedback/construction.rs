@@ -121,9 +121,9 @@ impl Drives {
 
     /// Returns the factors on alpha and on c, which is `relative_damping`, for the common component of the tensions.
     /// The joints do not move with this component. With its own alpha and c, the stretch x of the tendons obeys
-    /// m x'' + c x' + alpha k x = 0. Frequency and damping ratio do not depend on the mass m of the rotors. With
-    /// factors that did not depend on m, the tensions of fingers with rotors of 2.5 times the inertia were low for up
-    /// to 287 ms after a bump.
+    /// m x'' + c x' + alpha k x = 0. The factors give this motion a frequency and a damping ratio that do not depend on
+    /// the mass m of the rotors. With factors that did not depend on m, the tensions of fingers with rotors of 2.5
+    /// times the inertia were low for up to 287 ms after a bump.
     fn common_factors(&self, numbers: &Numbers, relative_damping: f64) -> CommonFactors {
         let (mass, stiffness) = (self.mass.mean(), self.stiffness.mean());
         let frequency = numbers.common_frequency;
@@ -161,7 +161,8 @@ fn link_dynamics(finger: &ConfiguredFinger) -> Result<LinkDynamics, Unusable> {
 }
 
 /// Returns the dither of the tensions. `highest` is the largest tension of each tendon, N. `lowest` is the lowest
-/// desired tension in a burst. A burst is short, so `lowest` is above t_min without a distance for the noise.
+/// desired tension in a burst, N. It is t_min plus the largest amplitude that the dither of the joints has in a
+/// tension. No distance for the noise is added, because a burst is short.
 fn tension_dither(
     finger: &ConfiguredFinger,
     numbers: &Numbers,

@@ -2,8 +2,8 @@
 //!
 //! After a motion, the tensions on the two sides of every pulley differ by the whole friction. A dither whose amplitude
 //! is near the friction moves the tendons only at its peaks, so the finger settles slowly. A larger dither that decays
-//! over some periods removes this difference, as an alternating field that decays demagnetises iron. Afterwards the
-//! small dither suffices.
+//! over some periods, called a burst, removes this difference, as an alternating field that decays demagnetises iron.
+//! Afterwards the small dither suffices.
 
 use super::full_rate::FULL_RATE;
 use nalgebra::Vector3;

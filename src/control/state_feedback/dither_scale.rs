@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 /// joint divided by the sum of the magnitudes of the torques of its four tendons at the pretension.
 const FIRMNESS: f64 = 2.0;
 
-/// The same for the firmness of a joint while the other joints are free. It is small if the finger is nearly straight.
-/// With this value the amplitude is smallest if joint 2 is bent by 32 degrees or more, and as configured at 21 degrees.
+/// The same for the firmness of a joint while the other joints are free. This firmness is small if the finger is nearly
+/// straight. With 0.2, the amplitude is smallest if joint 2 is bent by 32 degrees or more, and as configured at 21
+/// degrees.
 const FREE_FIRMNESS: f64 = 0.2;
 
 /// Range of the factor on the amplitude. With a factor of up to 2.5 the softest poses are more exact, but they creep

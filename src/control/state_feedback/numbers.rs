@@ -102,7 +102,7 @@ const LEAST_FREQUENCY: f64 = 4.0;
 /// half the inertia or with slow amplifiers move by 180 to 330 um rms at walls.
 const DITHER_FREQUENCY: f64 = 44.0;
 
-/// See [`Numbers::dither`]. With 2, fingers with amplifiers that lag by 2 ms move by more at rest. With 1, fingers with
+/// See [`Numbers::dither`]. With 2, fingers with amplifiers that lag by 2 ms move more at rest. With 1, fingers with
 /// static friction of twice the Coulomb friction are less exact under pushes.
 const DITHER: f64 = 1.6;
 

@@ -22,8 +22,8 @@ const ACCURACY: f64 = 1e-12;
 /// Largest number of cycles that are computed until the error of an observer is a steady oscillation.
 const MOST_CYCLES: usize = 5000;
 
-/// Largest size of the lead. An observer whose encoder or gauge is much too coarse hardly follows the oscillation. Its
-/// phasor would be multiplied by a large factor, so nothing is added then.
+/// Largest magnitude of [`PeriodicDisturbance::lead`]. If the encoder or the gauge is much too coarse, the observer
+/// hardly follows the oscillation, and the lead would be larger than this. Nothing is added then.
 const LARGEST_LEAD: f64 = 3.0;
 
 /// Finds d = mean + Re(D e^(j omega t)) in the disturbance of each motor as the observer estimates it, and returns the

@@ -4,7 +4,7 @@ use super::numbers::Numbers;
 use nalgebra::Vector4;
 
 /// The feed-forward is p t (s sat(v / c) + e w), limited to s p t, N. p is the friction of the pulleys as a fraction of
-/// the tension t, and s is the share of the friction that is fed forward.
+/// the tension t, s is the share of the friction that is fed forward, and e is [`Numbers::creep_slope`].
 ///
 /// v is the speed that a tendon has at the joints if they follow the reference, and c the speed from which the share is
 /// fed forward in full. Only configured friction is fed forward: on a finger without this friction, a feed-forward

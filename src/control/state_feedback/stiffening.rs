@@ -9,8 +9,8 @@
 //! share that K_theta uses by the same c in every direction. So it helps most in the directions in which K_theta is
 //! small, and changes little in the stiff directions, in which the loop has less margin.
 //!
-//! The additional stiffness ends with the motion. So the finger is the commanded spring whenever its reference is at
-//! rest.
+//! The additional stiffness decays soon after the motion. So a finger whose reference is at rest becomes the commanded
+//! spring again.
 
 use super::dither_burst::{FAST, SLOW};
 use super::full_rate::FULL_RATE;
@@ -31,8 +31,8 @@ const LARGEST: f64 = 0.05;
 /// Time constant with which the stiffness rises, s.
 const RISING: f64 = 0.01;
 /// Time constant with which it decays after the motion, s. With wrong gauges or moment arms, the additional stiffness
-/// changes the rest position, and the finger must return while the stiffness decays. With 0.08 s, and 0.12 s in which
-/// the stiffness stayed, steps of "cheap" fingers settled in 361 instead of 168 ms.
+/// changes the rest position, and the finger must return while the stiffness decays. When the stiffness stayed for
+/// 0.12 s and then decayed with 0.08 s, steps of "cheap" fingers settled in 361 instead of 168 ms.
 const DECAYING: f64 = 0.02;
 /// Part of the largest additional stiffness below which it becomes zero.
 const ENDED: f64 = 1e-3;

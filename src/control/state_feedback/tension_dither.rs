@@ -15,9 +15,10 @@ use serde::{Deserialize, Serialize};
 /// Largest amplitude as a fraction of each tension, so that no tendon becomes slack.
 const LARGEST: f64 = 0.4;
 
-/// Tension below which an overestimated amplitude falls quickly, as a fraction of t_min.
+/// Tension below which a tendon is almost slack, as a fraction of t_min. The commanded amplitude then falls quickly.
 const LOW: f64 = 0.4;
-/// Envelope of a burst below which the amplitude is adjusted again.
+/// Envelope of a burst below which the command is adjusted again. A burst is the larger dither after a fast motion; see
+/// [`DitherBurst`].
 const ENDED: f64 = 0.02;
 
 /// Factor on the amplitude of a burst if the configured pulley friction requires a larger dither. Without such
@@ -34,9 +35,9 @@ const ADJUSTING: f64 = 0.25;
 /// Range of the adjustment.
 const SCALES: [f64; 2] = [0.2, 3.0];
 
-/// Largest reserve, as a fraction of t_min.
+/// Largest result of [`TensionDither::reserve`], as a fraction of its `minimum`.
 const MOST_RESERVE: f64 = 1.5;
-/// Largest fraction of t_max that a tendon may have at zero joint torque because of the reserve.
+/// The reserve raises no tension above this fraction of the largest permitted one while the joint torque is zero.
 const RESERVED: f64 = 0.4;
 
 /// The tensions b n sin(omega t). b is the smallest amplitude that reaches the wanted fraction of the tension in every
@@ -52,7 +53,7 @@ pub(crate) struct TensionDither {
     inverse_common: Vector4<f64>,
     /// Wanted amplitude of each tendon as a fraction of its tension, divided by n.
     part: Vector4<f64>,
-    /// The same for the smallest amplitude, which no factor reduces.
+    /// The same for the smallest amplitude to which [`DitherScale`] may reduce the wanted one.
     least: Vector4<f64>,
     /// Largest tension of each tendon, N.
     most: Vector4<f64>,
@@ -69,8 +70,8 @@ pub(crate) struct TensionDither {
     burst: DitherBurst,
     /// For a finger whose configured pulley friction requires a larger dither.
     scaling: Option<DitherScale>,
-    /// Largest b of a burst, N. The limit [`TensionDither::risen`] does not apply to it. It does not grow with
-    /// the tensions: at hard walls, the dither of loaded fingers would make tendons slack.
+    /// Largest b of a burst, N. The limit [`TensionDither::risen`] does not apply to it. If it grew with the tensions,
+    /// the dither of loaded fingers would make tendons slack at hard walls.
     burst_amplitude: f64,
 }
 
@@ -127,8 +128,8 @@ impl TensionDither {
         }
     }
 
-    /// Returns the distance of the tensions from t_min that makes room for the dither, N. `minimum` is t_min, and
-    /// `maximum` is the largest permitted tension of each tendon, N.
+    /// Returns by how much the lowest desired tension must be raised to make room for the dither, N. `minimum` is this
+    /// tension before it is raised, and `maximum` is the largest permitted tension of each tendon, N.
     pub fn reserve(&self, minimum: f64, maximum: &Vector4<f64>) -> f64 {
         let amplitude = self.part.component_mul(&self.common).max();
         // Tensions without joint torque are proportional to n.

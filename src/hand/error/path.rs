@@ -62,8 +62,9 @@ pub enum PathError {
     },
     /// The path leaves the joint limits between two poses.
     #[error(
-        "on the way to pose {pose}, joint {joint} of finger {finger} would go to {value:.4} rad, outside its limits, \
-         {low:.4} to {high:.4} rad: add poses on this way, or give the steps before and after it more time"
+        "on the way to pose {pose}, joint {joint} of finger {finger} would go to {value:.4} rad, outside the permitted \
+         range of {low:.4} to {high:.4} rad: add poses on this way, or allow more time for the way before it and for \
+         the way after it"
     )]
     BeyondJointLimit {
         /// The finger.
@@ -74,9 +75,9 @@ pub enum PathError {
         joint: usize,
         /// The largest excursion, rad.
         value: f64,
-        /// Lower limit, rad.
+        /// The lower joint limit, or the angle at which the path begins if this angle is lower, rad.
         low: f64,
-        /// Upper limit, rad.
+        /// The upper joint limit, or the angle at which the path begins if this angle is higher, rad.
         high: f64,
     },
     /// The path is too fast.

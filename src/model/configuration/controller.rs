@@ -33,8 +33,8 @@ pub enum Law {
     Exact,
 }
 
-/// Rate from which state feedback is the default, Hz. A file may select state feedback at any rate, so its parts have a
-/// least rate of their own.
+/// Rate from which state feedback is the default, Hz. A file may select state feedback below this rate too. The
+/// functions of state feedback that need a high rate therefore have a limit of their own, `FULL_RATE`.
 const STATE_FEEDBACK_RATE: f64 = 750.0;
 
 /// `[finger.controller]`. Values that are absent get defaults for the scheme and the rate.

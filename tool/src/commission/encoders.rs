@@ -73,7 +73,10 @@ fn report(desk: &Desk, outcome: &mut Outcome) {
     let counts = desk.finger.encoder.counts_per_revolution.map(|counts| counts.to_string()).join(" ");
     outcome.found(format!("each encoder counts with its motor; signs {signs}, counts per turn {counts}"));
     outcome.about("encoder.sign", "motors turned by hand so that their tendons came loose");
-    outcome.about("encoder.counts_per_revolution", "one turn by hand: the old value, or 1/4, 1/2, 2 or 4 times it");
+    outcome.about(
+        "encoder.counts_per_revolution",
+        "after one turn by hand, each value is the old one, or 1/4, 1/2, 2 or 4 times the old one",
+    );
 }
 
 /// Asks for one turn of a motor, and reads which encoder followed.

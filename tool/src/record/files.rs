@@ -272,7 +272,7 @@ fn unwritten(path: &Path, error: &(dyn Error + 'static)) -> Failure {
 
 /// The message about a file that cannot be deleted.
 fn undeleted(path: &Path, error: &io::Error) -> String {
-    let later = "The file stays for now: sun2xp record tries again to delete it with each new file";
+    let later = "The file stays for now: each time sun2xp record begins a new file, it tries again to delete this one";
     format!("cannot delete {}: {error}{}. {later}", ShownPath(path), write_remedy(error))
 }
 

@@ -15,19 +15,20 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, Sleep, sleep};
 
-/// Largest number of connections that are not pages. A browser opens up to six for a page. One of them becomes the
-/// page, and the others end.
+/// Largest number of connections that are not the WebSocket of a page. A browser opens up to six connections to load
+/// the files of a page. They end with their answers, and a further connection becomes the WebSocket.
 const CONNECTIONS: usize = 64;
 
 /// A connection that sends nothing for this time is closed. The server pings each WebSocket more often than this, and
 /// browsers answer every ping.
 pub const SILENCE: Duration = Duration::from_secs(30);
 
-/// Time after which the listener tries again if the system has no more file descriptors.
+/// Time after which the listener tries again if it cannot accept a connection, for example because the system has no
+/// more file descriptors.
 const RETRY: Duration = Duration::from_millis(100);
 
-/// A listener that limits the number of open connections that are not pages. A further connection waits until another
-/// one is closed or becomes a page.
+/// A listener that limits the number of open connections that are not the WebSocket of a page. A further connection
+/// waits until another one is closed or becomes such a WebSocket.
 pub struct Limited {
     listener: TcpListener,
     free: Arc<Semaphore>,

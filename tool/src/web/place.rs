@@ -7,7 +7,7 @@ use tokio::sync::OwnedSemaphorePermit;
 /// Time from its acceptance within which a connection must have sent the header of its request.
 pub const HEADER: Duration = Duration::from_secs(10);
 
-/// Time from its acceptance within which a connection that is not a page must have taken its answer.
+/// Time from its acceptance within which a connection must have taken its answer, unless it is the WebSocket of a page.
 const ANSWER: Duration = Duration::from_secs(60);
 
 /// The place of a connection among the limited number of them.
@@ -20,7 +20,7 @@ enum Progress {
     Header(OwnedSemaphorePermit),
     /// The request is being answered.
     Answer { _permit: OwnedSemaphorePermit },
-    /// It is a page, and pages are counted by themselves.
+    /// The connection is the WebSocket of a page. Pages have a limit of their own.
     Page,
 }
 
@@ -38,7 +38,7 @@ impl Place {
         });
     }
 
-    /// Frees the place of a connection that becomes a page.
+    /// Frees the place of a connection that becomes the WebSocket of a page.
     pub fn leave(&self) {
         self.change(|_| Progress::Page);
     }
@@ -49,7 +49,7 @@ impl Place {
         *progress = change(before);
     }
 
-    /// Returns the time that the connection has from its beginning; none for a page.
+    /// Returns the time that the connection has from its acceptance; none for the WebSocket of a page.
     pub fn time(&self) -> Option<Duration> {
         match &*self.0.lock().unwrap_or_else(PoisonError::into_inner) {
             Progress::Header(_) => Some(HEADER),

@@ -5,7 +5,7 @@ use crate::control::motion::Motion;
 use nalgebra::Vector3;
 
 /// Largest distance of a stage from the reference after the time constant has become longer, relative to the largest
-/// such distance before. With 0.02 after 0.008 s, a reference at full speed stays below it.
+/// such distance before. A reference at full speed stays below it if the time constant changes from 0.008 s to 0.02 s.
 const STRETCH: f64 = 3.0;
 
 impl Reference {
@@ -31,7 +31,7 @@ impl Reference {
             let ReferenceMotion { joints, rates, accelerations, jerk, snap } = previous.motion(state);
             ReferenceState::of(&joints, &Motion { rates, accelerations, jerk, snap }, self.lag)
         };
-        // The set point moves by itself. The conversion must not disturb its motion, but only that of the deviation.
+        // A set point that moves keeps its motion. The conversion may change only the motion of the deviation.
         let moved = along.unwrap_or_default();
         let deviation = state.combine(&moved, |stage, moved| stage - moved);
         let mut input = *anchor - moved.0[0];
@@ -68,7 +68,7 @@ impl Reference {
 
 impl ReferenceState {
     /// Bounds the outputs of the first stages to [`STRETCH`] times the range of the stages `before` and of their
-    /// `input`, seen from the last output. The last two outputs stay, because they are the place and the rates.
+    /// `input`, seen from the last output. The last two outputs stay, because they determine the place and the rates.
     fn limit(&mut self, before: &Self, input: &Vector3<f64>) {
         let joints = before.0[ORDER - 1];
         let (mut low, mut high) = (Vector3::zeros(), Vector3::zeros());
