@@ -26,9 +26,9 @@ pub(super) fn long(
     }
 }
 
-/// Runs a request that takes long in a thread, and sends its Answer. The caller has set `busy`. If the server ends, or
-/// if the system cannot start a thread, returns `reply` and the refusal, which has this epoch. The caller then sends
-/// the refusal.
+/// Starts a thread that runs a request and sends its Answer. The caller has set `busy`. If the server ends, or if the
+/// system cannot start a thread, returns `reply` and the refusal, which has this epoch. The caller then sends the
+/// refusal.
 pub(super) fn run<R: Reply>(
     shared: &Arc<Shared>,
     epoch: u64,

@@ -4,8 +4,8 @@ use crate::desk::Stops;
 use crate::shared::Shared;
 use std::thread::sleep;
 use std::time::Duration;
-use sun2xp::HandError;
 use sun2xp::hand::Recovering;
+use sun2xp::{FaultKind, HandError};
 use sun2xp_remote_protocol::Finger;
 
 /// Interval at which recoveries are polled.
@@ -14,9 +14,19 @@ pub(super) const POLLED: Duration = Duration::from_millis(2);
 /// Recovers this finger, or every finger if `finger` is none. `stops` was read when the request was admitted. A finger
 /// that was stopped since stays stopped.
 pub(super) fn recover(shared: &Shared, finger: Option<Finger>, stops: &Stops) -> Result<(), HandError> {
-    let recovered = recover_fingers(shared, finger, stops);
+    let mut recovered = recover_fingers(shared, finger, stops);
+    if recovered.as_ref().is_err_and(of_previous_owner) {
+        recovered = recover_fingers(shared, finger, stops);
+    }
     let stopped = shared.desk.lock().stop_again(stops);
     recovered.and(stopped)
+}
+
+/// Returns whether a finger that still ran when its recovery began has ended its motion since, because the previous owner
+/// was silent. This happens if the hand is acquired right after the end of the ownership. The silence has only this
+/// effect, because the desk keeps the set points of running fingers valid while an acquire recovers others.
+fn of_previous_owner(error: &HandError) -> bool {
+    matches!(error, HandError::Faulted { fault, .. } if fault.kind == FaultKind::SetPointExpired)
 }
 
 /// Recovers this finger, or every finger at the same time if `finger` is none. A recovery can take seconds.

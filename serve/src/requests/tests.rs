@@ -5,6 +5,7 @@ use crate::settings::{Overrides, Settings};
 use std::path::Path;
 use std::sync::mpsc::{Sender, channel};
 use std::time::{Duration, Instant};
+use sun2xp::motion::Validity;
 use sun2xp::{Configuration, RealTime, Stage};
 
 /// Longest time until an Answer. The machine of the tests may be busy.
@@ -54,6 +55,24 @@ fn an_acquire_that_the_owner_prevents_does_not_hold_up_a_recovery() {
     assert!(shared.desk.lock().admits(&alice, epoch), "a refused acquire changes nothing");
     shared.busy.store(false, Ordering::Release);
     assert_eq!(ask(&shared, "bob", taking).code, Code::Done);
+    join(&shared);
+}
+
+/// The servo of a finger may count the silence of the previous owner a moment later than the server.
+#[test]
+fn a_finger_whose_set_point_expires_while_an_acquire_recovers_another_is_recovered_too() {
+    let shared = shared();
+    shared.hand.stop(1).expect("finger 1");
+    let begun = Instant::now();
+    while !matches!(shared.hand.report(1).expect("finger 1").stage, Stage::Faulted(_)) {
+        assert!(begun.elapsed() < PATIENCE, "no stop in time");
+        std::thread::sleep(POLLED);
+    }
+    let soon = Validity { end_after: Some(Duration::from_millis(50)), ..Validity::default() };
+    shared.hand.keep_valid(2, soon).expect("finger 2");
+    let answer = ask(&shared, "alice", Request { recover: true, ..ACQUIRE });
+    assert_eq!((answer.code, answer.text.as_str()), (Code::Done, ""));
+    assert_eq!(shared.hand.report(2).expect("finger 2").recoveries, 1, "the set point has expired");
     join(&shared);
 }
 
