@@ -4,8 +4,8 @@
 use crate::cases::{Case, Friction, stiffen};
 use nalgebra::Vector3;
 use sun2xp::calibration::{Calibration, Obstacle, Sample, Task, Verdict};
-use sun2xp::control::{Activity, Controller, Feedback, MotorCommand, Report};
-use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::control::{Activity, Controller, Feedback, MotorCommand, Report, State};
+use sun2xp::model::configuration::{ConfiguredFinger, ZeroingMethod};
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
 /// Identifies a finger whose true tendons are stiffer than configured by the factors `ratio`. Returns the identified
@@ -17,47 +17,83 @@ pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obsta
     identified(case, &truth).map(|found| found.tendon.stiffness)
 }
 
-/// Identifies a finger. Returns its configuration with the findings.
+/// Zeros the gauges of a finger and identifies it. Returns its configuration with the findings. The zeros of the
+/// encoders are right from the start.
 pub fn identified(case: &Case, truth: &ConfiguredFinger) -> Result<ConfiguredFinger, Obstacle> {
     let mut belief = truth.clone();
-    let mut plant = Plant::new(truth, Vector3::zeros()).expect("the default finger");
-    let mut sensors = Sensors::new(truth);
-    let mut read = move |plant: &Plant| {
-        let (motor_counts, gauge_counts) = sensors.read(plant);
-        Feedback { motor_counts, gauge_counts }
-    };
-    let controller =
-        Controller::new(&Calibration::controlled(&belief, case.rate), case.rate).expect("the default controller");
-    let mut state = controller.start(&read(&plant));
-    plant.release_brake();
-    let mut command = MotorCommand::default();
-    let mut advance = |plant: &mut Plant, feedback: &Feedback, activity: &Activity| {
-        for _ in 0..(1.0 / (case.rate * PLANT_STEP_SECONDS)).round() as usize {
-            plant.step((command.motor_torques * 0.01).into());
-        }
-        let (next, report) = controller.cycle(&mut state, Some(feedback), activity);
-        command = next;
-        report
-    };
-    for _ in 0..(0.3 * case.rate) as usize {
-        let feedback = read(&plant);
-        advance(&mut plant, &feedback, &Activity::TakeUpSlack);
+    belief.zeroing.method = Some(ZeroingMethod::Kept);
+    let mut finger = UnknownFinger::new(case, truth);
+    for task in [Task::Zero, Task::Identify] {
+        finger.run(task, &mut belief)?;
     }
-    let mut calibration = Calibration::new(Task::Identify, &belief, case.rate).expect("the default finger");
-    let mut report = Report::default();
-    loop {
-        let feedback = read(&plant);
-        let (activity, verdict) = calibration.cycle(&Sample { feedback: &feedback, report: &report, zero_valid: true });
-        match verdict {
-            Verdict::InProgress(_) => {
-                let activity = activity.expect("identification takes over in its first cycle");
-                report = advance(&mut plant, &feedback, &activity);
+    belief.zeroing.method = truth.zeroing.method;
+    Ok(belief)
+}
+
+/// A finger that differs from its configuration.
+struct UnknownFinger {
+    rate: f64,
+    plant: Plant,
+    sensors: Sensors,
+    command: MotorCommand,
+}
+
+impl UnknownFinger {
+    fn new(case: &Case, truth: &ConfiguredFinger) -> Self {
+        let mut plant = Plant::new(truth, Vector3::zeros()).expect("the default finger");
+        plant.release_brake();
+        Self { rate: case.rate, plant, sensors: Sensors::new(truth), command: MotorCommand::default() }
+    }
+
+    fn read(&mut self) -> Feedback {
+        let (motor_counts, gauge_counts) = self.sensors.read(&self.plant);
+        Feedback { motor_counts, gauge_counts }
+    }
+
+    /// Runs a cycle of the controller and the physics up to the next one.
+    fn advance(
+        &mut self,
+        controller: &Controller,
+        state: &mut State,
+        feedback: &Feedback,
+        activity: &Activity,
+    ) -> Report {
+        for _ in 0..(1.0 / (self.rate * PLANT_STEP_SECONDS)).round() as usize {
+            self.plant.step((self.command.motor_torques * 0.01).into());
+        }
+        let (command, report) = controller.cycle(state, Some(feedback), activity);
+        self.command = command;
+        report
+    }
+
+    /// Runs a routine, and puts its findings into the configuration `belief`.
+    fn run(&mut self, task: Task, belief: &mut ConfiguredFinger) -> Result<(), Obstacle> {
+        let controlled = Calibration::controlled(belief, self.rate);
+        let controller = Controller::new(&controlled, self.rate).expect("the default controller");
+        let mut state = controller.start(&self.read());
+        for _ in 0..(0.3 * self.rate) as usize {
+            let feedback = self.read();
+            self.advance(&controller, &mut state, &feedback, &Activity::TakeUpSlack);
+        }
+        let mut calibration = Calibration::new(task, belief, self.rate).expect("the default finger");
+        let mut report = Report::default();
+        // Zeroing leaves the finger under its own controller at first.
+        let mut own = Activity::TakeUpSlack;
+        loop {
+            let feedback = self.read();
+            let sample = Sample { feedback: &feedback, report: &report, zero_valid: true };
+            let (activity, verdict) = calibration.cycle(&sample);
+            match verdict {
+                Verdict::InProgress(_) => {
+                    own = activity.unwrap_or(own);
+                    report = self.advance(&controller, &mut state, &feedback, &own);
+                }
+                Verdict::Found(findings) => {
+                    findings.apply(belief);
+                    return Ok(());
+                }
+                Verdict::Refused(obstacle) => return Err(obstacle),
             }
-            Verdict::Found(findings) => {
-                findings.apply(&mut belief);
-                return Ok(belief);
-            }
-            Verdict::Refused(obstacle) => return Err(obstacle),
         }
     }
 }
