@@ -13,7 +13,7 @@ use loom::sync::Arc;
 /// it.
 pub fn a_group_takes_effect_in_one_period() {
     let gate = GroupGate::new();
-    // The number of the present period. It increases while threads wait.
+    // The number of the present period. Each reading increases it, as if a period had passed since the last reading.
     let clock = Arc::new(AtomicU64::new(1));
     let group = gate.number();
     let (other, others_clock) = (gate.clone(), clock.clone());

@@ -33,7 +33,7 @@ pub fn list(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
 
 /// Returns three numbers.
 pub fn vector(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
-    // These two cases are quick. All others become an array first, which shows their shape. Python's conversion of a
+    // These two cases are quick. All others become an array first, which shows their shape. PyO3's conversion of a
     // sequence would also take bytes, and with numpy before 2.4 the column of an array.
     if let Ok(array) = object.cast::<PyArray1<f64>>() {
         if is_regular(array)
@@ -76,8 +76,8 @@ pub fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'
     Ok(array.map_err(|error| not_numbers(py, name, error))?.cast_into::<PyArrayDyn<f64>>()?)
 }
 
-/// Returns the refusal of an argument that numpy does not convert. Other exceptions, such as those of the handlers of
-/// signals, stay.
+/// Returns the refusal of an argument that numpy does not convert. Returns other exceptions, such as those of signal
+/// handlers, unchanged.
 fn not_numbers(py: Python<'_>, name: &str, error: PyErr) -> PyErr {
     if !error.is_instance_of::<PyTypeError>(py) && !error.is_instance_of::<PyValueError>(py) {
         return error;
@@ -133,7 +133,8 @@ pub fn some_reflex(object: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
     in_range(object, object.extract(), refused)
 }
 
-/// Refuses an integer that `T` cannot have, such as a negative one. Python's integers have no limits.
+/// Refuses an integer that `T` cannot represent, such as a negative one if `T` is unsigned. Python's integers have no
+/// limits.
 pub fn in_range<T>(object: &Bound<'_, PyAny>, extracted: PyResult<T>, refused: impl FnOnce() -> String) -> PyResult<T> {
     let py = object.py();
     extracted.map_err(|error| match error.is_instance_of::<PyOverflowError>(py) {

@@ -54,10 +54,10 @@ impl Hand {
         self.quick(py, |hand| hand.send_stiffness(finger, rows))
     }
 
-    /// Sends the stiffness of a contact. Its shape selects the type of the contact: a number, N/cm, with a normal for a
-    /// frictionless point; (3, 3), N/cm, for a hard finger; (4, 4) with a normal for a soft finger, whose row and
-    /// column 3 are the rotation about the normal, N cm/rad; (6, 6) for any contact. The normal is in the finger's
-    /// frame.
+    /// Sends the stiffness of a contact. The shape of the stiffness selects the type of the contact: a number, N/cm,
+    /// with a normal for a frictionless point; (3, 3), N/cm, for a hard finger; (4, 4) with a normal for a soft finger;
+    /// (6, 6) for any contact. Row 3 and column 3 of the (4, 4) matrix belong to the rotation about the normal,
+    /// N cm/rad. The normal is in the finger's frame.
     #[pyo3(signature = (finger, stiffness, normal=None))]
     fn send_contact(
         &self,
@@ -169,7 +169,8 @@ impl Hand {
         self.slow(py, |hand| hand.set_gravity(gravity))
     }
 
-    /// Pushes the tip of a simulated finger with a force in the finger's frame, N: shape (3,), until the next call.
+    /// Pushes the tip of a simulated finger with a force in the finger's frame, N: shape (3,). The force acts until the
+    /// next call of `push` for this finger.
     fn push(
         &self,
         py: Python<'_>,

@@ -44,8 +44,8 @@ impl Queue {
         let deadline = limit.and_then(|limit| Instant::now().checked_add(limit));
         loop {
             let left = deadline.map_or(Duration::MAX, |deadline| deadline.saturating_duration_since(Instant::now()));
-            // An event may come between the wait and the time at which this thread has the interpreter lock again. No
-            // event can come after the wait if the queue was closed before it, so `closed` is read first.
+            // Between the wait and the time at which this thread has the interpreter lock again, an event may come and
+            // the queue may be closed. If `closed` were read after the wait, that event would not be returned.
             let closed = self.queue.is_closed();
             let event = py.detach(|| self.queue.wait(Some(left.min(SLICE))));
             if let Some(event) = event {

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Number of forks between the start of the first process and this one.
+/// Number of forks that lead from the first process to this process.
 static GENERATION: AtomicU32 = AtomicU32::new(0);
 
 #[pyfunction]

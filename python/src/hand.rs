@@ -100,7 +100,7 @@ impl Hand {
     }
 
     /// Brings every finger to its configured end state (`hand.end_state`), and closes the ports. Waits until this is
-    /// done, 0.2 s by default, also after Ctrl-C. Does nothing if the hand is closed.
+    /// done, also after Ctrl-C. By default, this takes 0.2 s. Does nothing if the hand is closed.
     fn close(&self, py: Python<'_>) {
         py.detach(|| self.0.close());
     }
@@ -140,7 +140,7 @@ pub struct Opened(pub Mutex<Option<(sun2xp::Hand, Pending)>>);
 
 impl Drop for Opened {
     fn drop(&mut self) {
-        // Ctrl-C may come before the constructor has taken the hand. Its closing waits, as that of a `Hand`.
+        // Ctrl-C may come before the constructor has taken the hand. Closing this hand waits, as closing a `Hand` does.
         if let Some(opened) = self.0.get_mut().take() {
             Python::attach(|py| py.detach(|| drop(opened)));
         }
@@ -155,7 +155,7 @@ pub fn close_all(py: Python<'_>) {
         pending::end_openings();
         close_listed();
         pending::wait();
-        // Hands whose openings had just ended.
+        // Some openings may have been completed since the first call. This closes their hands.
         close_listed();
     });
 }

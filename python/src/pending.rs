@@ -46,8 +46,8 @@ impl Pending {
         Self { counted: AtomicBool::new(true), generation: fork::generation() }
     }
 
-    /// Returns whether the opening goes on: the interpreter is not ending. From now on the end of the interpreter waits
-    /// for this opening.
+    /// Returns whether the opening may go on, because the interpreter is not ending. If so, the end of the interpreter
+    /// waits for this opening from now on.
     pub fn goes_on(&self) -> bool {
         let mut state = state();
         if !state.ending && !self.counted.swap(true, Ordering::Relaxed) {

@@ -69,8 +69,9 @@ pub fn duration(py: Python<'_>, name: &str, seconds: Option<f64>) -> PyResult<Op
     }
 }
 
-/// Returns the time for which a set point is valid; none for the configured time. A time without a limit is longer than
-/// every time that a servo counts, so the set point does not expire.
+/// Returns the time for which a set point is valid; none for the configured time. A time that is too long for a
+/// `Duration` becomes `Duration::MAX`. This is longer than every time that a servo counts, so the set point does not
+/// expire.
 pub fn validity(py: Python<'_>, seconds: Option<f64>) -> PyResult<Option<Duration>> {
     Ok(duration(py, "valid", seconds)?.or(seconds.map(|_| Duration::MAX)))
 }

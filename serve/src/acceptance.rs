@@ -44,7 +44,7 @@ pub struct Acceptance {
 pub struct Fresh {
     /// The moment from which its validity counts, ns.
     pub seen: u64,
-    /// Its validity, ns: at most that of the server.
+    /// Its validity, ns: at most `catch_ms` of the server.
     pub validity: u64,
 }
 

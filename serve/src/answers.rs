@@ -1,9 +1,9 @@
 //! Sends Answers in threads of their own. A client that has stopped reading can hold up a reply, and the threads of
 //! zenoh that receive Targets must not wait for it. A reply has the congestion control of its query, which the client
-//! chooses. Zenoh 1.10 ignores the congestion control of the reply.
+//! chooses. Zenoh 1.10 ignores a congestion control that is set for the reply.
 //!
 //! When a thread drops a query, zenoh sends the end of the query in this thread. This sending can block too. So
-//! callbacks pass every query to one of these threads, even a query that gets no answer.
+//! callbacks pass every query to one of the threads that send Answers, even a query that gets no answer.
 
 use crate::places::{Place, Places};
 use crate::shared::Shared;
@@ -117,7 +117,8 @@ pub fn send(shared: &Shared, session: &Session, queue: &Receiver<Outgoing>) {
             send_one(shared, session, outgoing);
         }
     }
-    // These Answers are in the queue by now. A client that keeps sending queries does not hold up the end.
+    // The Answers to those Requests are in the queue by now. A client that keeps sending queries does not hold up the
+    // end.
     queue.try_iter().take(WAITING).for_each(|outgoing| send_one(shared, session, outgoing));
 }
 

@@ -218,7 +218,8 @@ mod tests {
         }
     }
 
-    /// The protocol says so of every record of a finger that has stopped, also of that of the cycle of its fault.
+    /// The protocol demands this of every record of a finger that has stopped, also of the record of the cycle in which
+    /// the finger faulted.
     #[test]
     fn a_finger_that_stops_has_neither_set_point_nor_force() {
         let mut configuration = Configuration::default();

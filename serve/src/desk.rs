@@ -217,7 +217,7 @@ impl Desk {
         self.stops
     }
 
-    /// Stops the fingers again that were stopped after `before` was read. A recovery that begins after such a stop
+    /// Stops again the fingers that were stopped after `before` was read. A recovery that begins after such a stop
     /// would undo it.
     ///
     /// # Errors
@@ -254,8 +254,8 @@ impl Desk {
         }
         if self.stop_at.is_some_and(|at| now >= at) {
             self.stop_at = None;
-            // Fingers may not have stopped by themselves, because they were being calibrated. A recovery that the owner
-            // has requested may still be running, so faulted fingers are stopped too.
+            // A finger that was being calibrated may not have stopped by itself. A recovery that the owner has
+            // requested may still be running, so faulted fingers are stopped too.
             let _ = self.stop(None);
         }
     }

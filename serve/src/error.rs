@@ -73,7 +73,7 @@ pub enum ServeError {
 }
 
 impl ServeError {
-    /// The error that the system refuses something that needs a thread or a descriptor.
+    /// The error for an operation that the system refuses, and that needs a thread or a descriptor.
     pub(crate) fn refused(doing: &'static str, error: &io::Error) -> Self {
         Self::System { doing, reason: with_remedy(error) }
     }

@@ -24,7 +24,7 @@ const AT_END: f64 = 1e-6;
 pub struct Fingers {
     hand: Arc<Hand>,
     goals: [Goal; FINGERS],
-    /// The largest force of the lead, N.
+    /// The largest force with which a set point pulls a fingertip, N. It bounds the lead (see [`crate::lead`]).
     lead_force: f64,
     /// Whether the hand refuses or clamps commands beyond the limits.
     out_of_range: OutOfRange,
@@ -95,8 +95,8 @@ impl Fingers {
     /// a servo is so late that it has no room for another group, or if a finger is caught during the call, no part is
     /// applied yet. The parts stay new, and the owner repeats them.
     ///
-    /// A finger that stops or is caught in the period after the call discards its part. The hand cannot know this
-    /// before.
+    /// A finger that stops or is caught in the period after the call discards its part. The hand cannot know this in
+    /// advance.
     ///
     /// # Errors
     /// Returns why a finger refuses its part. Then no part is applied, and the validity is not renewed.

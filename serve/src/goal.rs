@@ -38,7 +38,8 @@ pub struct Goal {
     /// The joint angles of the set point that the owner keeps because it has not commanded a place, rad. A finger that
     /// was caught (see [`crate::silence`]) returns to them.
     pub kept: Option<Vector3<f64>>,
-    /// Whether the whole way to the destination has been sent, and not only the part that the lead admits.
+    /// Whether the whole way to the destination has been sent, and not only the part that the lead (see
+    /// [`crate::lead`]) admits.
     pub whole: bool,
     /// Numbers of the finger's recoveries and orders (see [`FingerReport`]) when this goal was set. A later recovery or
     /// order cancels the goal.
@@ -77,7 +78,8 @@ impl Goal {
         self.spring.is_some()
     }
 
-    /// Forgets what the owner wants if the finger was recovered or calibrated since. Such a finger holds its pose.
+    /// Forgets what the owner wants if the finger was recovered or calibrated since the goal was set. Such a finger
+    /// holds its pose.
     pub fn notice(&mut self, report: &FingerReport) {
         if self.is_commanded() && self.phase != (report.recoveries, report.orders) {
             *self = Self { command: self.command, before: self.before, ..Self::default() };

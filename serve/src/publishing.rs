@@ -32,8 +32,9 @@ pub struct Publishing {
     state: Publisher<'static>,
     event: Publisher<'static>,
     status: Publisher<'static>,
-    /// Number of States and of Events that were published.
+    /// Number of States that were published.
     states: u64,
+    /// Number of Events that were published.
     sent_events: u64,
 }
 
@@ -83,8 +84,8 @@ impl Publishing {
         let Taken { mut records, missing } = self.cycles.take(&goals, &progress);
         self.states += 1;
         let (time, owner) = {
-            // The time and the epoch are read under one lock of the desk. Otherwise an Answer with a later time than
-            // this State could have an earlier epoch.
+            // The time and the epoch are read under one lock of the desk. Otherwise this State could have a later time
+            // than an Answer, but an earlier epoch.
             let desk = self.shared.desk.lock();
             (now(), desk.epoch_number())
         };
@@ -119,7 +120,7 @@ impl Publishing {
         let index = event.finger.index();
         let tolerance = self.shared.hand.configuration().fingers[index].events.arrived_degrees.to_radians();
         let [first, second, third, _] = event.values;
-        // Read after the event, because the owner may have sent a new destination since the State.
+        // The goal is read after the event, because the owner may have sent a new destination since the State.
         let goal = self.shared.desk.lock().goals()[index];
         // The bound of the lead can make set points that are nearly at the destination.
         (goal.whole || !goal.is_commanded()) && goal.is_reached(&Vector3::new(first, second, third), tolerance)

@@ -64,7 +64,7 @@ fn listed(what: &str, endpoints: &[Endpoint]) -> String {
 /// Returns an error if a file of TLS is missing.
 fn config(settings: &Settings, access: &str, largest: u16) -> Result<Config, ServeError> {
     let mut config = Config::default();
-    // A hand behind a router is its client. Otherwise it is the router of its clients.
+    // A server that does not listen is a client of its router. A server that listens is the router of its clients.
     let mode = if settings.listen.is_empty() { "client" } else { "router" };
     let endpoints = |endpoints: &[Endpoint]| strings(endpoints.iter().map(Endpoint::to_string));
     let listen = endpoints(&settings.listen);

@@ -23,7 +23,8 @@ pub struct Shared {
     pub busy: AtomicBool,
     /// Whether the server ends. From then on, Requests other than stop are refused.
     pub ending: AtomicBool,
-    /// Whether the Requests that were in progress when the server began to end have their Answers.
+    /// Whether the Requests that were in progress when the server began to end are over: their Answers are in the queue
+    /// (see [`crate::answers`]), or have been sent.
     pub answered: AtomicBool,
     /// The threads of requests that take long.
     pub requests: Mutex<Vec<JoinHandle<()>>>,

@@ -59,7 +59,8 @@ const MOST_FINGERS: usize = HIGHEST_ADDRESS as usize;
 
 const DELIMITER: u8 = 0;
 
-/// The connection to a board. After opening it allocates nothing, and it never waits past a deadline.
+/// The connection to a board. After opening, only [`Link::identities`] allocates memory. At a serial port, no call
+/// waits past its deadline.
 #[derive(Debug)]
 pub struct Link<T = Port> {
     transport: T,
@@ -134,7 +135,7 @@ impl<T: Transport> Link<T> {
     /// Does the same as [`send`](Self::send), with TactileRequests after the Commands, at most 15. The answers then
     /// follow the Replies and delay none of them.
     pub fn send_with(&mut self, commands: &[OutgoingCommand], requests: &[OutgoingRequest]) -> Result<(), LinkError> {
-        // An incomplete Reply of the last period is now useless, and must not damage the next Reply. It is kept if
+        // An incomplete frame of the last period is now useless, and must not damage the next Reply. It is kept if
         // reading was cut short, because the rest of it may still be unread. It is also kept if it may be the answer to
         // a relayed request.
         if self.unread.is_empty() && !self.cut_short && !self.relayed.is_awaited() {

@@ -7,7 +7,8 @@ pub trait Transport {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError>;
 
     /// Waits for bytes, at most until `deadline` (ns on this transport's clock). Reads what has arrived: at least one
-    /// byte, or none at the deadline. Bytes that have already arrived are read even after the deadline.
+    /// byte, or none at the deadline. A transport that knows that no byte can arrive may return none earlier. Bytes
+    /// that have already arrived are read even after the deadline.
     fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError>;
 
     /// Returns when the bytes of the last read became readable, ns. The read itself happens later.

@@ -1,7 +1,7 @@
 //! Causes and remedies of a refusal that depend on what the finger did.
 
-/// A joint stays behind its motion back and forth. The largest torque of this motion is fixed, so `zeroing.torque` does
-/// not affect it.
+/// A joint does not follow when it is moved back and forth. The largest torque of this motion is fixed, so
+/// `zeroing.torque` does not affect it.
 pub(super) const STAYS_BEHIND: &str = "it has far too much friction, or it meets a stop because its zeros or the \
     configured stops are wrong. Clear its way, check the joint and its tendons, and zero the finger again";
 

@@ -34,7 +34,7 @@ use tendon_stiffness::TendonStiffness;
 
 #[derive(Clone, Debug)]
 pub(super) struct Identification {
-    /// Largest torque that moves a joint to its stop, N cm.
+    /// Largest torque that moves a joint to its stop, N cm, in addition to the friction that was found.
     torque: f64,
     /// Speed of a joint on the way to its stop, rad/s.
     speed: f64,

@@ -1,5 +1,5 @@
 //! The routines that find the signs and zeros of a finger, test its wiring, and identify its friction, elasticity,
-//! gauge gains and moment arms. They move the finger and evaluate its response.
+//! gauge gains, rotor inertia and moment arms. They move the finger and evaluate its response.
 //!
 //! Each routine is a state machine without side effects: every servo cycle gives it a measurement, and it returns an
 //! activity. It has no clock and allocates nothing. Its verdict contains its findings or the reason for a refusal. The

@@ -116,7 +116,7 @@ pub enum Obstacle {
         /// Configured range, degrees.
         expected: f64,
     },
-    /// A joint cannot be moved where it should be away from its stops.
+    /// A joint cannot be moved, although it should be away from its stops.
     #[error(
         "joint {joint} does not move freely: something blocks it, {}",
         if *returning { DOES_NOT_RETURN } else { STAYS_BEHIND }

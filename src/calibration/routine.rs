@@ -29,9 +29,9 @@ pub enum Task {
     SelfTest,
     /// Zeros the gauges, and the encoders by the configured method.
     Zero,
-    /// Identifies the gains of the gauges, the friction of motors, conduits, pulleys and joints, the moment arms, and
-    /// the stiffness of the tendons. Every joint moves between its stops, and the finger presses against its lower
-    /// stops.
+    /// Identifies the gains of the gauges, the friction of motors, conduits, pulleys and joints, the inertia of the
+    /// rotors, the moment arms, and the stiffness of the tendons. Every joint moves between its stops, and the finger
+    /// presses against its lower stops.
     Identify,
 }
 

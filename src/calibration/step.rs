@@ -23,7 +23,7 @@ pub struct Sample<'a> {
 pub enum Step {
     /// The tendons are being tightened.
     TakingUpSlack,
-    /// Gauges are read while the tendons are let out.
+    /// The tendons are let out, and then the gauges are read.
     ZeroingGauges,
     /// Joints are pushed lightly, to check that something holds them in their pose.
     TryingPose,

@@ -129,7 +129,7 @@ pub(super) fn delegated_or_done_here(
 /// Runs a slow call. The planner's signal mask is in force only during the wait itself. While the arguments are copied,
 /// only the fault signals (for example SIGSEGV) can be delivered. All signals are blocked in all other parts of the
 /// call, so no handler can jump out of these parts. A jump out of the wait does not restore the floating-point
-/// environment. Therefore the thread has the planner's environment during the wait.
+/// environment. Therefore the planner's thread keeps its own environment during the wait.
 fn slow(
     name: &'static str,
     handle: Handle,

@@ -141,8 +141,8 @@ pub unsafe extern "C" fn sun2xp_send_contact(
     guarded("sun2xp_send_contact", hand, || {
         // `stiffness` is checked before `dimensions`, which determines its size.
         non_null(stiffness, "stiffness", Wanted::Matrix)?;
-        // SAFETY: here and below, by the contract in the manual, the pointer is null or points to the array of this
-        // many dimensions.
+        // SAFETY: here and below, by the contract in the manual, the pointer is null or points to the array that the
+        // manual describes for this value of `dimensions`.
         let normal = || unsafe { load::<f64, 3>(normal, "normal") }.map(Vector3::from);
         let contact = match dimensions {
             1 => Contact::frictionless_point(unsafe { load::<f64, 1>(stiffness, "stiffness") }?[0], normal()?),

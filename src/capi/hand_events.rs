@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// The events of the hand at a place of the table.
+/// The events of the hand at one place of the table of hands.
 pub(super) struct HandEvents {
     /// The queue of the open hand. It is shared, so that a thread that waits for an event does not delay closing.
     queue: RwLock<Option<(Handle, Arc<EventQueue>)>>,

@@ -148,7 +148,7 @@ impl Place {
         }
     }
 
-    /// The place that a handle names. The hand of the handle may be closed, and another one be open there.
+    /// The place that a handle names. The hand of the handle may be closed, and another hand may be open at this place.
     #[inline]
     fn named_by(handle: Handle) -> Result<&'static Self, Refusal> {
         handle.place().and_then(|place| TABLE.get(place)).ok_or(Refusal::NoHand)

@@ -151,8 +151,8 @@ fn from_table(table: &sun2xp_io) -> Result<IoTable, Refusal> {
     })
 }
 
-/// Rounds a time up to milliseconds. A binary number can exceed the milliseconds that its program means: 9 * 1e-3 is
-/// more than 9 ms. The conversion saturates, and a time that is too long is refused when the terms are agreed.
+/// Rounds a time up to milliseconds. Rounding errors can make a time slightly longer than the program intends: 9 * 1e-3
+/// is more than 9 ms. The conversion saturates, and a time that is too long is refused when the terms are agreed.
 fn whole_milliseconds(seconds: f64) -> u16 {
     const INEXACT_MS: f64 = 1e-4;
     (seconds * 1e3 - INEXACT_MS).ceil() as u16

@@ -248,7 +248,8 @@ pub unsafe extern "C" fn sun2xp_set_gravity(hand: *mut sun2xp_hand, gravity: *co
     })
 }
 
-/// Converts an array of three numbers to another. The arguments are the pointers with their names.
+/// Converts an array of three numbers to another such array. The arguments `from` and `to` are the pointers with their
+/// names.
 ///
 /// # Safety
 /// Both pointers are null or point to three numbers.

@@ -42,7 +42,7 @@ pub(super) fn open(source: RemoteSource, _: &Configuration) -> Result<Arc<dyn Re
         RemoteSource::File(path) => (library.open, path.into_os_string().into_vec()),
         RemoteSource::Text(text) => (library.open_text, text.into_bytes()),
     };
-    // The path or the text has come from a C string, or from a file whose text contains no zero byte.
+    // The argument contains no zero byte: a text was a C string, and a path names a file that has been read.
     let argument = CString::new(argument).unwrap_or_default();
     let mut handle = null_mut();
     // SAFETY: the argument is a C string, and there is room for the handle.
@@ -153,7 +153,7 @@ fn set_point(command: &FingerCommand) -> sun2xp_set_point {
 impl RemoteHand for LoadedHand {
     fn send(&self, commands: &[FingerCommand]) -> Result<(), RemoteRefusal> {
         if commands.is_empty() {
-            // The other library would read a size behind the pointer of an empty array.
+            // An empty group commands no finger, so it is not passed on.
             return Ok(());
         }
         let (library, hand) = (self.library, self.handle());

@@ -24,7 +24,8 @@ pub(super) enum Source {
     /// The file that OpenHand finds, or none.
     Found,
     File(PathBuf),
-    /// A text that may not be UTF-8. It is checked when it is read, because the calls promise to check it after EMFILE.
+    /// A text that is possibly not UTF-8. It is checked when it is read, because the manual lists EMFILE before this
+    /// reason.
     Text(Vec<u8>),
 }
 
@@ -55,7 +56,7 @@ impl Source {
         Self::File(PathBuf::from(OsStr::from_bytes(path.to_bytes())))
     }
 
-    /// A configuration in the memory of the program. The text may not be UTF-8.
+    /// A configuration in the memory of the program. The text is possibly not UTF-8.
     ///
     /// # Safety
     /// `configuration` points to a text that ends with 0.

@@ -3,7 +3,8 @@
 use crate::finger::Action;
 use std::fmt::{self, Display, Formatter};
 
-/// The interface to which a call belongs. Remedies name calls of the same interface.
+/// The interface to which a call belongs. A remedy names the call of the same interface, if that interface has a call
+/// for the action. Otherwise it names the call with a handle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Interface {
     /// The five calls of 1990.

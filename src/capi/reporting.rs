@@ -15,8 +15,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Number of kinds of refusals for which memory is reserved.
 const KINDS: usize = 128;
 
-/// For each place of the table of hands: if the refusals of the last hand there are not printed, the value of its
-/// handle, or [`CLOSED`] after it was closed; otherwise 0.
+/// One value for each place of the table of hands. It is 0 if the refusals of the last hand at this place are printed.
+/// Otherwise it is the value of this hand's handle while the hand is open, and [`CLOSED`] afterwards.
 static SILENT: [AtomicUsize; PLACES] = [const { AtomicUsize::new(0) }; PLACES];
 
 /// A value that no handle has.
@@ -93,8 +93,8 @@ pub(super) fn set_printing(handle: Handle, on: bool) {
     PRINTED.lock().reserve(KINDS);
 }
 
-/// Notes that a hand was closed. The refusals of calls with its handle are printed, like those of every handle of no
-/// open hand.
+/// Notes that a hand was closed. From now on the refusals of calls with its handle are printed, as for every handle
+/// that does not belong to an open hand.
 pub(super) fn note_closed(handle: Handle) {
     if let Some(silent) = handle.place().and_then(|place| SILENT.get(place)) {
         // The exchange fails if the refusals of the hand were printed while it was open.

@@ -104,7 +104,8 @@ enum Doing {
     Nothing,
     TakingUpSlack(Slack),
     Tightening(TighteningState),
-    /// The field is the anchor of the spring, rad. It moves toward the set point at a limited speed.
+    /// With Figures 9, 10 and 11, the field is the anchor of the spring, rad. The anchor moves toward the set point at
+    /// a limited speed. With state feedback, the field contains the estimated joint angles, rad.
     Following(Vector3<f64>),
     Releasing(Release),
     Tensing,
@@ -231,7 +232,7 @@ impl Controller {
     }
 
     /// Returns the joint angles, rad, that the controller follows, and their motion. `set_point` is the set point of
-    /// the last cycle. While the finger does not follow a set point, this is the measured pose.
+    /// the last cycle. While the finger does not follow a set point, the result is the measured pose without motion.
     pub fn reference(&self, state: &State, set_point: &SetPoint) -> (Vector3<f64>, Motion) {
         match (&self.state_feedback, &state.state_feedback, &state.doing) {
             (Some(law), Some(elastic), Doing::Following(_)) => law.reference(elastic),

@@ -1,8 +1,8 @@
 //! Feedback of the whole state of a finger on elastic tendons: joint angles and rates, tensions and their rates.
 //!
-//! The report's loops measure the joints through the motors. The tendons between motors and joints are springs. Their
-//! oscillation must be damped with quantities that the report's loops do not measure. This controller observes these
-//! quantities, and makes every motor a force source with little inertia.
+//! The loops of the report (COINS TR 90-48) measure the joints through the motors. The tendons between motors and
+//! joints are springs. Their oscillation must be damped with quantities that the report's loops do not measure. This
+//! controller observes these quantities, and makes every motor a force source with little inertia.
 
 mod construction;
 mod damping_design;
@@ -89,7 +89,7 @@ pub(super) struct StateFeedback {
     joint_viscous: Vector3<f64>,
     /// Coulomb friction of the joints, N m.
     joint_coulomb: Vector3<f64>,
-    /// Gain per cycle of the low-pass filter on the drift.
+    /// Gain per cycle of the low-pass filter on the drift, which is the joint rates minus the rates of the reference.
     drift_gain: f64,
     /// Slope of the joint friction feed-forward, as a fraction of the spring's damping.
     friction_slope: f64,
@@ -130,7 +130,8 @@ pub(super) struct StateFeedbackState {
     /// cycle must not persist.
     transition: BumplessTransfer,
     reference: ReferenceState,
-    /// The stages of the reference that belong to the set point of the last cycle, if that set point had a motion.
+    /// Outputs of the filter stages for a reference that equals the set point of the last cycle. `None` if that set
+    /// point was at rest.
     #[serde(default)]
     along: Option<ReferenceState>,
     /// Joint rates minus the rates of the reference, low-pass filtered, rad/s.

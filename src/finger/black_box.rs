@@ -2,8 +2,8 @@
 //! ring. The thread that collects from the servos keeps the newest records.
 //!
 //! A replay needs the state of the controller before the first record. The servo therefore writes a copy of the state,
-//! a keyframe, every few cycles, and the kept records begin at a keyframe. Two alternatives were rejected: the state in
-//! every record takes three times the memory, and a second controller that follows two seconds behind computes
+//! a keyframe, eight times a second, and the kept records begin at a keyframe. Two alternatives were rejected: the
+//! state in every record takes three times the memory, and a second controller that follows two seconds behind computes
 //! everything twice.
 
 use crate::control::State;
@@ -48,7 +48,7 @@ pub struct BlackBox {
     /// kept although no record names the controller yet.
     awaited: Option<u32>,
     /// The servo holds this controller or a newer one. It resumes this controller after a calibration that is longer
-    /// than the kept records, so the source is kept although no record may name it.
+    /// than the kept records, so the source is kept even if no record names it.
     held: u32,
     /// Whether a fault arrived that [`BlackBox::faulted`] has not reported yet.
     faulted: bool,

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 /// The input of a controller in one cycle, except the reply.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct ControlInput {
-    /// If present, the controller first restarts from this feedback. It keeps the heat of the motors. The reason is an
-    /// order to restart, a recovery from a fault, or too many lost replies.
+    /// If present, the controller first restarts from this feedback, but keeps the heat of the motors. It restarts
+    /// after an order to restart, after a recovery from a fault, or after too many lost replies.
     pub anew_from: Option<Feedback>,
     /// The activity of the finger, with its set point.
     pub activity: Activity,

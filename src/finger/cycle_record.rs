@@ -17,7 +17,7 @@ pub struct CycleRecord<S = Stage> {
     pub began: u64,
     /// Stage of the finger at the end of the cycle.
     pub stage: S,
-    /// Durations of the cycle's stages, ns.
+    /// Durations of the cycle's stages (`CycleStage`, not the stages of the finger), ns.
     pub timing: CycleTiming,
     /// Measurements of the reply; none if no reply came in this cycle.
     pub feedback: Option<Feedback>,

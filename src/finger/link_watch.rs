@@ -12,8 +12,8 @@ const HELD_MS: f64 = 3.0;
 /// or off its motor, within some milliseconds. The watchdog does not prevent that, because commands are still sent.
 const BLIND_MS: f64 = 10.0;
 
-/// Minimum number of lost replies in a row before the motor torques have reached their rest values. At low rates,
-/// [`BLIND_MS`] is shorter than this number of periods.
+/// Minimum number of lost replies in a row before the motor torques have reached their rest values. [`BLIND_MS`] is
+/// shorter than this number of periods only at rates below 300 Hz, which a configuration does not permit.
 const LEAST_BLIND: u32 = 3;
 
 /// Minimum number of lost replies in a row before the finger faults. At low rates too, one lost reply is not a fault.
@@ -88,11 +88,11 @@ impl LinkWatch {
         }
     }
 
-    /// Returns whether the finger and its controller run in step, as built-in simulated fingers do. Then the next
-    /// command is sent only after the reply to the last one, however late the reply is. In a cycle without a reply, the
-    /// controller does not run and the simulated finger does not move. Otherwise, on a busy machine, the controller
-    /// would count time that did not pass at the finger, or the physics would run without its controller. The finger
-    /// would then move wildly.
+    /// Returns whether the finger and its controller run in step, as built-in simulated fingers do. If they do, the
+    /// next command is sent only after the reply to the last one, however late the reply is. In a cycle without a
+    /// reply, the controller does not run and the simulated finger does not move. Otherwise, on a busy machine, the
+    /// controller would count time that did not pass at the finger, or the physics would run without its controller.
+    /// The finger would then move wildly.
     pub fn in_step(&self) -> bool {
         self.simulated
     }

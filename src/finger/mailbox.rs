@@ -273,8 +273,8 @@ impl PlannersEnd {
 }
 
 impl ServoEnd {
-    /// Returns the set point, if a planner has sent one since the last call. A set point that was sent after a group
-    /// waits until the group is in effect.
+    /// Returns the set point, if a planner has sent one since the last call. If the set point was sent after a group,
+    /// it waits until the group is in effect.
     pub fn new_set_point(&mut self) -> Option<SentSetPoint> {
         self.held |= self.set_points.update();
         if !self.held {

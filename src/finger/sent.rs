@@ -8,9 +8,9 @@ use crate::finger::{FingerReport, Validity};
 pub enum Replaced {
     /// The joint angles, and perhaps other parts. A path in progress ends.
     Place,
-    /// The stiffness. A path that is followed no longer changes it.
+    /// The stiffness. A path in progress continues, but no longer changes the stiffness.
     Stiffness,
-    /// Neither of them.
+    /// Neither the joint angles nor the stiffness.
     Other,
 }
 

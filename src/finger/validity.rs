@@ -20,8 +20,8 @@ pub struct Validity {
 }
 
 impl Validity {
-    /// Returns a validity after which the finger reacts as `finger.motion.on_expiry` says; none for the configured
-    /// time.
+    /// Returns a validity after which the finger reacts as `finger.motion.on_expiry` says. If `time` is none, the
+    /// configured time applies.
     #[must_use]
     pub fn hold_after(time: Option<Duration>) -> Self {
         Self { hold_after: time, ..Self::default() }

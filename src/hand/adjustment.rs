@@ -113,17 +113,18 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
         } else {
             Replaced::Other
         };
-        // If the set point is no longer `sent`, the finger has restarted meanwhile and holds the pose in which it was
-        // found. The correction is refused only if the finger has faulted since the controller was replaced. A finger
-        // that has faulted has no set point that could be outside the limits, and recovers with the new controller.
+        // If the set point is no longer `sent`, a restart, an expiry or a reflex has replaced it meanwhile, and nothing
+        // is corrected. The correction is refused only if the finger has faulted since the controller was replaced. A
+        // finger that has faulted has no set point that could be outside the limits, and recovers with the new
+        // controller.
         let _ = member.mailbox.correct(replaced, &sent, admitted);
     }
     *admission = changed;
     Ok(())
 }
 
-/// Checks the joint angles of the last set point, rad, against the changed limits. A finger may hold the pose beyond a
-/// limit in which it was found, so only limits that are narrower than `before`, rad, count.
+/// Checks the joint angles of the last set point, rad, against the changed limits. A finger that was found in a pose
+/// beyond a limit may hold that pose, so only limits that are narrower than `before`, rad, count.
 fn joints_within(
     changed: &Admission,
     before: &(Vector3<f64>, Vector3<f64>),
@@ -193,8 +194,8 @@ fn adjusted(
     Ok(changed)
 }
 
-/// Returns the error for a configuration that cannot be used with `keys`. It names the line if the refused value is one
-/// of them.
+/// Returns the error for a configuration that cannot be used with `keys`. If `keys` contains the refused key, the error
+/// names its line.
 fn unusable(finger: FingerNumber, keys: &str, refusal: UnusableConfiguration) -> ConfigurationError {
     let Unusable { key, reason } = &refusal.unusable;
     match line_of_key(keys, key) {

@@ -43,7 +43,7 @@ pub struct SearchedPort {
 
 /// Queries the identity of every finger at every port that the patterns name. Only a Hello is sent, which changes
 /// nothing on a board. Serial devices that another program has open are not touched, as far as this user can see them.
-/// Takes at most 160 ms for a port and a rate, and 100 ms more for each finger of the board that does not answer.
+/// Takes at most 160 ms for a port and a rate, and at most 100 ms more for each further finger of the board.
 ///
 /// `baud` are the bit rates to try at each port, bit/s. A * in the last part of a pattern stands for any text.
 pub fn search_boards(patterns: &[String], baud: &[u32]) -> Vec<SearchedPort> {

@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 /// Interval at which the verdict is polled.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
-/// A servo takes an order within a cycle. After this time the order is considered lost.
+/// Time after which an order that the servo has not taken is considered lost. A servo takes an order within a cycle.
 const ANSWER: Duration = Duration::from_secs(5);
 
 /// A calibration in progress. It runs without further calls; [`Calibrating::poll`] reports its progress.

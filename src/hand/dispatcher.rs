@@ -197,7 +197,7 @@ impl Dispatcher {
     ) -> Result<T, HandError> {
         let place = self.place(finger)?;
         // The lock is held throughout. Otherwise a record that names the controller could be collected before the black
-        // box has the controller's source.
+        // box has the controller's configuration.
         let mut collected = self.collected(finger)?;
         let taken = self.members[place].mailbox.report().controller;
         collected.collect();
@@ -235,7 +235,7 @@ impl Drop for Dispatcher {
     fn drop(&mut self) {
         if let Some((stop, thread)) = self.collector.take() {
             drop(stop);
-            // The thread panics only if the histograms panic. Then there is nothing to collect.
+            // The join fails only if the thread panicked, and then there is nothing else to do.
             let _ = thread.join();
         }
     }

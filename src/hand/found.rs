@@ -165,7 +165,7 @@ impl Found {
     }
 
     /// The fingers whose hardware the program provided. The configuration that [`Found::misfit`] compares must have
-    /// been read with them.
+    /// been read without the ports and boards of these fingers.
     pub(super) fn with_io(&self) -> FingersWithIo {
         self.with_io
     }

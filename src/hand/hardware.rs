@@ -126,7 +126,7 @@ pub(super) fn warn_of_lost_zero(number: FingerNumber, finger: &ConfiguredFinger,
 }
 
 /// Prints a notice if hardware of the program, which was opened without a reference for its encoder counts, still has
-/// none when it starts for a recovery. The library cannot see whether the hardware has counted on.
+/// none when it starts for a recovery. The library cannot see whether the hardware has continued its counts.
 pub(super) fn warn_of_doubtful_zero(number: FingerNumber) {
     print_notice(&format!(
         "the hardware of finger {number} starts again without a reference for its encoder counts \

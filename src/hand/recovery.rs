@@ -20,8 +20,8 @@ use std::time::{Duration, Instant};
 /// Interval at which a recovery is polled.
 const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
-/// A servo releases or takes back a link, or takes a finger, within some cycles. After this time the servo is
-/// considered stalled.
+/// Time after which a servo that does not respond is considered stalled. A servo releases or takes back a link, or
+/// takes a finger, within some cycles.
 const STALL_LIMIT: Duration = Duration::from_secs(5);
 
 /// A recovery in progress. It has three steps: begin, reconnect and poll. Only `reconnect` takes long, and it does not

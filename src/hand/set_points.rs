@@ -170,9 +170,11 @@ impl Hand {
         })
     }
 
-    /// Returns the set point that was sent last to finger 1, 2 or 3, or the one that it holds if none was sent since it
-    /// became a spring. A path counts with its end. A relative command must start from this set point. What was sent
-    /// during the last cycle has not taken effect yet, so the set point of [`Hand::report`] does not contain it.
+    /// Returns the set point that was sent last to finger 1, 2 or 3. If none was sent since the finger became a spring,
+    /// since a set point expired or since a reflex reacted, returns the set point that the finger holds. If a path was
+    /// sent, returns the set point at the end of the path. A relative command must start from the returned set point.
+    /// What was sent during the last cycle has not taken effect yet, so the set point of [`Hand::report`] does not
+    /// contain it.
     ///
     /// # Errors
     /// Returns an error if there is no such finger.

@@ -95,10 +95,10 @@ impl Hand {
         Ok(self.dispatcher.member(finger.try_into()?)?.mailbox.newest_in_force())
     }
 
-    /// Waits until the condition holds for each of these fingers, for the set point that was sent to it last. Returns
-    /// at once if it holds already. If a reflex has replaced the set point of a finger, or if the finger did not follow
-    /// it because of an inhibition, the condition must hold for the set point of the reflex. If the set point has
-    /// expired, the condition must hold for the pose that the finger holds since then.
+    /// Waits until the condition holds for each of these fingers, for the set point that was sent last to the finger.
+    /// Returns at once if the condition holds already. If a reflex has replaced the set point of a finger, or if the
+    /// finger did not follow it because of an inhibition, the condition must hold for the set point of the reflex. If
+    /// the set point has expired, the condition must hold for the pose that the finger holds since then.
     ///
     /// # Errors
     /// Returns the errors of [`Waiting::begin`] and [`Waiting::poll`].

@@ -149,7 +149,7 @@ impl Contact {
     }
 
     /// Returns the largest entry, N/cm, and the stiffness divided by it, with rotations measured by `lever`. The
-    /// division comes first: with a short lever the product could be infinite, and its eigenvalues would be NaN.
+    /// division comes first. Otherwise a short lever could make entries infinite, and the eigenvalues NaN.
     fn measured(&self, lever: f64) -> (f64, Matrix6<f64>) {
         let size = self.0.amax().max(f64::MIN_POSITIVE);
         (size, symmetrised(&scaled(&(self.0 / size), 1.0 / lever)))

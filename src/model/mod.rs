@@ -1,6 +1,6 @@
 //! The model of a finger: geometry, kinematics, tendons and the types of its configuration. Lengths are in cm, forces
-//! in N, torques in N cm and angles in rad, as in the report (COINS TR 90-48, 1990), unless a name says otherwise.
-//! Numbers of equations, figures and sections are those of the report.
+//! in N, torques in N cm and angles in rad, as in the report (COINS TR 90-48, 1990), unless a name or a comment says
+//! otherwise. Numbers of equations, figures and sections are those of the report.
 
 pub mod configuration;
 mod contact;

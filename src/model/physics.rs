@@ -21,7 +21,8 @@ pub(crate) fn least_inertia(stiffness: f64, radius: f64) -> f64 {
     (stiffness * 100.0) * (radius * 0.01 * STEP).powi(2)
 }
 
-/// Returns the largest viscous friction, N m s/rad, of such a rotor. `inertia` is at least `least`, its smallest one.
+/// Returns the largest viscous friction, N m s/rad, with which a step can integrate a rotor. `inertia` is at least
+/// `least`, the result of [`least_inertia`].
 pub(crate) fn largest_viscous_friction(inertia: f64, least: f64) -> f64 {
     (inertia - least) / (2.0 * STEP)
 }

@@ -202,8 +202,9 @@ mod tests {
         ) {
             let capstans = Capstans::new(conduit, pulleys).expect("there is friction");
             let (tensions, work, stored) = moved(&capstans, hardening, &corners);
-            // The error of the trapezoidal rule is proportional to the square of the stretch in one step. This stretch
-            // is at most 6e-6 m. The bound below uses the stiffness of the stiffest section.
+            // The error of the trapezoidal rule is proportional to the square of the motion in one step. In one step,
+            // the motor's end moves by at most 5.5e-6 m, and the joint's end by at most 1.5e-6 m. The bound below uses
+            // 6e-6 m and the stiffness of the stiffest section.
             let rounding = 400.0 * 5.0 * 1.5e5 * 2.0 * (6e-6f64).powi(2);
             prop_assert!(stored <= work + rounding, "{stored} {work}");
             prop_assert!(tensions.motor <= (1.0 + conduit) * tensions.gauge + 1e-6);

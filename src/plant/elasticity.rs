@@ -13,7 +13,8 @@ pub(super) struct Elasticity {
     slope: f64,
 }
 
-/// Largest exponent of the stretch. It bounds the tension of a tendon that is stretched absurdly far.
+/// Largest argument of the exponential function that gives the tension of a hardening spring. It bounds the tension of
+/// a tendon that is stretched absurdly far.
 const LARGEST_EXPONENT: f64 = 20.0;
 
 impl Elasticity {

@@ -1,5 +1,6 @@
-//! The physics of a finger and its sensors, which the simulated board uses. The computation is in SI units. Every
-//! number of the configuration is converted once, at construction.
+//! The physics of a finger and its sensors, which the simulated board uses. The computation is in SI units, and the
+//! numbers of the configuration are converted once, at construction. Exception: the link lengths, the tip position and
+//! a fixed surface stay in cm, as in the configuration.
 
 mod amplifier;
 mod capstan;

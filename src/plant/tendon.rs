@@ -183,7 +183,8 @@ impl ElasticTendons {
         }
     }
 
-    /// Returns how far the motor has wound a tendon in and how far the joints have drawn it out, m.
+    /// Returns how far the motor has wound a tendon in, and how far the joints have moved the tendon's other end toward
+    /// the motor, m.
     fn ends(&self, tendon: usize, theta: &Vector3<f64>, motor: &Vector4<f64>) -> (f64, f64) {
         (self.radius[tendon] * motor[tendon], self.r.column(tendon).dot(theta))
     }

@@ -14,7 +14,7 @@ const DAMPING: f64 = 1.0;
 /// difference above this limit is not caused by the clocks.
 const MOST: f64 = 5e-3;
 
-/// A change of the other clock by more than this number of periods beyond the largest drift is a jump of the clock.
+/// If the other clock has gained or lost more than the largest drift plus this number of periods, it has jumped.
 const JUMP: f64 = 2.0;
 
 /// Longest time between two readings from which the gain of the other clock is computed, s. It is shorter than half a

@@ -20,8 +20,9 @@ pub struct Consumer<T> {
     taken: usize,
 }
 
-/// Both counters run from 0 to twice the number of places and then start again at 0, so that a full ring differs from
-/// an empty one. The places from `taken` to `left` hold values.
+/// `left` counts the values that the writer has left in the ring, and `taken` counts those that the reader has taken.
+/// Both counters start again at 0 when they reach twice the number of places, so that a full ring differs from an empty
+/// one. The places from `taken` to `left` hold values.
 struct Ring<T> {
     left: Line<AtomicUsize>,
     taken: Line<AtomicUsize>,

@@ -1,7 +1,8 @@
 //! Simulated boards, each at a serial port of its own. The fingers of all boards touch the same object.
 //!
-//! One thread advances all of these boards and the object together, step by step, so no thread waits for another. To
-//! its host, each port looks like the port of a [`SimulatedPort`](crate::simulated::SimulatedPort).
+//! One thread advances all of these boards and the object together, step by step. Separate threads of the boards would
+//! wait for each other at every step. To its host, each port looks like the port of a
+//! [`SimulatedPort`](crate::simulated::SimulatedPort).
 
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, FINGERS};

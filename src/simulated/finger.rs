@@ -224,7 +224,8 @@ impl SimulatedFinger {
         Frame::Configured(Configured { terms: *terms, encoders, gauges, status: self.status() })
     }
 
-    /// Returns the offset of the first wrong field before the end state of a Configure, if there is one.
+    /// Checks the fields of a Configure that precede the field *end state*. Returns the offset of the first wrong one,
+    /// if there is one.
     pub(super) fn wrong_before_end_state(version: u8, watchdog_ms: u16) -> Option<u16> {
         match (version, watchdog_ms) {
             (VERSION, SHORTEST_WATCHDOG_MS..) => None,

@@ -11,8 +11,8 @@ pub(super) const PATIENCE: u64 = 2_000_000_000;
 
 /// The rate at which the time of a simulated board passes.
 ///
-/// In both cases, the board's time stops while the machine does not run the board's thread, because a wake-up advances
-/// it by at most 2 ms.
+/// With both variants, the board's time stops while the machine does not run the board's thread, because a wake-up
+/// advances it by at most 2 ms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// The rate of real time. The watchdog trips in time when the host falls silent.

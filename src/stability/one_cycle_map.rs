@@ -23,7 +23,7 @@ const OBSERVED_LONG: f64 = 4.0;
 /// The first observation is conclusive only if the largest modulus is below 1 by more than this.
 const SLOW: f64 = 2e-5;
 
-/// Interval between two observations, s. It is long enough to separate the remaining eigenvalues.
+/// Interval between two samples of the motion, s. It is long enough to separate the eigenvalues of the slow modes.
 const STRIDE: f64 = 0.005;
 
 /// A displacement counts as diverged when it is this many times its initial size.

@@ -59,7 +59,7 @@ impl Sample {
     }
 
     /// Returns the finger at rest with a spring whose largest eigenvalue is at most `stiffest`, N/cm. `range` returns
-    /// the smallest and the largest admissible damping ratio for an eigenvalue, N/cm.
+    /// the smallest and the largest admissible relative damping for an eigenvalue, N/cm.
     pub fn at(&self, stiffest: f64, links: &Links, range: impl Fn(f64) -> (f64, f64)) -> Rest {
         let softest = SOFTEST.min(stiffest);
         let kx = Matrix3::identity() * softest + self.relative * (stiffest - softest);

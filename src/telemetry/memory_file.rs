@@ -43,7 +43,8 @@ impl Mapping {
 impl AsRef<[AtomicU64]> for Mapping {
     fn as_ref(&self) -> &[AtomicU64] {
         // SAFETY: the mapping has this number of words. It cannot shrink, because the file is sealed. This library
-        // accesses the words only atomically. Another program may not, so every value is checked before it is used.
+        // accesses the words only atomically. Another program might not do so, so every value is checked before it is
+        // used.
         unsafe { std::slice::from_raw_parts(self.start.as_ptr(), self.words) }
     }
 }

@@ -1,4 +1,4 @@
-//! The messages that a hand publishes. In the memory that readers share they are encoded with postcard.
+//! The messages that a hand publishes. They are encoded with postcard in the memory that the hand shares with readers.
 
 use crate::control::State;
 use crate::finger::events::Event;

@@ -21,7 +21,7 @@ const ANSWER_TIME: Duration = Duration::from_secs(3);
 const CONNECT_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Largest number of blocks that one call of [`Reader::read`] returns. A reader that has slept for long would otherwise
-/// get everything that the ring holds at once.
+/// get in one call everything that the ring holds.
 const MOST_BLOCKS: usize = 64;
 
 /// An attached reader. Dropping it detaches it.

@@ -87,7 +87,7 @@ impl Readers {
         }
     }
 
-    /// Attaches a reader. If the reader does not take the reply, it is dropped.
+    /// Attaches a reader. If the reader does not take the reply, its connection is closed.
     pub fn attach(&mut self, socket: Socket, reply: &Reply, memory: &Descriptor) {
         let sent = encode(reply).and_then(|bytes| socket.send(&bytes, Some(memory)));
         if sent.is_ok() {

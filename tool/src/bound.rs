@@ -186,8 +186,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Stores a bound in the file, if there is one, and then prints it. Returns how the printing ended: a reader that has
-/// closed the pipe must not cost the bounds of the remaining fingers.
+/// Stores a bound in the file, if a file is given, and then prints the bound. Returns how the printing ended: a reader
+/// that has closed the pipe must not cost the bounds of the remaining fingers.
 ///
 /// # Errors
 /// Returns an error if the bound cannot be stored.

@@ -56,7 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let standard_output = arguments.output.as_deref() == Some(Path::new("-"));
     let start = trace::first_cycle(&arguments.file)?;
     let mut files = Files { arguments, standard_output, start, open: BTreeMap::new() };
-    // An interrupted export must return, because only files that are dropped are removed.
+    // An interrupted export must return instead of ending the process: dropping `files` removes the unfinished files.
     let interrupt = Interrupt::watch()?;
     trace::read(&arguments.file, "export", &mut |item| {
         if interrupt.requested() {
@@ -224,8 +224,8 @@ impl Arguments {
     }
 }
 
-/// Adds the files that are in place already to the failure of another file. The files that they have replaced cannot be
-/// restored.
+/// Extends the failure of one file by the names of the files that are in place already. The files that they have
+/// replaced cannot be restored.
 fn in_part(failure: Failure, mut paths: Vec<PathBuf>) -> Failure {
     if paths.is_empty() {
         return failure;

@@ -21,7 +21,7 @@ const THOUSANDTHS: u64 = 1000;
 /// What a recording contains, in chronological order for each finger.
 #[derive(Clone, Debug)]
 pub enum Item {
-    /// A finger appears for the first time.
+    /// A finger of the recorded hand. The fingers precede all other items.
     Finger(Finger),
     Cycle(Box<Row>),
     Mark(Mark),
@@ -103,8 +103,8 @@ pub fn read(file: &Path, what: &str, visit: Visit) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the time of the first cycle, ns of the monotonic clock; none if there is no cycle, or none before an entry
-/// that cannot be read. Marks may precede the first cycle.
+/// Returns the time of the first cycle, ns of the monotonic clock. Returns none if the file has no cycle, or if an
+/// entry that cannot be read precedes the first cycle. Marks may precede the first cycle.
 ///
 /// # Errors
 /// Returns an error if the file is not a recording.

@@ -8,8 +8,9 @@ use sun2xp_remote_protocol::Event;
 /// The number of events that a queue keeps.
 const KEPT: usize = 4096;
 
-/// A queue of all events of a hand. All functions may be called from several threads. Each event is then returned to
-/// one of them. A queue that is not read loses the oldest events, and counts them.
+/// A queue of all events of a hand. All functions may be called from several threads. If several threads take events,
+/// each event is returned to only one of these threads. A queue that is not read loses the oldest events, and counts
+/// them.
 ///
 /// The time and the number of the cycle of an event are those of the server.
 pub struct RemoteEvents(Arc<Queue>);
@@ -104,7 +105,7 @@ impl RemoteEvents {
         self.0.lock().events.clear();
     }
 
-    /// Returns whether the hand is closed. Then there are no later events.
+    /// Returns whether the hand is closed. No events arrive after the hand is closed.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.0.lock().closed

@@ -29,7 +29,8 @@ pub struct Shared {
     exchange: Mutex<Exchange>,
     /// Notified when there is something to send, when something was received, and at the end.
     changed: Condvar,
-    /// Set while the exchange is locked, so that the thread cannot miss it.
+    /// Whether the sending thread must end. The flag is set under the lock of the exchange, so that the thread cannot
+    /// miss it.
     ended: AtomicBool,
     pub events: EventSource,
 }

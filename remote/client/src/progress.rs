@@ -6,8 +6,8 @@
 pub struct RemoteProgress {
     /// The server has applied the command.
     pub applied: bool,
-    /// Since then, the finger has arrived where the command wants it.
+    /// The finger has arrived where the command wants it, since the server applied the command.
     pub arrived: bool,
-    /// Since then, the joints have come to rest.
+    /// The joints have come to rest since the server applied the command.
     pub settled: bool,
 }

@@ -9,7 +9,7 @@ const WINDOW: u64 = 10_000_000_000;
 /// its delay on the way, less the smallest delay of the line.
 #[derive(Clone, Debug, Default)]
 pub struct ServerClock {
-    /// The smallest difference of the window before and of this window, ns.
+    /// The smallest difference in the previous window, and the smallest difference in this window, ns.
     smallest: [Option<i64>; 2],
     /// The beginning of this window, ns of the clock of this process.
     begin: u64,

@@ -26,7 +26,7 @@ const EVENT_CHECK: Duration = Duration::from_millis(100);
 pub(crate) struct NetworkHand {
     /// None when the hand is closed.
     connection: RwLock<Option<Arc<Connection>>>,
-    /// `[hand]` of the planner's configuration.
+    /// The planner's configuration, of which only the table `[hand]` is used.
     configuration: Configuration,
 }
 
@@ -268,7 +268,8 @@ impl RemoteHand for NetworkHand {
         let connection = self.connection.write().unwrap_or_else(PoisonError::into_inner).take();
         let Some(connection) = connection else { return };
         match Arc::try_unwrap(connection) {
-            // The fingers go to their end state even if the server does not answer: the owner falls silent.
+            // Even if the server does not answer, the fingers go to their end state, because no set points arrive any
+            // more.
             Ok(connection) => drop(connection.hand.close()),
             // A call in another thread still uses the connection, and drops it when the call ends. The hand is released
             // now.

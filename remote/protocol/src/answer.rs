@@ -15,7 +15,7 @@ pub struct Answer {
     /// `catch_ms` of the server, ms: the longest validity that it gives to a Target. At least 1.
     pub catch_ms: u32,
     /// For an acquire that is done: the new epoch. Otherwise: the epoch of the Request or Target. It is 0 if an
-    /// acquire is refused, if the Request is malformed, and if its sender is not permitted.
+    /// acquire is refused, if the Request is malformed or has another version, and if its sender is not permitted.
     pub epoch: u64,
     /// Time, ns, server's clock: a value for [`Target::seen`](crate::Target::seen).
     pub time: u64,

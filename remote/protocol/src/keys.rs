@@ -1,4 +1,4 @@
-//! The keys of a hand. This file is the only one that knows how they are built.
+//! The keys of a hand. Only this file and the access control of the server (`serve/src/access.rs`) build them.
 
 use crate::{Action, ClientName, HandName};
 

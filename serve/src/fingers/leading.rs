@@ -1,4 +1,4 @@
-//! How far a set point may be ahead of its finger.
+//! The lead: how far a set point may be ahead of its finger (see [`crate::lead`]).
 
 use super::Fingers;
 use crate::goal::{Destination, Goal, matrix};
@@ -87,8 +87,9 @@ impl Fingers {
         }
     }
 
-    /// Returns the joint angles within the limits that the hand uses if these are sent, rad; none if the hand refuses
-    /// these angles. The check is that of the hand: angles that only the hand admits would be sent without the lead.
+    /// Returns the joint angles within the limits that the hand uses if `joints` are sent, rad; none if the hand
+    /// refuses `joints`. The check is that of the hand: angles that only the hand admits would be sent without the
+    /// lead.
     pub(super) fn within_limits(
         &self,
         finger: FingerNumber,

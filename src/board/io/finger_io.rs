@@ -22,7 +22,7 @@ use std::ops::{BitOr, BitOrAssign};
 /// `exchange` runs in the servo thread of the finger, and `stop` usually runs there too. They must not allocate memory,
 /// wait for a lock, write to files or use the hand. A panic faults every finger of the servo thread.
 pub trait FingerIo: Send {
-    /// Returns what the library must know about the hardware before it starts. It is called once, at open.
+    /// Returns what the library must know before it starts the hardware. The library calls this function once, at open.
     fn properties(&self) -> IoProperties {
         IoProperties::default()
     }
@@ -51,7 +51,7 @@ pub trait FingerIo: Send {
 /// The hardware of fingers 1, 2 and 3. A finger without hardware has a port.
 pub type HandIo = [Option<Box<dyn FingerIo>>; FINGERS];
 
-/// What the library must know about hardware before it starts. Later versions add fields, so end a value with
+/// What the library must know before it starts the hardware. Later versions add fields, so end a value with
 /// `..Default::default()`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IoProperties {
@@ -126,8 +126,8 @@ pub struct IoSample {
     pub faults: IoFaults,
 }
 
-/// Faults that the hardware reports. Each bit faults the finger, except [`IoFaults::ZERO_LOST`] if it has been set
-/// since [`FingerIo::start`] was called at opening.
+/// Faults that the hardware reports. Each bit faults the finger, except [`IoFaults::ZERO_LOST`] if every sample since
+/// the call of [`FingerIo::start`] at opening has had this bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct IoFaults(pub u32);
 

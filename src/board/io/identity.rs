@@ -11,8 +11,8 @@ const LARGEST_LIMIT: f64 = 30_000.0;
 /// nN m in one N cm.
 const NANO_PER_CENTI: f64 = 1e7;
 
-/// Returns the identity of the hardware of a finger. It supports every configured torque limit, because the program
-/// that provides the hardware also provides the configuration.
+/// Returns the identity of the hardware of a finger. The torque limit in the identity covers every configured limit,
+/// because the program that provides the hardware also provides the configuration.
 pub(super) fn identity(configuration: &Configuration, finger: FingerNumber, properties: &IoProperties) -> Identity {
     let limits = configuration.fingers[finger.index()].motor.torque_limit;
     let strongest = limits.into_iter().fold(0.0, f64::max) * NANO_PER_CENTI;

@@ -190,8 +190,8 @@ impl Transport for IoBoard {
 impl Drop for IoBoard {
     fn drop(&mut self) {
         if self.process == std::process::id() {
-            // The servo has already stopped the hardware, unless the hand could not be opened. After one lost telegram,
-            // it must not be left to the watchdog to stop the motors.
+            // The servo has already stopped the hardware, unless the hand could not be opened. A stop can fail because
+            // one telegram was lost. The stop is therefore repeated, and not left to the watchdog.
             let _ = (0..ATTEMPTS_TO_STOP).any(|_| self.hardware.end().is_ok());
         }
     }

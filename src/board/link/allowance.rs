@@ -52,7 +52,7 @@ impl Allowance {
             self.used_up |= *left == 0;
         }
         self.found = bytes > 0;
-        // A read returns no bytes only at the deadline.
+        // A read returns no bytes only at the deadline, or if no byte can arrive before the deadline.
         self.used_up |= !self.found;
     }
 

@@ -57,7 +57,7 @@ impl<T: Transport> Link<T> {
         self.configure(address, configure, deadline)
     }
 
-    /// Asks every finger at the port for its identity, and returns the fingers that answer, by their addresses. Sends
+    /// Asks every finger at the port for its identity, and returns the fingers that answer, sorted by address. Sends
     /// only Hello, which changes nothing on a board. Waits until `deadline` (ns on the transport's clock) for the first
     /// answer, and then at most 100 ms for each other finger of the board.
     ///

@@ -5,7 +5,7 @@ use std::ops::{BitOr, BitOrAssign};
 pub struct Status(pub u16);
 
 impl Status {
-    /// A Configure has been accepted since power-up.
+    /// A Configure has been accepted since power-up or the last reset.
     pub const CONFIGURED: Status = Status(1 << 0);
     /// The motors follow the Commands.
     pub const ENABLED: Status = Status(1 << 1);
@@ -15,7 +15,8 @@ impl Status {
     pub const ENDED: Status = Status(1 << 3);
     /// The end state *hold* is in progress.
     pub const HOLDING: Status = Status(1 << 4);
-    /// The encoder counts have not been lost since they were last referenced to a zero, so the host's zero is valid.
+    /// The board knows that its encoder counts are continuous with those that the host last received, even across a
+    /// loss of power. The host's zero is then valid. Only a board with capability 1 sets this bit.
     pub const ZERO_VALID: Status = Status(1 << 5);
     /// The emergency stop input for this finger is active, or was active at some time since the last Configure.
     pub const EMERGENCY_STOP: Status = Status(1 << 6);

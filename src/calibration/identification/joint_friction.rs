@@ -1,8 +1,9 @@
 //! Determines the gains of the gauges relative to each other, the friction of the joints and the friction of the
-//! pulleys, from the tensions of a free finger whose joints move back and forth.
+//! pulleys, from the tensions of a free finger whose joints move back and forth at two levels of common tension and at
+//! two speeds.
 //!
 //! Let t be the tensions at the gauges. Because of the friction mu_i of the pulleys, tension i at the joint is f_i t_i
-//! with f_i = (1 + mu_i)^-s_i; s_i is +1 while the tendon moves toward its motor and -1 otherwise. With the moment arms
+//! with f_i = (1 + mu_i)^-d_i; d_i is +1 while the tendon moves toward its motor and -1 otherwise. With the moment arms
 //! R, the joint rates v and their signs s,
 //!
 //! R f t = g + s (C + b |v|)
@@ -22,7 +23,7 @@ use nalgebra::{SVector, Vector3, Vector4};
 
 /// Number of motions back and forth.
 pub(super) const STROKES: usize = 5;
-/// Number of oblique directions.
+/// Number of oblique directions: directions in joint space along which all joints move at the same time.
 const DIRECTIONS: usize = 2;
 /// Number of Gauss-Newton steps. The equations are nearly linear.
 const ROUNDS: usize = 5;

@@ -1,8 +1,9 @@
 //! Makes the common tension oscillate at two frequencies while the guide moves the joints slowly.
 //!
 //! The common tension does not turn the joints. Only the motors turn, and stretch their tendons. At the frequencies of
-//! this oscillation most of the pull accelerates the rotors. The higher level of tension leaves room for it. The slow
-//! motion of the joints turns the motors through several periods of their torque ripple, so that the ripple cancels.
+//! this oscillation most of the pull accelerates the rotors. Before the oscillation, the common tension rises to a
+//! higher level, which leaves room for it. The slow motion of the joints turns the motors through several periods of
+//! their torque ripple, so that the ripple cancels.
 
 use super::rotor_inertia::{Motors, Oscillation, inertia};
 use super::shaking::change_level;
@@ -39,7 +40,7 @@ enum Stage {
     /// The common tension rises to its higher level.
     Rise,
     Grow,
-    /// The number of periods that are complete.
+    /// The number of the present period, from 1, as in `Measure`.
     Settle(usize),
     Measure(usize),
     Fade,

@@ -14,8 +14,8 @@ use crate::model::physics::{LARGEST_INERTIA, SMALLEST_INERTIA, resolves_rotor};
 use crate::model::{Part, Tendons};
 use nalgebra::Vector4;
 
-/// The configured inertia of a rotor stays if it differs from the measured one by at most this part. Lags of amplifiers
-/// and gauges of a millisecond change the measured inertia by about as much.
+/// The configured inertia of a rotor stays if it differs from the measured one by at most this part. A lag of 1 ms of
+/// the amplifiers or gauges changes the measured inertia by about as much.
 const SIGNIFICANT_INERTIA: f64 = 0.05;
 /// Largest configurable tolerance of moment arms and gauges.
 const LARGEST_TOLERANCE: f64 = 0.5;
@@ -33,7 +33,8 @@ impl Identification {
             let corrected = self.with_moment_arms(&arms, instruments)?;
             free = self.joint_friction.solve(&corrected)?;
             motors = self.motor_friction.solve(&free.gains)?;
-            // The elasticity is in the scale of the gauges. The pretension will be in the scale of the reference.
+            // The elasticity is in the scale of the gauges, but t_min is in the scale of the reference. The division
+            // converts the pretension to the scale of the gauges.
             let pretension = corrected.pretension / self.scale(&motors);
             let encoder_zero = self.encoder_zero(&arms, elasticity, instruments, &pretension);
             moment_arms = Some(IdentifiedArms { r: arms.r, encoder_zero });
@@ -63,8 +64,8 @@ impl Identification {
     }
 
     /// Returns the inertia of the rotors, kg m^2, if one differs from its configured value. A motor that could not be
-    /// measured keeps its configured value, and so does one whose inertia no configuration may have. `stiffness` is the
-    /// new one of the tendons, N/cm, and `radius` is in cm.
+    /// measured keeps its configured value, and so does one whose measured inertia no configuration may have.
+    /// `stiffness` is the identified stiffness of the tendons, N/cm, and `radius` is in cm.
     fn other_inertia(&self, stiffness: &Vector4<f64>, radius: &Vector4<f64>) -> Option<Vector4<f64>> {
         let (configured, viscous) = &self.rotors;
         let inertia = Vector4::from_fn(|motor, _| {
@@ -95,7 +96,7 @@ impl Identification {
         instruments: &Instruments,
     ) -> Tolerances {
         // The friction of a conduit is a pull of the motor per tension at the gauge, so it depends on the scale. The
-        // others are ratios of values in one scale.
+        // other terms are ratios of values in one scale.
         let conduit = motors.conduit / self.scale(motors);
         let friction = (conduit + free.pulley).max().max(elasticity.rubbing / SHARE_OF_FRICTION);
         let moment_arms = self.moment_arms.map(|arms| {
@@ -150,7 +151,7 @@ mod tests {
     use super::*;
     use crate::model::configuration::ConfiguredFinger;
 
-    /// Returns the inertia that replaces the configured 6e-7 kg m^2 of all rotors if these were measured.
+    /// Returns the inertia that replaces the configured 6e-7 kg m^2 of all rotors if the inertia `measured` was found.
     fn replaced(measured: [Option<f64>; 4], stiffness: f64) -> Option<[f64; 4]> {
         let finger = ConfiguredFinger::default();
         let mut identification = Identification::new(&finger);

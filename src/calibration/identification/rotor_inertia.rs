@@ -6,10 +6,10 @@
 //! Re[(a T - P) X*] / |X|^2 = m w^2 - k
 //!
 //! a is the ratio of the commanded pull to the tension, without friction. Friction is in phase with the speed, so it is
-//! not in this equation. k is what the gauge does not see: a tendon that sticks in its conduit is stretched between the
-//! motor and the gauge, and the ripple of the torque acts like a spring too. The difference between the two frequencies
-//! eliminates k. A rotor with a delayed torque seems to have another inertia: up to 7 % less with a dead time of 1 ms,
-//! and up to 5 % more with a lag of 1 ms.
+//! not in this equation. k is a stiffness that acts on the rotor without changing the tension at the gauge: a tendon
+//! that sticks in its conduit is stretched between the motor and the gauge, and the ripple of the torque acts like a
+//! spring too. The difference between the two frequencies eliminates k. A rotor with a delayed torque seems to have
+//! another inertia: up to 7 % less with a dead time of 1 ms, and up to 5 % more with a lag of 1 ms.
 //!
 //! P is the commanded pull, and a T is the tension in the scale of the commanded pull. So J is the inertia divided by
 //! the ratio of the true torque to the commanded one. The controller computes with commanded torques, and needs this
@@ -19,7 +19,7 @@ use nalgebra::Vector4;
 
 /// Smallest amplitude of a motor that is evaluated, counts of its encoder.
 const LEAST_COUNTS: f64 = 4.0;
-/// Largest part of m w^2 at the higher frequency that k may be. A motor that sticks seems to have a large k.
+/// Largest plausible k, as a part of m w^2 at the higher frequency. A motor that sticks seems to have a large k.
 const LARGEST_REST: f64 = 0.5;
 
 /// Sums of a signal times the cosine and the sine of the phase.
@@ -171,8 +171,8 @@ mod tests {
             let mut last = None;
             for cycle in 0..=40 * cycles {
                 let time = cycle as f64 * PERIOD;
-                // The mean over the cycle has the same first harmonic as the pull that is held for this cycle, apart
-                // from the factor by which holding reduces it.
+                // The pull is averaged over a cycle, and the average is held for this cycle. Both reduce the first
+                // harmonic by `factor`, and their shifts of the phase cancel.
                 let half = 0.5 * step;
                 let factor = half / half.sin();
                 let mean =

@@ -46,7 +46,7 @@ pub(super) struct StiffnessFound {
     /// Mean stiffness in the range of tensions in which the controller works, N/cm.
     pub stiffness: Vector4<f64>,
     /// Largest relative difference between the stretch per newton, which depends on the tension, and the constant one
-    /// that `stiffness` gives.
+    /// that `stiffness` gives, plus the uncertainty of the measurement.
     pub tolerance: f64,
     /// Part of the travel that the model does not explain, cm rms.
     pub residual: f64,

@@ -36,7 +36,7 @@ const QUIET: f64 = 0.12;
 /// At the beginning of [`QUIET`], the motor winds in until it has moved by the first value, cm, but no longer than the
 /// second value, s. Its friction then does not delay the pulse.
 const LOOSENED: (f64, f64) = (0.001, 0.05);
-/// The responses of the other gauges are read in this time after the beginning of a pulse, s.
+/// All gauges are read again in this time after the beginning of a pulse, s, when the links begin to move.
 pub(super) const LATE: (f64, f64) = (0.005, 0.012);
 /// Time from the cycle that commands a pulse to the motor's torque, in periods.
 const DELAY: f64 = 1.5;

@@ -7,7 +7,7 @@ use crate::model::LinkDynamics;
 use nalgebra::{Vector3, Vector4};
 
 /// A gauge is dead if it rises by less than this part of the usual rise. If the usual rise is less than this part of
-/// the expected one, most gauges are dead, and nothing is usual.
+/// the expected one, most gauges are dead. This part of the expected rise is then used instead of the usual rise.
 const DEAD: f64 = 0.12;
 /// For each of two motors, take the response of the other motor's gauge minus the response of its own gauge, both
 /// divided by the largest response to this motor. The two gauges count as swapped if the sum of both differences

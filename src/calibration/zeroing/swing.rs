@@ -2,9 +2,9 @@
 //!
 //! The friction of a conduit makes the tension on the motor's side larger than at the gauge after winding in, and
 //! smaller after letting out. The gauge does not show the stretch that this difference causes. At rest, the direction
-//! in which each tendon last slid is unknown, and a motor that sticks or trembles leaves the friction anywhere in
-//! between. While the tensions rise, every tendon slides toward its motor, and while they fall, away from it. The mean
-//! of both is free of the friction.
+//! in which each tendon last slid is unknown, and a motor that sticks or trembles leaves the friction anywhere between
+//! these two extremes. While the tensions rise, every tendon slides toward its motor, and while they fall, away from
+//! it. The mean of both is free of the friction.
 
 use super::encoder_zero::Reading;
 use crate::calibration::instruments::Instruments;

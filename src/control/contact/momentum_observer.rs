@@ -13,7 +13,7 @@
 //!
 //! The joint rates are the differences of the joint angles. Tensions, rates and the torque of gravity first pass a
 //! low-pass filter with the bandwidth K. Without this filter, the noise of the rates would exceed the torques that must
-//! be detected. All of them need the same delay, because gravity changes while a finger moves or the hand turns.
+//! be detected. All three signals need the same delay, because gravity changes while a finger moves or the hand turns.
 //!
 //! The tensions are measured between motors and joints, so the friction and the inertia of the motors do not matter.
 

@@ -84,8 +84,8 @@ impl ContactObserver {
         self.observer.r == other.observer.r
     }
 
-    /// Advances the estimate for a finger that follows a set point to the sample in `report`, and writes the estimate
-    /// to the report. `weight` returns the torques of gravity at joint angles, N cm. `elapsed` is the time since the
+    /// Advances the estimate to the sample in `report`, and writes the estimate to the report. The finger must follow a
+    /// set point. `weight` returns the torques of gravity at joint angles, N cm. `elapsed` is the time since the
     /// previous sample, s.
     pub fn follow(
         &self,

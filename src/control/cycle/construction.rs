@@ -40,8 +40,8 @@ impl Controller {
     }
 
     /// Constructs a controller of `finger` that compensates `gravity`, m/s^2 in the finger's frame, until
-    /// [`Controller::approach_gravity`] changes it. Otherwise it equals the controller that [`Controller::new`]
-    /// constructs.
+    /// [`Controller::approach_gravity`] changes it. In all other respects, the controller equals the one that
+    /// [`Controller::new`] constructs.
     pub fn in_gravity(finger: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Result<Self, Unusable> {
         let construct = |finger: &ConfiguredFinger| Self::construct(finger, gravity, rate, None);
         construct(finger).map_err(|refusal| with_culprit(refusal, finger, &|changed| construct(changed).is_ok()))

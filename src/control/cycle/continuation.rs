@@ -49,9 +49,9 @@ impl Controller {
         self.cycle(state, feedback, activity)
     }
 
-    /// Notes that a path begins in the next cycle. The path may differ from the motion of the set point until now. The
-    /// reference then reaches the path through the filter that smooths steps. `set_point` is the set point of that
-    /// cycle.
+    /// Notes that a path begins in the next cycle. `set_point` is the set point of the next cycle. If the path differs
+    /// from the motion of the set point until now, the reference of state feedback reaches the path through the filter
+    /// that smooths steps.
     pub fn begin_path(&self, state: &mut State, set_point: &SetPoint) {
         if let (Some(law), Some(elastic), Some(motion)) =
             (&self.state_feedback, &mut state.state_feedback, &set_point.motion)
@@ -78,8 +78,8 @@ mod tests {
     use crate::model::configuration::{ConfiguredFinger, Scheme};
     use nalgebra::{Matrix3, Vector3};
 
-    /// Returns whether a finger counts as touching something 1 s after an adjustment. Its sensors show constant values.
-    /// Before the adjustment, the tension of tendon 1 rises if the finger is `pushed`.
+    /// Returns whether a finger counts as touching something 1 s after an adjustment. Its sensors show constant values,
+    /// except that the tension of tendon 1 rises once before the adjustment if the finger is `pushed`.
     fn touches_after(change: fn(&mut ConfiguredFinger), pushed: bool) -> bool {
         let mut finger = ConfiguredFinger::default();
         finger.controller.scheme = Some(Scheme::Figure10);

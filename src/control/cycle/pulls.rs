@@ -89,7 +89,7 @@ impl Controller {
     }
 }
 
-/// Reports pulls that the tension controller did not compute, and resets the state of the tension controller.
+/// Reports pulls that the tendon controller did not compute, and resets the state of the tendon controller.
 pub(super) fn open_loop(state: &mut State, pulls: Vector4<f64>) {
     state.goes_on_from = None;
     state.tendons = TendonState::default();

@@ -11,7 +11,8 @@ pub struct PathExtent {
     /// Upper bounds of the joint angles, rad.
     pub highest: Vector3<f64>,
     /// The stiffest spring of the path, including the spring with which the path begins; none if the path does not
-    /// change the stiffness. As in [`SetPoint::stiffness`](crate::control::SetPoint::stiffness).
+    /// change the stiffness. It has the units and axes of
+    /// [`SetPoint::stiffness`](crate::control::SetPoint::stiffness).
     pub stiffest: Option<Matrix6<f64>>,
 }
 

@@ -39,7 +39,7 @@ impl Follower {
     }
 
     /// Moves `set_point` to the place that the path has reached at `time`, s since its beginning. The time never goes
-    /// back. Returns whether the path has ended. The set point then rests at the end of the path.
+    /// back. Returns whether the path has ended. After the end of the path, the set point rests there.
     pub fn advance(&mut self, path: &PathTable, time: f64, set_point: &mut SetPoint) -> bool {
         if let Some(stiffness) = self.stiffness_at(path.stiffness, time) {
             set_point.stiffness = stiffness;

@@ -119,8 +119,8 @@ impl Interpolation {
         (joints, Some(motion))
     }
 
-    /// Returns the period with which a new step does not end before the steps that run. A step that is faster than an
-    /// older one would overtake it after the planner's period became shorter. If the two had opposite directions, the
+    /// Returns the period with which a new step does not end before the steps that run. After the planner's period
+    /// became shorter, a step with the new period would overtake an older step. If the two had opposite directions, the
     /// sum would leave the range of the set points that were sent.
     fn time_of_new_step(&self, state: &InterpolationState) -> f64 {
         state.steps[..state.count].iter().map(|step| step.time - step.age / 3.0).fold(self.time, f64::max)
@@ -207,7 +207,7 @@ mod tests {
             let mut state = InterpolationState::at_rest(Vector3::zeros());
             for _ in 0..200 {
                 let (_, motion) = interpolation.advance(&mut state, &(Vector3::x() * 0.3));
-                // The limit is three quarters of the speed limit per least period, and a small ripple.
+                // The limit is three quarters of the speed limit per least period, plus a small ripple.
                 let acceleration = motion.unwrap_or_default().accelerations.amax();
                 assert!(acceleration < 400.0, "{period}: {acceleration} rad/s^2");
             }

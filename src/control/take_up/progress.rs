@@ -31,7 +31,8 @@ pub(crate) struct Slack {
     pub(super) waits_at: Vector4<f64>,
     /// Common stretch in multiples of the stretch at the pretension. A negative value is slack.
     pub(super) common: f64,
-    /// Rise of `common` while some tendons pull and another one is slack.
+    /// Largest advance of the targets while some tendons pull and another one is slack, in multiples of the stretch at
+    /// the pretension.
     pub(super) unopposed: f64,
     /// Whether the common stretch is kept, because the tensions are at the pretension.
     pub(super) steady: bool,

@@ -34,7 +34,7 @@ const TAUT: f64 = 0.12;
 /// fraction is lower than `TAUT`, because a tendon with little tension may hold the finger against gravity. It is not
 /// lower still, because the zero of a gauge drifts.
 const HOLDS: f64 = 0.012;
-/// Tendons that all have more than this fraction of t_min at the start need no winding.
+/// If all tendons have more than this fraction of t_min at the start, the take-up begins with [`Phase::Tightening`].
 const ALL_TAUT: f64 = 0.2;
 
 /// Pull in the paying-out direction with which a motor reverses at a taut tendon, in multiples of t_min.

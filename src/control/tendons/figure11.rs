@@ -3,8 +3,8 @@
 use crate::control::tendons::tension_integral::{TendonInput, TendonState};
 use nalgebra::Vector4;
 
-/// Range to which the estimate is clamped: a motor constant can be wrong by half, and friction at t_min can add an
-/// error of the same size.
+/// Range to which the estimate g of [`Figure11`] is clamped: a motor constant can be wrong by half, and friction at
+/// t_min can add an error of the same size.
 pub(crate) const RATIOS: (f64, f64) = (0.4, 2.0);
 
 /// Below this pull, N, a command contains no information about the motor, because friction alone can hold such a

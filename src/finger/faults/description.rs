@@ -61,7 +61,7 @@ pub enum Quantity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Description {
-    /// The name in the C header, without `FAULT_`.
+    /// The part of the name in the C header that follows `FAULT_`.
     pub constant: &'static str,
     /// The effect on the finger.
     pub severity: Severity,

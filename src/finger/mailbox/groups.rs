@@ -71,9 +71,9 @@ impl ServoEnd {
     }
 
     /// Discards all groups that wait. The servo does this when the finger recovers, because the groups were sent in an
-    /// earlier spring phase ([`FingerReport::springs`](crate::finger::FingerReport::springs)). The gate compares group
-    /// numbers modulo 2^24. After some hours with many groups, an old group would seem not to be posted yet. It would
-    /// then never take effect, and the later groups would wait for it.
+    /// earlier spring phase ([`FingerReport::springs`](crate::finger::FingerReport::springs)). A second reason is that
+    /// the gate compares group numbers modulo 2^24. A group that still waited after some hours with many groups would
+    /// seem not to be posted yet. It would then never take effect, and the later groups would wait for it.
     pub fn discard_groups(&mut self) {
         while let Some(discarded) = self.next_group.take().or_else(|| self.grouped.pop()) {
             self.in_effect = discarded.group;

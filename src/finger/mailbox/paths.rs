@@ -136,9 +136,10 @@ impl PlannersEnd {
     }
 
     /// Returns the stiffness with which a path begins that comes after `sent`, and the same stiffness again if the
-    /// servo must take it from the path. It need not if the stiffness in force is changing along an earlier path. A
-    /// stiffness that was sent just before the path never comes into force otherwise, because the servo takes only the
-    /// newest set point. The path would then begin with an older stiffness, for which the damping was not checked.
+    /// servo must take it from the path. The servo need not do so if the stiffness in force is changing along an
+    /// earlier path. Without the stiffness in the path, a stiffness that was sent just before the path would never come
+    /// into force, because the servo takes only the newest set point. The path would then begin with an older
+    /// stiffness, for which the damping was not checked.
     fn begin_of_stiffness(&mut self, sent: &SentSetPoint) -> (Matrix6<f64>, Option<Matrix6<f64>>) {
         let changing = sent.path.is_some_and(|path| path.stiffness) && self.extent_ahead(sent.path).is_some();
         // The set point that was sent has the stiffness of the end of the earlier path.

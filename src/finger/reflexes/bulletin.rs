@@ -7,7 +7,7 @@ use crate::model::configuration::FINGERS;
 use crate::realtime::atomics::{AtomicU32, Ordering};
 use crate::realtime::{LockedMemory, Pages, SharedPages};
 
-/// Number of kinds for which there is room. Kinds have numbers from 1.
+/// Number of counters of a finger. Kinds have numbers from 1, so the counter with the index 0 is not used.
 const KINDS: usize = 32;
 const _: () = assert!(EventKind::ALL.len() < KINDS, "a kind has no place");
 
@@ -36,7 +36,7 @@ impl Bulletin {
         }
     }
 
-    /// Returns how often an event of this kind has occurred, modulo 2^32.
+    /// Returns how often events of this kind have been counted, modulo 2^32.
     pub(super) fn counted(&self, finger: FingerNumber, kind: EventKind) -> u32 {
         self.0[finger.index()][usize::from(kind.number())].load(Ordering::Acquire)
     }

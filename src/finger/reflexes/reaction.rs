@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Matrix6, Vector3};
 /// Force below which a spring counts as pressing in no direction, N.
 const NO_DIRECTION: f64 = 0.05;
 
-/// A stiffness at the bound that was sent as `float` may be beyond the bound by this fraction.
+/// A stiffness at the bound may be beyond the bound by this fraction, because rounding to `float` may have raised it.
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 
 /// The limits of a finger, which no reaction exceeds.

@@ -213,7 +213,7 @@ impl ContinuousReplay {
     }
 }
 
-/// Returns a text in which every number has as many digits as its bits need. Black boxes contain the same text.
+/// Returns a text in which every number has enough digits to restore its bits. Black box files have the same format.
 fn text(state: &State) -> Option<String> {
     serde_json::to_string(state).ok()
 }

@@ -50,8 +50,8 @@ impl EventOutput {
         self.published = self.writer.publish(next);
     }
 
-    /// Restarts the detectors when the finger enters the stage `Running` and holds this set point. Returns that it has
-    /// arrived there and has settled.
+    /// Restarts the detectors when the finger enters the stage `Running` and holds this set point. Returns an
+    /// [`Arrival`] which states that the finger has arrived at the set point and has settled.
     pub fn restart_detectors(&mut self, set_point: SetPoint) -> Arrival {
         self.detectors = DetectorState::holding(set_point);
         self.detectors.arrival()

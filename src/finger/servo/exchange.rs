@@ -47,9 +47,9 @@ impl FingerServo {
     }
 
     /// Takes the answer to a TactileRequest. Returns whether the answer was awaited. Events that arrive before the
-    /// finger is a spring for the first time are not reported, because they may have happened before the hand was
-    /// opened. The answer is ignored if the finger has faulted in this period: a board that was reset counts its events
-    /// from 1 again.
+    /// finger enters the stage `Running` for the first time are not reported, because they may have happened before the
+    /// hand was opened. The answer is ignored if the finger has faulted in this period: a board that was reset counts
+    /// its events from 1 again.
     pub fn take_touch(&mut self, sequence: u8, event: &TactileEvent) -> bool {
         let awaited = self.touch.awaits(sequence);
         if awaited && !self.under_control() {
@@ -120,7 +120,7 @@ impl FingerServo {
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
         self.supervision.note_reply(reply.status, counted, clocked);
-        // A board that had no valid zero at opening loses its counts together with its terms.
+        // A board that had no valid zero at opening loses its counts together with the terms of its Configure.
         let lost = |bit: Status| self.status.has(bit) && !reply.status.has(bit);
         let zero_lost = !reply.status.has(Status::ZERO_VALID) && (lost(Status::ZERO_VALID) || lost(Status::CONFIGURED));
         self.status = reply.status;

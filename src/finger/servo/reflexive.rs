@@ -5,7 +5,7 @@ use crate::finger::ReflexServer;
 /// The rules of a finger, and when it follows its planner.
 #[derive(Default)]
 pub(super) struct Reflexive {
-    /// None for a finger that planners give no rules.
+    /// None if planners cannot install rules for the finger.
     pub server: Option<ReflexServer>,
     /// The period from which on the finger follows its planner again; none if it follows its planner now.
     pub inhibited_until: Option<u64>,

@@ -14,7 +14,7 @@ const PATIENCE: u32 = 10;
 /// Number of periods between two requests to a board that does not answer them.
 const PAUSE: u32 = 100;
 
-/// The servo's side of the touch of one finger. It never waits or allocates.
+/// The servo's side of the fetching of one finger's tactile events. It never waits or allocates.
 pub(in crate::finger) struct TouchFetching {
     elements: Elements,
     /// Whether the board has tactile events, and elements are configured.
@@ -36,7 +36,8 @@ pub(in crate::finger) struct TouchFetching {
 }
 
 impl TouchFetching {
-    /// Constructs the touch of a finger whose board has these capabilities. Adds the pages of the elements to `memory`.
+    /// Constructs the fetching for a finger whose board has these capabilities. Adds the pages of the elements to
+    /// `memory`.
     pub fn new(elements: Elements, board: Capabilities, memory: &mut LockedMemory) -> Self {
         elements.add_to(memory);
         let enabled = board.has(Capabilities::TACTILE) && elements.count() > 0;
@@ -44,11 +45,12 @@ impl TouchFetching {
         Self { elements, enabled, permitted: false, asked, received: 0, lost, restarts: 0, unanswered: 0, pause: 0 }
     }
 
-    /// Resumes after a fault. The board may have been reset, so it may have begun to count its events again. The number
-    /// of an earlier event could then delete events that were not received. If the board was not reset, one event may
-    /// come twice. A board that was reset has also forgotten its readings, and never reports the end of a contact from
-    /// before the reset. `restarts` is the number of restarts that recoveries have found since open. The board may have
-    /// restarted after any fault, because its finger was not under control.
+    /// Resumes after a fault. The board may have been reset, so it may have begun to count its events again. A request
+    /// with the number of an earlier event could then make the board delete events that were not received, so the next
+    /// request has the number 0. If the board was not reset, one event may come twice. A board that was reset has also
+    /// forgotten its readings, and never reports the end of a contact from before the reset. `restarts` is the number
+    /// of restarts that recoveries have found since open. The board may have restarted after any fault, because its
+    /// finger was not under control.
     pub fn recover(&mut self, fault: FaultKind, restarts: u32) {
         (self.asked, self.received, self.unanswered, self.pause) = (None, 0, 0, 0);
         let restarted = std::mem::replace(&mut self.restarts, restarts) != restarts;
@@ -70,7 +72,8 @@ impl TouchFetching {
     }
 
     /// Begins a period. `answered` says whether the last Command was answered. If it was not, the line has no time for
-    /// touch. A request without an answer is not repeated in its own period. The next request fetches the same event.
+    /// a request. A request without an answer is not repeated in its own period. The next request fetches the same
+    /// event.
     pub fn begin(&mut self, answered: bool) {
         self.permitted = answered;
         if self.asked.take().is_some() {

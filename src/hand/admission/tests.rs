@@ -135,7 +135,8 @@ proptest! {
         mantissas in prop::array::uniform32(-1.0f64..1.0), exponents in prop::array::uniform6(-160i32..155),
         diagonal in prop::bool::ANY, lever in -1.0f64..2.0,
     ) {
-        // A A^T of rank 5 is a spring, except for rounding. Its magnitude in each direction is arbitrary.
+        // The product of `root` and its transpose has rank 5 and is a spring, except for rounding. The magnitude of the
+        // product in each direction is arbitrary.
         let root = nalgebra::SMatrix::<f64, 6, 5>::from_fn(|row, column| match diagonal && row != column {
             true => 0.0,
             false => mantissas[5 * row + column] * 10f64.powi(exponents[row]),

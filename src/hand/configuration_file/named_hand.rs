@@ -5,7 +5,7 @@ use super::wrong::Wrong;
 use crate::model::configuration::ConfiguredSimulation;
 use toml_edit::{Item, Table, value};
 
-/// Adds the values for which `simulation.hand` stands to the table of a finger. Keys that the table contains keep their
+/// Adds to the table of a finger the values for which `simulation.hand` stands. Keys that the table contains keep their
 /// values. An unknown name adds nothing: the conversion of the table refuses it.
 pub(super) fn add_named_values(finger: &mut Table) -> Result<(), Wrong> {
     let Some(simulation) = finger.get_mut("simulation").and_then(Item::as_table_like_mut) else { return Ok(()) };

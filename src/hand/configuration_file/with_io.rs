@@ -21,7 +21,7 @@ impl FingersWithIo {
         Self(configuration.fingers.each_ref().map(ConfiguredFinger::has_io))
     }
 
-    /// Returns the fingers of both selections.
+    /// Returns the fingers that are in at least one of the two selections.
     pub fn and(self, other: Self) -> Self {
         Self(std::array::from_fn(|finger| self.0[finger] || other.0[finger]))
     }

@@ -101,7 +101,7 @@ pub enum PathError {
         value: f64,
         /// The configured limit.
         limit: f64,
-        /// The factor by which the whole path must be slower, rounded up to 0.01.
+        /// The factor by which the whole path must be slower, rounded up to a multiple of 0.01.
         factor: f64,
     },
     /// A tip path cannot be followed exactly.
@@ -116,10 +116,10 @@ pub enum PathError {
         pose: usize,
         /// The largest distance from the path, cm.
         deviation: f64,
-        /// Size of the table.
+        /// The largest number of pieces of a path.
         pieces: usize,
     },
-    /// The finger has become a spring again while the path was computed.
+    /// A fault, a calibration, an expiry or a reflex has replaced the finger's set point while the path was computed.
     #[error("finger {0} has left its pose while the path was computed, and holds another one: send the path again")]
     Moved(FingerNumber),
 }

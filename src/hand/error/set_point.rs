@@ -35,7 +35,7 @@ pub enum SetPointError {
         /// Upper limit, rad.
         high: f64,
     },
-    /// A path that the finger follows leaves joint limits that are to change.
+    /// The path that the finger follows goes beyond the joint limits that an adjustment would set.
     #[error(
         "the path that finger {finger} follows takes joint {joint} to {value:.4} rad, outside the new limits, {low:.4} \
          to {high:.4} rad: adjust when the path has ended, send another path or position first, or set \
@@ -192,7 +192,7 @@ pub enum SetPointError {
     Damping {
         /// The finger.
         finger: FingerNumber,
-        /// The requested ratio to the damping that the controller chooses.
+        /// The requested damping, as a ratio to the damping that the controller chooses.
         ratio: f64,
         /// Largest eigenvalue of the stiffness of the refused set point, N/cm. Rotational and joint stiffnesses are
         /// converted to N/cm.

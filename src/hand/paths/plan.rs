@@ -65,8 +65,8 @@ impl Plan {
         self.pieces.last().map_or_else(Vector3::zeros, |last| last.at(last.end()).place)
     }
 
-    /// Returns the change of a set point that leads along the path. The change refuses a damping that is too high or
-    /// too low for a Kx of the path, or clamps it.
+    /// Returns a function that changes a set point so that the finger follows the path. The function refuses a damping
+    /// that is too high or too low for a Kx of the path, or clamps it.
     pub(in crate::hand) fn change(
         &self,
         damping: DampingAdmission,

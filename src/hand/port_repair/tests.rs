@@ -1,4 +1,4 @@
-//! Boards that a repair finds: the one of open, another one, and one that has lost its counts.
+//! Boards that a repair finds: the same board as at open, another one, and one that has lost its counts.
 
 use super::*;
 use crate::board::OutgoingCommand;
@@ -77,7 +77,7 @@ fn only_terms_end_a_hold() {
     assert!(!finger(&mut link).status().has(Status::HOLDING));
 }
 
-/// The counts of a board that does not keep its zeros are those of open until it restarts.
+/// A board that does not keep its zeros continues the counts that it had at open until it restarts.
 #[test]
 fn a_board_that_does_not_keep_its_zeros_must_not_have_restarted() {
     let (mut link, mut known) = opened(board(), false);

@@ -1,4 +1,4 @@
-//! The unique number of a board, by which a configuration names a board without its port.
+//! The unique number of a finger on its board, by which a configuration names a board without its port.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;

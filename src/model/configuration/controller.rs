@@ -41,7 +41,7 @@ const STATE_FEEDBACK_RATE: f64 = 750.0;
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredController {
-    /// The tendon controller. Without it [`ConfiguredController::scheme`] selects one.
+    /// The controller of the whole finger. Without it [`ConfiguredController::scheme`] selects one.
     pub scheme: Option<Scheme>,
     /// The stiffness law for set points in joint angles. A fingertip set point always uses the exact law.
     pub law: Law,
@@ -74,8 +74,9 @@ pub struct ConfiguredController {
     /// State feedback: amplitude of the dither divided by the Coulomb friction of the joints. With 0 there is no
     /// dither.
     pub dither: Option<f64>,
-    /// State feedback: smallest amplitude of the dither of the tensions, as a fraction of each tension. The dither
-    /// causes no joint torque. Its amplitude rises with `friction.pulley`. With 0 there is no such dither.
+    /// State feedback: smallest amplitude of the dither of the tensions, as a fraction of each tension. If all tendons
+    /// have equal friction, the dither causes no joint torque. Otherwise it moves the tip a little. Its amplitude rises
+    /// with `friction.pulley`. With 0 there is no such dither.
     pub tension_dither: Option<f64>,
     /// State feedback: the part of the motors' friction that is fed forward, 0 to 1.
     pub friction_share: Option<f64>,
@@ -106,9 +107,9 @@ impl Default for ConfiguredController {
 }
 
 impl ConfiguredController {
-    /// Returns the tendon controller at `rate`, Hz. Unless one is configured, it is state feedback from 750 Hz up and
-    /// Figure 10 below. At 500 Hz state feedback is better in most respects, but loses control of a finger if a tenth
-    /// of the replies are lost (`docs/stiffness.md`).
+    /// Returns the controller of the finger at `rate`, Hz. Unless one is configured, it is state feedback from 750 Hz
+    /// up and Figure 10 below. At 500 Hz state feedback is better in most respects, but loses control of a finger if a
+    /// tenth of the replies are lost (`docs/stiffness.md`).
     #[must_use]
     pub fn scheme(&self, rate: f64) -> Scheme {
         self.scheme.unwrap_or(if rate >= STATE_FEEDBACK_RATE { Scheme::StateFeedback } else { Scheme::Figure10 })

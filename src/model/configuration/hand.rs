@@ -5,7 +5,8 @@ use crate::model::fingers::Fingers;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// Admissible rates of a hand, Hz. The gains for 500 Hz are stable down to 470 Hz, and the finger oscillates at 450 Hz.
+/// Admissible rates of a hand, Hz. The gains for 500 Hz are stable at rates down to 470 Hz. At a rate of 450 Hz the
+/// finger oscillates.
 pub const RATES: RangeInclusive<f64> = 500.0..=5000.0;
 
 /// The largest magnitude of a component of gravity, m/s^2.
@@ -14,12 +15,13 @@ pub const LARGEST_GRAVITY: f64 = 100.0;
 /// Permitted baud rates of a port, bit/s.
 pub const BAUDS: RangeInclusive<u32> = 9600..=12_000_000;
 
-/// The behaviour of the motors when commands stop because the hand is closed, or because the planner exits or dies.
+/// The behaviour of the motors when commands stop: because the hand is closed or stopped, a finger faults, or the
+/// planner exits or dies.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum EndState {
-    /// The torque goes to zero: in a ramp if the servo still runs, at once if only the board is left.
+    /// The torque goes to zero: in a ramp when the hand is closed, and otherwise at once.
     #[default]
     Release,
     /// The board keeps the last torque, up to `hold_torque_limit`, for `hold_time_ms`. Then it releases.
@@ -141,9 +143,9 @@ impl Default for ConfiguredHand {
             hold_torque_limit: 1.0,
             release_ramp_ms: 200,
             // A finger must be in its end state 20 ms after the last good reply, or after the death of its planner. A
-            // board's timer may have a resolution of 1 ms and an error of 1 %. The servo counts this time in whole
-            // periods from the last good reply, and then sends a Stop. With 20 ms, a Stop that leaves late in its
-            // period would be too late.
+            // board's timer may have a resolution of 1 ms and an error of 1 %. The servo counts `watchdog_ms` in whole
+            // periods from the last good reply, and then sends a Stop. If `watchdog_ms` were 20, a Stop that leaves
+            // late in its period would be too late.
             watchdog_ms: 18,
             self_test: false,
             open_timeout_ms: 10_000,

@@ -6,8 +6,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredMonitors {
-    /// Torque that may be out of balance at a motor that does not turn, N cm. A larger torque means that the motor is
-    /// stalled. The value must exceed the static friction of the motor.
+    /// Torque that may be out of balance at a motor that does not turn, N cm. The motor is stalled if the imbalance
+    /// exceeds what this value and `stall_fraction` permit together for 12 ms. The value must exceed the static
+    /// friction of the motor.
     pub stall_torque: [f64; 4],
     /// Fraction of the pull or of the tension, whichever is larger, that may be out of balance in addition to
     /// `stall_torque`. It covers the error of the torque constant, and friction that is proportional to the tension.

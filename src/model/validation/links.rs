@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 const STABLE: f64 = 4.0;
 
 /// Largest factor on the stiffness of the tendons. A tendon that sticks on its pulleys has only the last fifth of its
-/// compliance, so it is five times as stiff. The factor 2 permits that the motor moves too: the energy of a stretch,
+/// compliance, so it is five times as stiff. The factor 2 allows for motion of the motor: the energy of a stretch,
 /// k (a - b)^2 / 2, is at most k a^2 + k b^2.
 const STIFFEST: f64 = 2.0 * 5.0;
 
@@ -61,7 +61,7 @@ impl ConfiguredFinger {
     }
 
     /// Returns the inertia matrices of the simulated finger in poses between its stops, kg m^2. The inertia does not
-    /// depend on the angle of joint 0. In most fingers the lightest pose is at the ends of the other two angles.
+    /// depend on the angle of joint 0. In most fingers it is smallest where joints 1 and 2 are at ends of their ranges.
     fn simulated_inertias(&self) -> Vec<Matrix3<f64>> {
         let simulation = &self.simulation;
         let [link_0, link_1, link_2, tip] = simulation.masses;
@@ -78,7 +78,8 @@ impl ConfiguredFinger {
     }
 }
 
-/// Returns the largest eigenvalue of M^-1 S, or infinity if rounding makes M singular.
+/// Returns the largest eigenvalue of M^-1 S, or infinity if rounding makes M singular. M is `inertia`, and S is
+/// `strain`, the sum h^2 K + 2 h C.
 fn share(inertia: &Matrix3<f64>, strain: &Matrix3<f64>) -> f64 {
     let inverse = inertia.cholesky().and_then(|factor| factor.l().try_inverse());
     inverse.map_or(f64::INFINITY, |inverse| (inverse * strain * inverse.transpose()).symmetric_eigenvalues().max())

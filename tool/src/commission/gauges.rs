@@ -17,9 +17,9 @@ const LIVES: f64 = 0.2;
 const NOISE: f64 = 0.3;
 /// Largest residual of the line as a part of the heaviest weight that hung on the tendon.
 const RESIDUAL: f64 = 0.02;
-/// A scale that differs by more than this is reported.
+/// A scale is reported if it differs from the configured one by more than this fraction.
 const SCALE: f64 = 0.05;
-/// A zero that differs by more than this is reported, N.
+/// A zero is reported if it differs from the configured one by more than this, N.
 const ZERO: f64 = 5.0;
 
 /// A mean count below this is at the lower end of the converter's range, counts.

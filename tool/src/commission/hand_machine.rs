@@ -19,7 +19,7 @@ const HELLO: u64 = 1_500_000_000;
 /// Time over which the measurements of a finger at rest are averaged, and interval of their samples.
 const RESTING: Duration = Duration::from_millis(600);
 const SAMPLING: Duration = Duration::from_millis(5);
-/// Settling time before such an average.
+/// Settling time before the measurements of a finger at rest.
 const SETTLING: Duration = Duration::from_millis(1500);
 /// Duration of the examination of the computer.
 const EXAMINATION: Duration = Duration::from_secs(3);
@@ -231,7 +231,8 @@ mod tests {
         machine.spring().expect("a spring");
         assert!(torque() > 0.0);
         machine.off();
-        // The last frame needs some time to reach the board. A hold would last for a minute.
+        // The last frame needs some time to reach the board. With the configured end state, the motors would hold for
+        // one minute.
         let begun = Instant::now();
         while torque() > 0.0 {
             assert!(begun.elapsed() < Duration::from_secs(10), "the motors hold with {} N cm", torque());

@@ -20,7 +20,7 @@ pub fn create(file: &Path, finger: FingerNumber, ports: &[String]) -> Result<(),
     Ok(())
 }
 
-/// Creates the file. Another process may have created it during the search. Its file stays.
+/// Creates the file. If another process has created a file of this name during the search, that file stays.
 fn place(file: &Path, text: &str) -> Result<(), Failure> {
     let shown = ShownPath(file);
     let name = file.file_name().and_then(|name| name.to_str());
@@ -47,7 +47,7 @@ fn text(finger: FingerNumber, answer: &Answer, ports: &[String]) -> String {
     )
 }
 
-/// Returns the line for these ports. Escapes of TOML and of Rust differ.
+/// Returns the line for these ports. `toml_edit` writes the texts, because TOML and Rust have different escapes.
 fn search_ports(ports: &[String]) -> String {
     let listed: toml_edit::Array = ports.iter().collect();
     format!("search_ports = {listed}\n")

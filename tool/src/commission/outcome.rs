@@ -25,7 +25,7 @@ impl Outcome {
         self.keys.push((key, text.into()));
     }
 
-    /// The comment above a key. A key without a result of its own has the name of its step.
+    /// The comment above a key: date, step and result. For a key without a result of its own, it is only date and step.
     pub fn comment(&self, key: &str, step: Step, when: &str) -> String {
         match self.keys.iter().find(|(other, _)| *other == key) {
             Some((_, text)) => format!("{when}, {step}: {text}"),

@@ -46,8 +46,8 @@ pub type Taken = (BoardNumber, u8);
 /// Searches these ports for the board of a finger. `taken` belong to other fingers of the hand.
 ///
 /// # Errors
-/// Returns the reason if no finger answers that is not in `taken`, or if several do, and not exactly one of them has
-/// the number of `finger` as its address.
+/// Returns the reason if every finger that answers is in `taken`, or if none answers. If several others answer, returns
+/// the reason unless exactly one of them has the number of `finger` as its address.
 pub fn search(patterns: &[String], baud: u32, finger: FingerNumber, taken: &[Taken]) -> Result<Chosen, String> {
     let searched = search_boards(patterns, &[baud]);
     let answers = searched.iter().flat_map(|port| {

@@ -12,7 +12,7 @@ use sun2xp::nalgebra::Vector3;
 const PUSHED: f64 = 0.1;
 /// Largest relative difference between the measured and the sent stiffness.
 const STIFFNESS: f64 = 0.2;
-/// Largest distance from the pose after the push, cm.
+/// Largest distance between the position of the tip before the push and its position after the push has ended, cm.
 const RETURN: f64 = 0.15;
 
 /// Carries out the step `spring`.

@@ -42,7 +42,7 @@ pub fn tendons(desk: &mut Desk) -> Result<Outcome, Failure> {
     vitals.motor_ratio = Some(found.motor_ratio.into());
     vitals.newton_per_count = Some(desk.finger.gauge.newton_per_count);
     vitals.residual = Some(found.travel_residual);
-    // The person has let go already. At a pose, the finger must be held again.
+    // The person has let go already, and must hold the finger again only if it is zeroed at a pose.
     desk.person.show("The zeros depend on the stretch of the tendons, which is known now: the finger is zeroed again.");
     zero(desk, &mut outcome, false)?;
     Ok(outcome)

@@ -58,7 +58,7 @@ pub enum Wrong {
     TendonTension(usize, f64),
     /// Measured and sent stiffness, N/cm.
     SpringStiffness(f64, f64),
-    /// Distance from the pose after a push, mm.
+    /// Distance between the position of the tip before a push and its position after the push has ended, mm.
     SpringReturn(f64),
     /// The configured initial stiffness and the bound below it, N/cm.
     InitialLowered(f64, f64),
@@ -78,7 +78,7 @@ pub enum Wrong {
 }
 
 impl Wrong {
-    /// Whether the configuration compensates it, or the hand works with it, so that nothing must be repaired.
+    /// Whether nothing must be repaired, because the configuration compensates the error or the hand works with it.
     pub fn compensated(&self) -> bool {
         matches!(
             self,
@@ -103,7 +103,7 @@ impl Wrong {
         format!("{self}. {}", self.remedy()).trim_end_matches([' ', '.']).to_owned()
     }
 
-    /// Whether it is compensated, but probably has a cause that should be removed.
+    /// Whether the error is [`Self::compensated`], but probably has a cause that should be removed.
     pub fn suspect(&self) -> bool {
         match self {
             Self::GaugeScale(_, ratio) => (ratio - 1.0).abs() > TOLERANCE,

@@ -28,7 +28,7 @@ pub fn zeros(desk: &mut Desk) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// Zeros the finger by its method. Returns whether it was done. `held` says whether the person may still hold the
+/// Zeros the finger by its method. Returns whether it was done. If `held` is true, the person possibly still holds the
 /// finger.
 pub fn zero(desk: &mut Desk, outcome: &mut Outcome, held: bool) -> Result<bool, Failure> {
     let method = desk.finger.zeroing_method();

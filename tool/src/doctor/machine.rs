@@ -5,12 +5,12 @@ use std::fs::read_to_string;
 use std::path::Path;
 use sun2xp::model::configuration::Configuration;
 
-/// Memory that three servo threads lock for stacks, mailboxes and events, at most 3.3 MiB, with a reserve for the
-/// planner's thread-local variables, which are locked with the stacks, bytes.
+/// Memory that three servo threads lock, bytes: at most 3.3 MiB for stacks, mailboxes and events, and a reserve. The
+/// reserve is for the copy of the planner's thread-local variables that each stack contains.
 const LOCKED: u64 = 4 << 20;
 
-/// Memory that they also lock for each Hz of the rate, with a reserve, bytes. Their rings hold the records of 0.5 s and
-/// the timings of 0.8 s, which are 1750 bytes for each Hz.
+/// Memory that the three servo threads also lock for each Hz of the rate, with a reserve, bytes. Their rings hold the
+/// records of 0.5 s and the timings of 0.8 s, which are 1750 bytes for each Hz.
 const LOCKED_PER_HZ: f64 = 2048.0;
 
 const CAP_IPC_LOCK: u32 = 14;

@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(judged(1000.0, 90.0, RealtimeRefusals::default()).verdict, Rating::Good);
         assert_eq!(judged(1000.0, 110.0, RealtimeRefusals::default()).verdict, Rating::Warning);
         assert_eq!(judged(5000.0, 110.0, RealtimeRefusals::default()).verdict, Rating::Failure);
-        // The worst wake-up counts too. The watchdog of the board has 18 ms.
+        // The worst wake-up counts too. The watchdog of the board trips after 18 ms.
         for (worst, verdict, part) in [
             (400.0, Rating::Good, "worst 400 us of a period of 1000 us"),
             (4700.0, Rating::Warning, "worst 4700 us of a period of 1000 us, 4.7 periods"),

@@ -1,5 +1,5 @@
-//! What a person can do to a hand: typed commands, and their calls of the hand. The terminal and the web page send the
-//! same commands.
+//! What a person can do to a hand: the type of the commands, and the calls of the hand that carry them out. The
+//! terminal and the web page send the same commands.
 
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display, Formatter};
@@ -174,7 +174,7 @@ fn recover(hand: &Hand, finger: i32, stopped: &dyn Fn() -> bool) -> Result<Strin
 }
 
 /// Returns the desired joint angles that were sent last, rad. Commands that have waited for a recovery follow each
-/// other within a cycle, so the angles in force would lack the steps before.
+/// other within a cycle, so the angles in force do not contain the steps of the earlier commands yet.
 pub fn desired_joints(hand: &Hand, finger: i32) -> Result<[f64; 3], HandError> {
     Ok(hand.last_set_point(finger)?.joints.into())
 }

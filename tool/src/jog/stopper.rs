@@ -35,8 +35,8 @@ impl Stopper {
 
     /// Calls `execute` for a command that was sent after `stops` stops. Returns none if a later stop or the end has
     /// dropped the command. `execute` gets a function that returns whether a later stop has come meanwhile. A recovery
-    /// must call it after its beginning, because it would undo a stop that comes between the check here and its
-    /// beginning.
+    /// must call this function after it has begun. Otherwise it would undo a stop that comes after the check here and
+    /// before the recovery begins.
     pub fn carry_out<T>(
         &self,
         command: &Command,
@@ -61,7 +61,7 @@ mod tests {
         let carry_out = |command, stops| stopper.carry_out(&command, stops, |_| 1);
         let end_of_push = Command::Push { finger: 1, force: [0.0; 3] };
         assert_eq!(carry_out(Command::Open, 0), Some(1));
-        // The number of a command that was sent before another stop.
+        // The number 1 differs from the number of stops, 0, as the number of a command before a later stop does.
         assert_eq!(carry_out(Command::Open, 1), None);
         assert_eq!(carry_out(Command::Push { finger: 1, force: [0.0, 0.0, 0.1] }, 1), None);
         assert_eq!(carry_out(end_of_push, 1), Some(1), "a stop does not let a push go on");

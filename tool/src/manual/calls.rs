@@ -81,7 +81,7 @@ fn page(comment: &Comment, header: &Header) -> Page {
     let find = |start: &str| (0..rest.len()).find(|&index| begins(index, start)).unwrap_or(rest.len());
     let examples = find("Example");
     let notes = find("Threads:").min(examples);
-    // Paragraphs of the description may begin with the same word.
+    // Paragraphs of the description may begin with "Returns" too, so only the last such paragraph counts.
     let returned = (0..notes).rfind(|&index| begins(index, "Returns")).unwrap_or(notes);
     section(&mut text, "DESCRIPTION", &rest[..returned]);
     section(&mut text, "RETURN VALUE", &rest[returned..notes]);
@@ -95,7 +95,7 @@ fn page(comment: &Comment, header: &Header) -> Page {
     }
     if examples < rest.len() {
         text.control("SH", ["EXAMPLES"]);
-        // The word itself is the title of the section.
+        // The word "Example" is left out, because the title of the section contains it.
         let first = rest[examples].trim_start_matches("Example").trim_start_matches([',', ' ', ':']);
         let lines: Vec<&str> = [first].into_iter().chain(rest[examples + 1..].iter().copied()).collect();
         body(&mut text, &lines);

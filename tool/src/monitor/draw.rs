@@ -100,7 +100,7 @@ fn draw_hand(frame: &mut Frame, area: Rect, view: &View, palette: &Palette, hand
 /// Divides the height: fingers, faults, and events with timing.
 fn split(area: Rect, view: &View, faults: u16) -> [Rect; 3] {
     let room = area.height - faults;
-    // A narrow terminal may not show all fingers. Then one more line has their names.
+    // A narrow terminal may have no room for all fingers. Then one more line has the names of all fingers.
     let compact = FRAME + finger::COMPACT + u16::from(area.width < SIDE_BY_SIDE);
     // The panel with the detail is below the fingers where there is room for both, and otherwise in their place.
     let (least, complete) = match view.selected {
@@ -117,7 +117,7 @@ fn split(area: Rect, view: &View, faults: u16) -> [Rect; 3] {
     Layout::vertical([Constraint::Length(fingers), Constraint::Length(faults), Constraint::Min(0)]).areas(area)
 }
 
-/// Draws the fingers side by side, or below each other, or only one with the names of the others.
+/// Draws the fingers side by side, or below each other, or only one of them below a line with the names of all.
 fn draw_fingers(frame: &mut Frame, area: Rect, view: &View, palette: &Palette, hand: &HandState) {
     let count = hand.fingers.len() as u16;
     let is_selected =

@@ -15,8 +15,8 @@ const READ_TIME: Duration = Duration::from_millis(200);
 /// Interval at which a missing hand is looked for.
 const SEARCH_INTERVAL: Duration = Duration::from_millis(300);
 
-/// Number of news that may wait. The terminal may take nothing for hours, for example because its connection is
-/// stalled. Meanwhile the memory of this process must not grow. What does not fit waits in the memory of the hand,
+/// Largest number of news items that wait. The terminal may take nothing for hours, for example because its connection
+/// is stalled. Meanwhile the memory of this process must not grow. What does not fit waits in the memory of the hand,
 /// which loses the oldest cycles after two seconds.
 const WAITING: usize = 8;
 

@@ -79,7 +79,7 @@ impl View {
         self.selected = (self.selected != Some(finger)).then_some(finger);
     }
 
-    /// Shows the next finger in detail, after the last one none.
+    /// Shows the next finger in detail. After the last finger, shows no finger in detail.
     pub fn select_next(&mut self) {
         self.selected = match self.selected {
             None => Some(1),

@@ -17,7 +17,7 @@ const HEIGHT: f64 = 190.0;
 
 /// A recording that is longer than this, s, is drawn only around its largest step.
 const LONG: f64 = 5.0;
-/// Beginning and end of the part that is then drawn, s after the step.
+/// Beginning and end of the part of such a long recording that is drawn, s after its largest step.
 const AROUND: (f64, f64) = (-0.2, 1.3);
 
 /// A step of the set point is at least this large, degrees.

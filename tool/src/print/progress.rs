@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread::{self, Thread};
 use std::time::{Duration, Instant};
 
-/// Shorter work shows no line.
+/// Work that is shorter than this shows no line.
 const FIRST_LINE: Duration = Duration::from_secs(1);
 
 /// Time between two lines.

@@ -10,8 +10,8 @@ pub fn unusable(path: &Path, library: &str, reason: &str) -> Failure {
     format!("{} cannot be used: {reason}. {ALTERED}{}", ShownPath(path), or_by(library)).into()
 }
 
-/// Returns the other remedy if another library has written the file, as the end of a sentence. Libraries of other
-/// versions may permit other values.
+/// If a library of another version has written the file, returns a second remedy as the end of a sentence: libraries of
+/// other versions may permit other values. Otherwise returns an empty text.
 pub fn or_by(library: &str) -> String {
     match env!("CARGO_PKG_VERSION") {
         own if own == library => String::new(),

@@ -23,8 +23,8 @@ const LARGEST_RECORD: usize = 64 << 20;
 /// Largest number of channels. A recording has 11.
 const MOST_CHANNELS: usize = 1000;
 
-/// An open recording. It is an iterator over the entries, in the order in which they were recorded. The cycles of a
-/// finger are in their order. Reading an MCAP file takes little memory, however long the file is.
+/// An open recording. It is an iterator over the entries, in the order in which they were recorded. The cycles of one
+/// finger are in chronological order. Reading an MCAP file takes little memory, however long the file is.
 pub struct Recording {
     path: PathBuf,
     source: Source,
@@ -43,7 +43,7 @@ struct Mcap {
     file: File,
     reader: LinearReader,
     channels: BTreeMap<u16, (String, String)>,
-    /// Number of bytes of the file and of those that have been read.
+    /// Size of the file, and number of bytes that have been read.
     bytes: (u64, u64),
 }
 

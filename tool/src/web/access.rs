@@ -1,5 +1,5 @@
-//! Decides who may read the page. A request must go to this address, and may only come from a page of this address. A
-//! request for data must also contain the token if there is one.
+//! Decides who may read the page. A request must go to the address of the server, and may only come from a page of this
+//! address. A request for data must also contain the token if there is one.
 //!
 //! A foreign page in the user's browser can send requests to loopback too. The browser names that page in `Origin`, so
 //! a request with another origin is refused. A foreign name that resolves to loopback (DNS rebinding) makes the foreign

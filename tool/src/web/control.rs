@@ -77,8 +77,9 @@ impl Control {
     /// Carries a command out, and sends the result to `answers`.
     pub fn order(&self, command: Command, answers: UnboundedSender<Answer>) {
         if command == Command::Stop {
-            // A stop waits for nothing, and drops the commands that wait, of other pages too. The page may have left.
+            // A stop waits for nothing, and drops the commands that wait, also those of other pages.
             self.stopper.stop();
+            // The page may have left.
             let _ = answers.send(Answer::new(command, true, "all fingers are stopped".into()));
             return;
         }

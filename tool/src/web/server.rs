@@ -1,4 +1,4 @@
-//! The server, which has one thread. It gives the files of the page to everybody who requests them at this address, and
+//! The server, which has one thread. It gives the files of the page to everybody who requests them at its address, and
 //! data to those who may have it.
 
 use super::access::{Access, Refusal};

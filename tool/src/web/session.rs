@@ -76,7 +76,7 @@ struct Writer {
     batches: Arc<Batches>,
 }
 
-/// Why a session ends.
+/// The error of a page that takes no more messages. It ends the session.
 struct End;
 
 impl Session {

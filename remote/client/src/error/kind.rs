@@ -65,7 +65,7 @@ impl RemoteError {
         }
     }
 
-    /// The finger that the error concerns; none if it concerns the hand.
+    /// The finger that the error names; none if it names no finger.
     #[must_use]
     pub fn finger(&self) -> Option<i32> {
         let finger = match self {

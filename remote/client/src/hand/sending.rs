@@ -1,4 +1,4 @@
-//! The calls that send set points. Each call checks the planner's arguments, puts them into the mailbox, and returns.
+//! The calls that send set points. Each call checks the planner's arguments, puts them into the outbox, and returns.
 
 use crate::RemoteHand;
 use crate::clock::now;
@@ -7,7 +7,7 @@ use crate::error::RemoteError;
 use sun2xp_remote_protocol::PathPose;
 
 impl RemoteHand {
-    /// Sends theta_d of finger 1, 2 or 3: joints 0, 1 and 2, rad.
+    /// Sends theta_d, the desired angles of joints 0, 1 and 2, rad, of finger 1, 2 or 3.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if an angle is NaN, infinite or beyond a joint limit, or if the

@@ -6,7 +6,7 @@ use crate::control::take_up::progress::{Phase, Slack};
 use crate::control::take_up::touch::Gauge;
 use nalgebra::Vector4;
 
-/// Speed of the motors while they wind in together, m/s.
+/// Largest speed of the motors while they wind in together, m/s.
 const TOGETHER: f64 = 0.001;
 /// Largest speed of the common stretch, in multiples of the stretch at the pretension, 1/s.
 const FASTEST: f64 = 3.0;

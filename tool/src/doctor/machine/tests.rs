@@ -88,8 +88,8 @@ fn capabilities_replace_limits_and_enforcing_makes_failures() {
     assert!(has(status, CAP_IPC_LOCK) && has(status, CAP_SYS_NICE) && !has(status, 0) && !has("", CAP_SYS_NICE));
 }
 
-/// The rings of the servos are locked, and grow with the rate. The limit must be higher than what the page says that
-/// they lock.
+/// The rings of the servos are locked, and grow with the rate. The limit that the doctor requires must be higher than
+/// the locked memory that docs/real-time.md states.
 #[test]
 fn the_locked_memory_that_is_needed_depends_on_the_rate() {
     let limits = |mebibytes: u64| {

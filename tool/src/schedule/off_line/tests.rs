@@ -79,7 +79,7 @@ fn touch_takes_the_time_that_the_line_has_left() {
     assert_eq!(touched, [0, 1, 0]);
     assert_eq!((schedule[0].response, schedule[1].response), (Some((660.0, 680.0)), Some((860.0, 885.0))));
     assert!((schedule[1].line - 0.75).abs() < 1e-9);
-    // At 1100 Hz no time is left, so the servo sends no requests, and touch makes no cycle later.
+    // At 1100 Hz no time is left, so the servo sends no requests, and touch delays no cycle.
     assert_eq!(touches(&hand, &[FingerNumber::TWO], &Sensor::default(), 1100.0), 0);
     assert_eq!(Fastest::of(&hand, &COSTS, &Sensor::default()).rate, Some(1454));
     // 16 more bytes take 160 us. They leave no time for a request at 1000 Hz. The exchange then takes 710 us, which is
