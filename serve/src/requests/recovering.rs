@@ -22,9 +22,9 @@ pub(super) fn recover(shared: &Shared, finger: Option<Finger>, stops: &Stops) ->
     recovered.and(stopped)
 }
 
-/// Returns whether a finger that still ran when its recovery began has ended its motion since, because the previous owner
-/// was silent. This happens if the hand is acquired right after the end of the ownership. The silence has only this
-/// effect, because the desk keeps the set points of running fingers valid while an acquire recovers others.
+/// Returns whether a finger that still ran when its recovery began has ended its motion since, because the previous
+/// owner was silent. This happens if the hand is acquired right after the end of the ownership. It cannot happen again
+/// in the next recovery, because the desk then keeps the set points of running fingers valid.
 fn of_previous_owner(error: &HandError) -> bool {
     matches!(error, HandError::Faulted { fault, .. } if fault.kind == FaultKind::SetPointExpired)
 }
