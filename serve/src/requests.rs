@@ -13,7 +13,7 @@ use crate::epoch::new_epoch;
 use crate::settings::Permission;
 use crate::shared::Shared;
 use long::{long, run};
-use recovering::recover;
+use recovering::{recover, recover_for_new_owner};
 use reply::{ended, in_progress};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -160,7 +160,7 @@ fn acquire(shared: &Arc<Shared>, request: &Request, client: ClientName, reply: i
         return reply.send(&begin(shared, Ok(())));
     }
     let refused = run(shared, 0, reply, move |shared| {
-        let recovered = recover(shared, None, &stops);
+        let recovered = recover_for_new_owner(shared, &stops);
         begin(shared, recovered)
     });
     let Some((reply, answer)) = refused else { return };

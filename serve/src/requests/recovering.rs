@@ -11,22 +11,25 @@ use sun2xp_remote_protocol::Finger;
 /// Interval at which recoveries are polled.
 pub(super) const POLLED: Duration = Duration::from_millis(2);
 
+/// Recovers every finger for a client that has just acquired the hand. `stops` is as for [`recover`].
+///
+/// Right after the end of the previous ownership, a finger may still run. Its servo may count the silence of the
+/// previous owner to its end only after the recovery has begun. Such a finger is recovered too. The second recovery
+/// cannot meet another one, because the desk keeps the set points of running fingers valid while an acquire recovers
+/// fingers.
+pub(super) fn recover_for_new_owner(shared: &Shared, stops: &Stops) -> Result<(), HandError> {
+    recover(shared, None, stops).or_else(|error| match error {
+        HandError::Faulted { fault, .. } if fault.kind == FaultKind::SetPointExpired => recover(shared, None, stops),
+        other => Err(other),
+    })
+}
+
 /// Recovers this finger, or every finger if `finger` is none. `stops` was read when the request was admitted. A finger
 /// that was stopped since stays stopped.
 pub(super) fn recover(shared: &Shared, finger: Option<Finger>, stops: &Stops) -> Result<(), HandError> {
-    let mut recovered = recover_fingers(shared, finger, stops);
-    if recovered.as_ref().is_err_and(of_previous_owner) {
-        recovered = recover_fingers(shared, finger, stops);
-    }
+    let recovered = recover_fingers(shared, finger, stops);
     let stopped = shared.desk.lock().stop_again(stops);
     recovered.and(stopped)
-}
-
-/// Returns whether a finger that still ran when its recovery began has ended its motion since, because the previous
-/// owner was silent. This happens if the hand is acquired right after the end of the ownership. It cannot happen again
-/// in the next recovery, because the desk then keeps the set points of running fingers valid.
-fn of_previous_owner(error: &HandError) -> bool {
-    matches!(error, HandError::Faulted { fault, .. } if fault.kind == FaultKind::SetPointExpired)
 }
 
 /// Recovers this finger, or every finger at the same time if `finger` is none. A recovery can take seconds.

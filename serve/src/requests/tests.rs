@@ -58,10 +58,8 @@ fn an_acquire_that_the_owner_prevents_does_not_hold_up_a_recovery() {
     join(&shared);
 }
 
-/// The servo of a finger may count the silence of the previous owner a moment later than the server.
-#[test]
-fn a_finger_whose_set_point_expires_while_an_acquire_recovers_another_is_recovered_too() {
-    let shared = shared();
+/// Stops finger 1, and lets the set point of finger 2 expire while finger 1 takes up slack in its recovery.
+fn stop_and_expire(shared: &Shared) {
     shared.hand.stop(1).expect("finger 1");
     let begun = Instant::now();
     while !matches!(shared.hand.report(1).expect("finger 1").stage, Stage::Faulted(_)) {
@@ -70,9 +68,28 @@ fn a_finger_whose_set_point_expires_while_an_acquire_recovers_another_is_recover
     }
     let soon = Validity { end_after: Some(Duration::from_millis(50)), ..Validity::default() };
     shared.hand.keep_valid(2, soon).expect("finger 2");
+}
+
+/// The servo of a finger may count the silence of the previous owner a moment later than the server.
+#[test]
+fn a_finger_whose_set_point_expires_while_an_acquire_recovers_another_is_recovered_too() {
+    let shared = shared();
+    stop_and_expire(&shared);
     let answer = ask(&shared, "alice", Request { recover: true, ..ACQUIRE });
     assert_eq!((answer.code, answer.text.as_str()), (Code::Done, ""));
     assert_eq!(shared.hand.report(2).expect("finger 2").recoveries, 1, "the set point has expired");
+    join(&shared);
+}
+
+/// The owner may have fallen silent since its request.
+#[test]
+fn a_finger_whose_set_point_expires_during_a_recovery_for_the_owner_stays_stopped() {
+    let shared = shared();
+    let epoch = ask(&shared, "alice", ACQUIRE).epoch;
+    stop_and_expire(&shared);
+    let answer = ask(&shared, "alice", Request { action: Action::Recover, epoch, ..ACQUIRE });
+    assert_eq!(answer.code, Code::Stopped, "{answer:?}");
+    assert_eq!(shared.hand.report(2).expect("finger 2").recoveries, 0);
     join(&shared);
 }
 
