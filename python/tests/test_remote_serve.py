@@ -118,14 +118,16 @@ def test_a_planner_that_is_stopped_loses_the_hand(endpoint):
         assert planner.stdout.readline() == "holds\n"
         with sun2xp.remote.open("hand", endpoint, client="screen", read_only=True, stale=STALE) as screen:
             assert screen.status().owner == "planner"
+            seen = {screen.state(1).caught}
             planner.send_signal(signal.SIGSTOP)
-            # On a busy machine no State may arrive between the catch and the end state. The server counts both.
             end = time.monotonic() + 20
             while (screen.status().owner, screen.state(1).stage) != (None, "faulted") and time.monotonic() < end:
-                time.sleep(0.01)
+                if screen.state(1).stage == "running":
+                    seen.add(screen.state(1).caught)
+                time.sleep(0.01)  # Without a pause, the thread that receives would wait for the interpreter lock.
+            assert seen == {False, True} and screen.state(1).stage == "faulted"
             status = screen.status()
-            assert status.owner is None and screen.state(1).stage == "faulted"
-            assert (status.counts.caught, status.counts.ended) == (1, 1)
+            assert status.owner is None and (status.counts.caught, status.counts.ended) == (1, 1)
     finally:
         planner.kill()
         planner.wait()
