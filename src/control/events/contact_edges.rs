@@ -30,7 +30,7 @@ impl ContactEdges {
 
     pub fn observe(&self, before: &mut ContactBefore, contact: &ContactEstimate, observations: &mut Observations) {
         let ContactEstimate { force, touching, .. } = *contact;
-        let [x, y, z]: [f64; 3] = force.into();
+        let [x, y, z]: [f64; 3] = (-force).into();
         if touching != before.touching {
             let kind = if touching { ObservationKind::Contact } else { ObservationKind::ContactLost };
             observations.add(kind, Part::Finger, [x, y, z, 0.0]);
@@ -66,13 +66,13 @@ mod tests {
             observations.iter().map(|observed| (observed.kind, observed.values)).collect::<Vec<_>>()
         };
         assert_eq!(observed(0.05, false), []);
-        assert_eq!(observed(0.2, true), [(ObservationKind::Contact, [0.0, 0.2, 0.0, 0.0])]);
-        assert_eq!(observed(2.1, true), [(ObservationKind::ForceBound, [0.0, 2.1, 0.0, 2.0])]);
+        assert_eq!(observed(0.2, true), [(ObservationKind::Contact, [0.0, -0.2, 0.0, 0.0])]);
+        assert_eq!(observed(2.1, true), [(ObservationKind::ForceBound, [0.0, -2.1, 0.0, 2.0])]);
         for force in [1.9, 2.1, 1.85, 2.5] {
             assert_eq!(observed(force, true), []);
         }
         assert_eq!(observed(1.7, true), []);
-        assert_eq!(observed(-2.1, true), [(ObservationKind::ForceBound, [0.0, -2.1, 0.0, 2.0])]);
+        assert_eq!(observed(-2.1, true), [(ObservationKind::ForceBound, [0.0, 2.1, 0.0, 2.0])]);
         assert_eq!(observed(0.0, false), [(ObservationKind::ContactLost, [0.0; 4])]);
         assert_eq!(observed(0.0, false), []);
     }

@@ -5,15 +5,16 @@ use crate::model::Part;
 /// What a detector observes. The values of each observation are given in parentheses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ObservationKind {
-    /// The fingertip touches something (force at the tip in the finger's frame, N).
+    /// The fingertip touches something (force of the tip on its surroundings in the finger's frame, N).
     Contact,
-    /// The fingertip no longer touches anything (force at the tip in the finger's frame, N).
+    /// The fingertip no longer touches anything (force of the tip on its surroundings in the finger's frame, N).
     ContactLost,
-    /// The contact at the fingertip is about to slip (force at the tip in the finger's frame, N).
+    /// The contact at the fingertip is about to slip (force of the tip on its surroundings in the finger's frame, N).
     Slip,
     /// The tension of a tendon crosses a configured bound (tension and bound, N).
     TensionBound,
-    /// The force at the fingertip exceeds the configured bound (force in the finger's frame and bound, N).
+    /// The force at the fingertip exceeds the configured bound (force of the tip on its surroundings in the
+    /// finger's frame, and bound, N).
     ForceBound,
     /// A joint reaches its limit (angle and limit, rad).
     JointAtLimit,
@@ -21,8 +22,6 @@ pub enum ObservationKind {
     Arrived,
     /// The joints have come to rest after a change of the set point (joint angles, rad).
     Settled,
-    /// The finger has followed its path to the end (joint angles, rad).
-    PathEnded,
 }
 
 /// An observation with its location and values.

@@ -71,7 +71,7 @@ impl SlipDetector {
         let along = (force - normal * across).norm();
         if along > friction * across && state.pause == 0 {
             state.pause = self.pause;
-            observations.add(ObservationKind::Slip, Part::Finger, [force.x, force.y, force.z, 0.0]);
+            observations.add(ObservationKind::Slip, Part::Finger, [-force.x, -force.y, -force.z, 0.0]);
         }
     }
 }

@@ -63,7 +63,6 @@ impl From<&Observation> for Occurrence {
             ObservationKind::JointAtLimit => EventKind::JointAtLimit,
             ObservationKind::Arrived => EventKind::Arrived,
             ObservationKind::Settled => EventKind::Settled,
-            ObservationKind::PathEnded => EventKind::PathEnded,
         };
         Self { kind, part: observation.part, values: observation.values }
     }

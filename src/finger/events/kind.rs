@@ -19,7 +19,7 @@ pub struct Description {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ValueKind {
-    /// The three components of the force at the fingertip, in the finger's frame, N: three values.
+    /// The three components of the force of the tip on its surroundings, in the finger's frame, N: three values.
     Force,
     /// The angles of joints 0, 1 and 2, rad: three values.
     Joints,
@@ -41,7 +41,7 @@ pub enum ValueKind {
     Pressure,
     /// The number of the rule.
     Rule,
-    /// The time since the last command of the planner, ms.
+    /// The time since the last command of the planner or the last renewal of its validity, ms.
     Age,
 }
 
@@ -50,7 +50,7 @@ impl ValueKind {
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
-            ValueKind::Force => "force x, y, z at the tip in the finger's frame, N",
+            ValueKind::Force => "force x, y, z of the tip on its surroundings in the finger's frame, N",
             ValueKind::Joints => "angles of joints 0, 1, 2, rad",
             ValueKind::Angle => "angle, rad",
             ValueKind::Limit => "limit, rad",
@@ -61,7 +61,7 @@ impl ValueKind {
             ValueKind::Element => "number of the element",
             ValueKind::Pressure => "force on the element, N",
             ValueKind::Rule => "number of the rule",
-            ValueKind::Age => "time since the last command of the planner, ms",
+            ValueKind::Age => "time since the last command of the planner or the last renewal of its validity, ms",
         }
     }
 
