@@ -39,7 +39,7 @@ impl Action {
     }
 
     pub(crate) fn decode(number: u8) -> Result<Self, FieldError> {
-        within("action", u64::from(number), 1, 6)?;
+        within("action", u64::from(number), 1, Self::ALL.len() as u64)?;
         Ok(Self::ALL[usize::from(number) - 1])
     }
 }

@@ -145,9 +145,8 @@ impl Identification {
             return going(Step::Pressing, part, Activity::Tense(instruments.for_controller(tensions)));
         }
         let found = self.identified(&stiffness.solve(instruments)?, instruments)?;
-        let mut guide = JointGuide::new(instruments, sample, self.torque + self.friction_torque(instruments));
         // The finger still presses against its stops, so the return begins at its present pose.
-        guide.anchor = guide.joints;
+        let guide = JointGuide::new(instruments, sample, self.torque + self.friction_torque(instruments));
         self.phase = Phase::Return { guide, joint: 0, strained: 0.0, found };
         going(Step::Returning, 0.9, guide.activity(instruments, sample))
     }

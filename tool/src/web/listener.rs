@@ -99,6 +99,8 @@ impl Listener for Limited {
         loop {
             match self.next().await {
                 Ok(accepted) => return accepted,
+                // Only this connection has failed. The next one may be waiting.
+                Err(error) if matches!(error.kind(), ErrorKind::ConnectionAborted | ErrorKind::ConnectionReset) => {}
                 Err(_) => sleep(RETRY).await,
             }
         }
