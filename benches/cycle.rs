@@ -1,5 +1,5 @@
-//! Measures one servo cycle, from counts to motor torques: all of Figure 9, 10 or 11 of the report, or of state
-//! feedback. The controller of the report needed 1430 us.
+//! Measures one servo cycle, from counts to motor torques, with the complete controller of Figure 9, 10 or 11 of the
+//! report, or with state feedback. The controller of the report needed 1430 us.
 
 use divan::{Bencher, black_box};
 use nalgebra::{Matrix3, Vector3};
@@ -16,7 +16,8 @@ fn follow(bencher: Bencher, scheme: Scheme) {
     cycle(bencher, scheme, 1.0);
 }
 
-/// The required torque exceeds the tension limits, so the controller must compute the scale.
+/// The required joint torque needs tensions beyond their limits, so the controller must compute the fraction of the
+/// torque that the limits permit.
 #[divan::bench(args = [Scheme::Figure10, Scheme::StateFeedback])]
 fn follow_over_limit(bencher: Bencher, scheme: Scheme) {
     cycle(bencher, scheme, 40.0);

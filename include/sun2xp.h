@@ -351,11 +351,12 @@ typedef void (*sun2xp_log)(int severity, const char *text, void *user);
    callback   function to call with each message; null: messages go to standard error again
    user       third argument of each call of the function
 
- With a callback the library prints nothing. Instead it calls the callback: in a thread whose call is
- refused (the first refusal of each kind, unless hand.print_refusals is false), and in threads of the
- library that are not real-time, for example in the one that opens a hand. Several threads may call the
- callback at the same time. The callback must make no calls of the library, and must return. The text is
- valid only until the callback returns. There is one callback for all hands of the process.
+ With a callback the library calls it with each message, and prints nothing, except while sun2xp_set_log
+ replaces the callback. The library calls it in a thread whose call is refused (the first refusal of each
+ kind, unless hand.print_refusals is false), and in threads of the library that are not real-time, for
+ example in the one that opens a hand. Several threads may call the callback at the same time. The callback
+ must make no calls of the library, and must return. The text is valid only until the callback returns.
+ There is one callback for all hands of the process.
 
  When sun2xp_set_log has returned, the previous callback is not running and is not called again. A message
  that comes while sun2xp_set_log waits for the previous callback is printed.

@@ -32,7 +32,8 @@ fn terms(torque_limit: f64, hold_torque_limit: f64, torque_constant: f64) -> Ter
     }
 }
 
-/// Converts to N cm by whole nN m, independently of the library: this is the torque that the board will give.
+/// Converts a count to N cm, independently of the library. The product of count and unit is a whole number of nN m. The
+/// result is the torque that the board will give.
 fn newton_centimetres(count: i64, unit: u32) -> f64 {
     (count * i64::from(unit)) as f64 / 1e7
 }
@@ -119,7 +120,7 @@ proptest! {
     fn no_limit_is_exceeded(
         limit in 0.001..6000.0f64, hold in 0.0..1000.0f64, constant in 0.001..10_000.0f64, parts in 100.0..30_000.0f64,
     ) {
-        // A unit of at least 1 nN m. The limit is at most `parts` units.
+        // A unit of at least 1 nN m, rounded down. The limit is `parts` units or more, unless the unit is 1 nN m.
         let unit = ((limit * 1e7 / parts) as u32).max(1);
         match terms(limit, hold, constant).configure(&board(unit)) {
             Ok(configure) => {

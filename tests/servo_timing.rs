@@ -1,5 +1,5 @@
-//! Periods of a servo on simulated time: late periods are counted and skipped. Also tests the age of the feedback and
-//! the board's clock.
+//! Periods of a servo on simulated time: late cycles are counted, and the periods that pass meanwhile are skipped and
+//! counted. Also tests the age of the feedback and the board's clock.
 
 #[allow(dead_code)]
 #[path = "common/finger_on_a_cable.rs"]
@@ -27,7 +27,8 @@ struct Clocks {
     withheld: bool,
     /// Number of times that the host has read its clock since its last wake-up.
     readings: Cell<u32>,
-    /// A number of a reading, and the time that passes before it, ns. It passes once. Readings count from 1.
+    /// The number of a reading since the last wake-up, where the first is 1, and the time that passes before this
+    /// reading, ns. The time passes only once, and not in later cycles.
     busy: Cell<(u32, u64)>,
 }
 

@@ -101,7 +101,8 @@ impl Recording {
         }
     }
 
-    /// Returns which states the run has covered. A comparison is meaningful only if the run has covered these states.
+    /// Returns in how many cycles each exceptional state occurred. A comparison of another controller with this
+    /// recording is meaningful only if every one of these states occurred.
     pub fn seen(&self) -> String {
         let cycles = |met: fn(&Report) -> bool| self.reports.iter().filter(|report| met(report)).count();
         let (low, high) = self.finger.joint_limits();

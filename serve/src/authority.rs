@@ -1,5 +1,5 @@
-//! Checks of an authority that is in the folder already, and of the folder. Whoever can write there, or read the key of
-//! the authority, can make a certificate of every client.
+//! Checks of the folder of `--make-certificates`, and of a certificate authority that is in it already. Whoever can
+//! write in the folder, or read the key of the authority, can make a certificate in the name of any client.
 
 use crate::ServeError;
 use rcgen::KeyPair;

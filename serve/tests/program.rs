@@ -247,7 +247,7 @@ fn the_threads_of_the_network_are_ordinary_in_a_real_time_process() {
     assert_eq!(running.0.wait().expect("an end").code(), Some(0));
 }
 
-/// The help names them too.
+/// The manual page is packaging/sun2xp-serve.1. The help of the program names these signals too.
 #[test]
 fn the_manual_page_names_every_signal_that_ends_the_server() {
     let page = include_str!("../../packaging/sun2xp-serve.1");

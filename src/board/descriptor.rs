@@ -65,7 +65,8 @@ impl Descriptor {
         Ok(Self { number: file.into_raw_fd(), generation })
     }
 
-    /// Returns the number. Use it only directly after [`Descriptor::is_own`] returned true.
+    /// Returns the number. Read, write or change the file only directly after [`Descriptor::is_own`] returned true, or
+    /// while the file is being opened.
     pub fn number(&self) -> RawFd {
         self.number
     }

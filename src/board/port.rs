@@ -1,9 +1,9 @@
 //! A serial port for a servo.
 //!
 //! The port is read and written through its raw descriptor. No wait changes the signal mask, so no signal handler of a
-//! planner runs on the servo thread. No read or write allocates memory or waits past its deadline. Every use first
-//! checks the descriptor: if another part of the program has closed it, its number may now belong to a file of the
-//! planner.
+//! planner runs on the servo thread. No read or write allocates memory or waits past its deadline. Every read, write
+//! and flush of an open port first checks the descriptor: if another part of the program has closed it, its number may
+//! now belong to a file of the planner. The wait for input begins without this check, because it changes no file.
 #![allow(unsafe_code, reason = "the raw descriptor of the port")]
 
 mod opening;
@@ -49,7 +49,8 @@ impl Port {
         text.trim().parse().ok()
     }
 
-    /// Checks that the descriptor still refers to the port. Every use calls this first; it takes 0.25 us.
+    /// Checks that the descriptor still refers to the port. This check comes directly before every read, write and
+    /// flush. It takes 0.25 us.
     fn check_own(&self) -> Result<(), PortError> {
         if self.descriptor.is_own() { Ok(()) } else { Err(PortError::Closed) }
     }

@@ -12,8 +12,8 @@ const MOST_OF_PATH: usize = 240;
 const BEGINNING_OF_PATH: usize = 120;
 const END_OF_PATH: usize = 60;
 
-/// Displays a text from an external source. Control characters and other invisible characters are escaped. At most 60
-/// characters are shown.
+/// Displays a text from an external source. Backslashes, control characters, other invisible characters and combining
+/// marks are escaped. At most 60 characters are shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown<'a>(pub &'a str);
 
@@ -54,7 +54,8 @@ impl Display for ShownPath<'_> {
     }
 }
 
-/// Returns a message on one line, with invisible characters escaped. All other characters are unchanged.
+/// Returns a message on one line, with invisible characters and combining marks escaped. All other characters are
+/// unchanged, also backslashes.
 pub fn one_line(message: &str) -> String {
     let mut line = String::with_capacity(message.len());
     // Writing to a string cannot fail.

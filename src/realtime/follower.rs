@@ -17,8 +17,9 @@ const MOST: f64 = 5e-3;
 /// If the other clock has gained or lost more than the largest drift plus this number of periods, it has jumped.
 const JUMP: f64 = 2.0;
 
-/// Longest time between two readings from which the gain of the other clock is computed, s. It is shorter than half a
-/// turn of the counter. After a longer time the board may have restarted, and the count does not show the restart.
+/// Longest time between two readings, s, from which the loop computes how much the other clock has gained. It is
+/// shorter than half a turn of the counter. After a longer time the board may have restarted, and the count does not
+/// show the restart.
 const LONGEST_GAP: f64 = 0.03;
 
 /// Adjusts the period so that its length, measured with the other clock, is the nominal length. The other clock counts

@@ -60,7 +60,8 @@ const VIBRATION: f64 = 1.0;
 /// damping, and lets the finger vibrate at frequencies that no controller of 1000 Hz can damp. Only friction ends such
 /// a vibration.
 ///
-/// Friction and quantisation are left out because they only add a small persistent motion, or end a motion.
+/// Apart from this damper, Coulomb friction is left out, and so is quantisation, because they only add a small
+/// persistent motion, or end a motion.
 pub struct OneCycleMap {
     finger: ConfiguredFinger,
     /// Damper that stands for the friction of the joints at a wall, N m s/rad.
@@ -269,8 +270,8 @@ fn matching_simulation(finger: &ConfiguredFinger) -> ConfiguredFinger {
     finger.controller.set_point_speed = Some(1e3);
     finger.friction.motor_coulomb = [0.0; 4];
     finger.friction.conduit = [0.0; 4];
-    // The dither of the tensions depends on the time, and its amplitude depends on the measured amplitude. A linear map
-    // cannot have either dependence.
+    // The dither of the tensions depends on the time. Its commanded amplitude depends on the amplitude that is measured
+    // in the tensions. A linear map cannot have either dependence.
     finger.controller.tension_dither = Some(0.0);
     finger.friction.pulley = [0.0; 4];
     finger.friction.joint_coulomb = [0.0; 3];

@@ -14,9 +14,10 @@ pub struct Case {
     pub expected: FaultKind,
     /// Provokes the fault. Returns the affected part if the fault names one.
     pub inject: fn(&mut Bench) -> Injected,
-    /// Time for which the finger moves at least before the injection, ms.
+    /// Shortest time for which the finger moves before the injection, ms.
     pub after: u64,
-    /// Longest time until the motors reach their end state, ms, after the fault becomes detectable.
+    /// Longest permitted time after the fault becomes detectable, ms: until the motors reach their end state, or, for a
+    /// warning, until the warning is named.
     pub within: f64,
     /// Changes to the default configuration.
     pub configure: fn(&mut Configuration),
@@ -105,8 +106,8 @@ fn of_the_tendons() -> Vec<Case> {
             inject(bench, Defect::DeadGauge { gauge, count: None });
             at(gauge)
         })
-        // With this noise one count in five equals the previous one. A working gauge repeats one count for 16.5 ms only
-        // once in 10^11 samples.
+        // With the noise of the simulated gauges, 0.03 N rms, one count in five equals the previous one. A working
+        // gauge repeats one count for 16.5 ms only once in 10^11 samples.
         .from(0.0, |truth, _, _| truth.time > 0.0165),
         case("gauge reads zero", GaugeStuck, |bench| {
             let gauge = bench.part();
@@ -167,7 +168,7 @@ fn of_the_board() -> Vec<Case> {
     ]
 }
 
-/// Faults of the line between finger and servo. They are detectable at once at any rate.
+/// Faults of the line between finger and servo. They are detectable at once, whatever the rate of the servo is.
 pub fn of_the_line() -> Vec<Case> {
     use FaultKind::*;
     vec![
@@ -234,7 +235,8 @@ fn drift(bench: &mut Bench) -> Injected {
     inject(bench, Defect::DriftingGauge { gauge, speed: 20.0 * way });
     let mut drift = Vector4::zeros();
     drift[usize::from(gauge) - 1] = 20.0 * way;
-    // One equation cannot tell which of four gauges is wrong.
+    // The monitor compares gauges and encoders by one equation (`control/monitors/agreement.rs`), which cannot tell
+    // which of the four gauges is wrong.
     Injected { part: None, drift }
 }
 

@@ -139,8 +139,8 @@ fn a_planner_that_skips_its_exit_handlers_is_stopped_by_the_watchdogs() {
     }
 }
 
-/// A user who configures *hold* has something that must not fall. This applies to sun2xp_stop_all too, which holds with
-/// limited torque for a limited time.
+/// A user who configures *hold* has something that must not fall. With this end state, the boards therefore hold after
+/// sun2xp_stop_all too, with limited torque for a limited time.
 #[test]
 fn an_emergency_stop_releases_at_once_or_holds_for_a_while_as_configured() {
     let _turn = turn();

@@ -175,7 +175,8 @@ fn a_finger_recovers_only_on_request() {
     for _ in 0..200 {
         let state = second.state(2);
         assert!(!state.has(Status::CONFIGURED | Status::ENABLED) && state.limp(), "{state:?}");
-        // The queries must go on until the Hello is answered.
+        // This pause makes the 200 queries last at least 200 ms, so that they go on until the board has answered the
+        // Hello.
         std::thread::sleep(Duration::from_millis(1));
     }
     assert_eq!(fault(&hand, 2), Some(FaultKind::PortVanished));

@@ -173,7 +173,8 @@ fn fingers_that_recover_beside_one_that_faults_again_stay_where_they_are_found()
     close(hand);
 }
 
-/// The recovery of a finger includes the other fingers of its port. A caller that wants one of these waits for it.
+/// The recovery of a finger includes the other fingers of its port. A second caller that recovers one of those fingers
+/// meanwhile waits for the recovery that is in progress.
 #[test]
 fn a_finger_recovers_although_another_one_of_its_port_faults_again() {
     let _turn = turn();

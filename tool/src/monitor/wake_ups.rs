@@ -1,4 +1,4 @@
-//! The wake-up times of a finger's cycles in the last seconds, as a histogram.
+//! The wake-up delays of a finger's cycles in the last seconds, as a histogram.
 
 use serde::Serialize;
 use std::collections::VecDeque;
@@ -27,7 +27,7 @@ pub struct Histogram {
 }
 
 impl WakeUps {
-    /// Counts the cycle that began at `time`, ns. `nanoseconds` is its wake-up time.
+    /// Counts the cycle that began at `time`, ns. `nanoseconds` is its wake-up delay.
     pub fn note(&mut self, time: u64, nanoseconds: u32) {
         let microseconds = f64::from(nanoseconds) * 1e-3;
         let class = EDGES.partition_point(|&edge| edge < microseconds);
