@@ -132,6 +132,8 @@ fn ask(path: &Path, rates: &[u32]) -> Result<Vec<FoundFinger>, LinkError> {
                 let found = |(address, identity)| FoundFinger { address, identity };
                 return Ok(fingers.into_iter().map(found).collect());
             }
+            // A board has answered, so this bit rate is the right one.
+            Err(error @ (LinkError::WrongVersion { .. } | LinkError::Refused { .. })) => return Err(error),
             Err(error) => refusal = error,
         }
     }

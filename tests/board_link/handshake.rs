@@ -68,10 +68,13 @@ fn a_failed_handshake_names_its_reason() {
     assert!(matches!(error, LinkError::WrongAddress { address: 1, .. }), "{error}");
     assert!(error.to_string().contains("it has 4, 7:") && when < 1000 * MS, "{error}");
 
-    let (error, when) = failure(good_but(|message| {
+    let other_version = |message: &mut Message| {
         message.frame = Frame::Refused(Refused { request: 1, reason: Reason::Version, detail: 0x0302 });
-    }));
+    };
+    let (error, when) = failure(good_but(other_version));
     assert!(matches!(error, LinkError::WrongVersion { lowest: 2, highest: 3 }) && when == 0, "{error}");
+    let error = Link::new(OtherEnd::new(good_but(other_version), Vec::new())).identities(1000 * MS).unwrap_err();
+    assert!(matches!(error, LinkError::WrongVersion { lowest: 2, highest: 3 }), "{error}");
 
     let (error, _) = failure(good_but(|message| {
         if let Frame::Configured(configured) = &mut message.frame {

@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         print(name, busy, &measured);
     }
     println!(
-        "\nRound trips of {LENGTH} bytes, one each {} us. Medians over {} repeats of {} s. The ratio is to the same \
+        "\nRound trips of {LENGTH} bytes, one every {} us. Medians over {} repeats of {} s. The ratio is to the same \
          protection without Zenoh.\n",
         arguments.period_us, arguments.repeats, arguments.seconds
     );

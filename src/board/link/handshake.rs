@@ -89,13 +89,8 @@ impl<T: Transport> Link<T> {
         let hello = Frame::Hello(Hello { lowest_version: VERSION, highest_version: VERSION });
         while self.transport.now() < deadline {
             let Some(answer) = self.exchange(ANY_ADDRESS, hello, deadline)? else { continue };
-            match answer.frame {
-                Frame::Identity(identity) if identity.version == VERSION => return Ok((answer.address, identity)),
-                Frame::Identity(Identity { version, .. }) => {
-                    return Err(LinkError::WrongVersion { lowest: version, highest: version });
-                }
-                Frame::Refused(refused) => return Err(LinkError::Refused { address: answer.address, refused }),
-                _ => {}
+            if let Some(identity) = identity_in(&answer)? {
+                return Ok((answer.address, identity));
             }
         }
         Err(self.unidentified(ANY_ADDRESS, &before, began))
@@ -112,19 +107,11 @@ impl<T: Transport> Link<T> {
             let asked = if attempts >= 2 && attempts.is_multiple_of(2) { ANY_ADDRESS } else { address };
             attempts = attempts.saturating_add(1);
             let Some(answer) = self.exchange(asked, hello, deadline)? else { continue };
-            match answer.frame {
-                Frame::Identity(Identity { version, .. }) if version != VERSION => {
-                    return Err(LinkError::WrongVersion { lowest: version, highest: version });
+            match identity_in(&answer)? {
+                Some(identity) if answer.address == address => return Ok(identity),
+                Some(Identity { addresses, .. }) if addresses & 1 << address == 0 => {
+                    return Err(LinkError::WrongAddress { address, addresses });
                 }
-                Frame::Identity(identity) if answer.address == address => return Ok(identity),
-                Frame::Identity(identity) if identity.addresses & 1 << address == 0 => {
-                    return Err(LinkError::WrongAddress { address, addresses: identity.addresses });
-                }
-                Frame::Refused(Refused { reason: Reason::Version, detail, .. }) => {
-                    let [lowest, highest] = detail.to_le_bytes();
-                    return Err(LinkError::WrongVersion { lowest, highest });
-                }
-                Frame::Refused(refused) => return Err(LinkError::Refused { address: answer.address, refused }),
                 _ => {}
             }
         }
@@ -219,5 +206,19 @@ impl<T: Transport> Link<T> {
             self.foreign += 1;
         }
         Ok(())
+    }
+}
+
+/// Returns the identity in an answer to a Hello, or why the finger did not send one.
+fn identity_in(answer: &Message) -> Result<Option<Identity>, LinkError> {
+    match answer.frame {
+        Frame::Identity(identity) if identity.version == VERSION => Ok(Some(identity)),
+        Frame::Identity(Identity { version, .. }) => Err(LinkError::WrongVersion { lowest: version, highest: version }),
+        Frame::Refused(Refused { reason: Reason::Version, detail, .. }) => {
+            let [lowest, highest] = detail.to_le_bytes();
+            Err(LinkError::WrongVersion { lowest, highest })
+        }
+        Frame::Refused(refused) => Err(LinkError::Refused { address: answer.address, refused }),
+        _ => Ok(None),
     }
 }
