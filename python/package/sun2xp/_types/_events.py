@@ -31,8 +31,8 @@ class FingerFault:
 
     #: The fault that has stopped the finger; None if it has not stopped.
     stopped: Optional[FaultDescription]
-    #: The newest warning of the last second. If there is none and the system does not permit real time, this is the
-    #: warning about missing real time, which `warnings` does not count.
+    #: The newest warning of the last second. Without such a warning, it is the warning REALTIME_REFUSED if the system
+    #: has refused SCHED_FIFO to the servo, and otherwise None. `warnings` does not count REALTIME_REFUSED.
     warning: Optional[FaultDescription]
     #: Number of warnings since open. A warning that persists counts once.
     warnings: int
