@@ -190,9 +190,9 @@ static void one_stream(void)
         arrive(hello, sizeof hello);
         require(answered == before + 1, "a good frame was lost");
     }
-    /* Silence longer than any watchdog and hold time must stop every motor. */
+    /* Silence longer than the longest watchdog and hold times together, 131 s, must stop every motor. */
     if (below(64) == 0) {
-        fake_wait(&board, 70000000);
+        fake_wait(&board, 132000000);
         for (unsigned n = 0; n < FAKE_FINGERS; n++)
             require(fingers[n].state != FINGER_ENABLED && !fingers[n].holding, "the watchdog did not trip");
     }

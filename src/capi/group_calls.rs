@@ -8,8 +8,8 @@ use crate::capi::fingers::fingers;
 use crate::capi::hand_table;
 use crate::capi::handle::{Handle, sun2xp_hand};
 use crate::capi::long_operations;
-use crate::capi::memory::{load, load_rows};
-use crate::capi::refusal::Refusal;
+use crate::capi::memory::{load, load_rows, non_null};
+use crate::capi::refusal::{Refusal, Wanted};
 use crate::capi::sized_struct::SizedStruct;
 use crate::hand::{self, SetPointError};
 use crate::model::configuration::FINGERS;
@@ -96,6 +96,10 @@ pub unsafe extern "C" fn sun2xp_send_group(
         let commands = match count {
             // There is no first set point from which a size could be read.
             0 => Ok(([hand::FingerCommand::default(); FINGERS], 0)),
+            ..0 => {
+                non_null(set_points, "set_points", Wanted::Struct("sun2xp_set_point"))?;
+                Err(wrong_number(count))
+            }
             // SAFETY: by the contract in the manual, `set_points` is null, or there are `count` set points with as many
             // bytes as the first member of the first one gives.
             _ => unsafe { load_commands(count, &SizedStruct::new(set_points, "set_points")?) },
@@ -174,19 +178,23 @@ fn time_limit(seconds: f64) -> Result<Duration, Refusal> {
     }
 }
 
+fn wrong_number(count: c_int) -> Refusal {
+    hand::HandError::from(SetPointError::GroupSize(count)).into()
+}
+
 /// Copies the commands of a group, and returns them with their number.
 ///
 /// # Safety
-/// `count` is not 0. There are `count` commands with the size of the first one, and their pointers are null or point to
-/// their arrays.
+/// `count` is positive. There are `count` commands with the size of the first one, and their pointers are null or point
+/// to their arrays.
 unsafe fn load_commands(
     count: c_int,
     commands: &SizedStruct<sun2xp_set_point>,
 ) -> Result<([hand::FingerCommand; FINGERS], usize), Refusal> {
     let mut loaded = [hand::FingerCommand::default(); FINGERS];
-    let number = usize::try_from(count).ok().filter(|&number| number <= FINGERS);
-    let number = number.ok_or(hand::HandError::from(SetPointError::GroupSize(count)))?;
     commands.check()?;
+    let number = usize::try_from(count).ok().filter(|&number| number <= FINGERS);
+    let number = number.ok_or_else(|| wrong_number(count))?;
     for (place, loaded) in loaded[..number].iter_mut().enumerate() {
         // SAFETY: the size is right, as checked above, and by the contract of this function there are `number`
         // commands.

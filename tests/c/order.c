@@ -65,7 +65,7 @@ static void small_structs(void)
     REFUSED("sun2xp_object", sun2xp_object(HAND, &Object), "size");
     Object.size = sizeof Object;
     REFUSED("sun2xp_object", sun2xp_object(HAND, &Object), "no simulated object");
-    REFUSED("sun2xp_send_group", sun2xp_send_group(HAND, 1, Command), "size");
+    REFUSED("sun2xp_send_group", sun2xp_send_group(HAND, 9, Command), "size");
     REFUSED("sun2xp_next_event", sun2xp_next_event(HAND, &Event), "size");
     REFUSED("sun2xp_touch", sun2xp_touch(HAND, 9, 9, &Touch), "size");
     REFUSED("sun2xp_install_reflex", sun2xp_install_reflex(HAND, 9, &Rule), "size");
@@ -76,7 +76,7 @@ static void small_structs(void)
     Limits.size = sizeof Limits;
     Torques.size = sizeof Torques;
     Pose.size = sizeof Pose;
-    REFUSED("sun2xp_send_path", sun2xp_send_path(HAND, 9, 2, Path, NAN), "size");
+    REFUSED("sun2xp_send_path", sun2xp_send_path(HAND, 9, 999, Path, NAN), "size");
     Path[0].size = Path[1].size = sizeof Path[0];
     Command[0].size = Command[1].size = sizeof Command[0];
     Status.size = sizeof Status;
