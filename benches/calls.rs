@@ -27,7 +27,7 @@ fn main() {
     let mut attempts = 0;
     // SAFETY: the call takes no arguments. Without a configuration file it opens the default simulated hand.
     while unsafe { OpenHand() } != 0 {
-        // SAFETY: HandError returns a C string that lives until this thread's next call.
+        // SAFETY: HandError returns a C string that is valid until this thread's next refused call.
         let reason = unsafe { CStr::from_ptr(HandError()) }.to_string_lossy();
         attempts += 1;
         eprintln!("attempt {attempts} of {ATTEMPTS} to open the simulated hand: {reason}");

@@ -105,7 +105,7 @@ pub mod monitoring {
     pub use crate::model::configuration::ConfiguredTelemetry;
 }
 
-/// Commands to several fingers that take effect in the same cycle, and waiting until fingers have arrived or settled.
+/// Commands to several fingers that take effect in the same period, and waiting until fingers have arrived or settled.
 pub mod groups {
     pub use crate::hand::{FingerCommand, Pose, Until, Waiting};
 }

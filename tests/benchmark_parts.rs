@@ -48,7 +48,7 @@ fn a_torque_that_is_nan_does_not_agree() {
         wrong[motor] = f64::NAN;
         assert!(apart(&wrong, &theirs).is_nan() && apart(&theirs, &wrong).is_nan(), "motor {motor}");
     }
-    // One cycle of the run suffices, whatever follows.
+    // If the difference of one cycle is NaN, the largest difference of the run is NaN, whatever follows.
     assert!(larger(larger(0.0, f64::NAN), 1e-12).is_nan() && larger(1e-12, f64::NAN).is_nan());
     assert_eq!((larger(1.0, 2.0), larger(2.0, 1.0)), (2.0, 2.0));
 }

@@ -7,8 +7,8 @@ use proptest::prelude::*;
 use stuffing::stuffed;
 use sun2xp::board::protocol::*;
 
-/// Encodes a frame as the page describes it, independently of the library: a bitwise checksum, and stuffing by
-/// splitting at zeros.
+/// Encodes a frame as docs/board-protocol.md describes it, independently of the library: a bitwise checksum, and
+/// stuffing by splitting at zeros.
 fn sealed(content: &[u8]) -> Vec<u8> {
     let mut register = u32::MAX;
     for &byte in content {

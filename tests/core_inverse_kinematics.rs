@@ -17,7 +17,8 @@ fn configured() -> InverseKinematics {
     InverseKinematics::new(LINKS, ConfiguredFinger::default().joint_limits())
 }
 
-/// Within the limits of the default finger, which include only part of the solutions for one elbow.
+/// Joint angles within the limits of the default finger. These limits admit only one of the two elbows, and only some
+/// of its solutions.
 fn admissible() -> impl Strategy<Value = Vector3<f64>> {
     let degrees = (-60.0..60.0f64, -30.0..100.0f64, 5.0..120.0f64);
     degrees.prop_map(|(a, b, c)| Vector3::new(a, b, c).map(f64::to_radians))

@@ -212,8 +212,8 @@ fn a_frictionless_point_slides() {
     assert_eq!(eigenvalues.iter().filter(|&&value| value.abs() > 1e-9).count(), 1);
 }
 
-/// A soft finger that is turned away keeps its direction beyond half a turn. Contact type 4 resists the rotation about
-/// the normal, here the axis of joints 1 and 2.
+/// The torque of a soft finger keeps its direction when the finger is turned away by more than half a turn. Contact
+/// type 4 resists the rotation about the normal, here the axis of joints 1 and 2.
 #[test]
 fn beyond_half_a_turn_the_torque_of_a_soft_finger_keeps_its_direction() {
     let theta = Vector3::new(0.0, -0.5, 0.1);

@@ -21,7 +21,7 @@ struct Command {
     filter: String,
     /// Whether only tests that are marked `#[ignore]` run.
     only_ignored: bool,
-    /// Whether these tests run too.
+    /// Whether tests that are marked `#[ignore]` run too.
     include_ignored: bool,
 }
 

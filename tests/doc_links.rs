@@ -4,8 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the pages: README, CHANGELOG and SECURITY, and the pages of docs/, of the firmware, of protocol/ and of the
-/// Python package.
+/// Returns the pages: README, CHANGELOG and SECURITY, and the pages of docs/, of the firmware, of protocol/, of models/
+/// and of the Python package.
 fn pages() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folders = [".", "docs", "firmware", "firmware/stm32f405", "protocol", "models", "python"];

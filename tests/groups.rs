@@ -16,7 +16,7 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Schedule;
 use sun2xp::simulated::SimulatedCable;
 
-/// Number of groups that the test with punctual servos sends.
+/// Number of groups that each test with random moments sends.
 const GROUPS: u32 = 10_000;
 
 /// Pseudo-random numbers (xorshift).

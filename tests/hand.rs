@@ -91,7 +91,7 @@ fn two_hands_live_in_one_process() {
     settles(&other, 2, TARGET);
 }
 
-/// The end state itself is tested on boards of their own, in tests/hand_ports/endings.rs.
+/// The end state itself is tested on boards in other processes, in tests/hand_ports/endings.rs.
 #[test]
 fn fingers_on_one_thread_whose_end_state_is_hold_go_where_they_are_sent() {
     let mut configuration = Configuration::default();
@@ -114,7 +114,7 @@ fn a_pushed_finger_gives_way_like_its_spring() {
     let (before, at_rest) = (hand.position(1).expect("position"), tip());
     let force = Vector3::new(0.0, 0.0, -1.0);
     hand.push_simulated(1, force.into()).expect("pushed");
-    // The initial stiffness is 3 N/cm. The tip must stay where this spring yields to.
+    // The initial stiffness is 3 N/cm. The tip must move to where this spring yields, and stay there.
     let expected = force / 3.0;
     let limit = Instant::now() + Duration::from_secs(10);
     let mut since = Instant::now();

@@ -144,8 +144,8 @@ fn a_limp_finger_is_refused_with_the_calls_that_end_this() {
     assert!(matches!(refused, HandError::Faulted { finger: FingerNumber::TWO, .. }), "{refused}");
 }
 
-/// Two fingers at once: one is zeroed against its stops, the other, whose tendons are not as stiff as configured, is
-/// identified.
+/// Two fingers at once: one is zeroed against its stops. The other, whose tendons differ in stiffness from the
+/// configuration, is identified.
 #[test]
 fn fingers_are_zeroed_against_their_stops_and_identified() {
     let mut configuration = read_default();

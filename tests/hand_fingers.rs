@@ -120,7 +120,7 @@ fn the_bound_can_fall_below_the_initial_stiffness() {
     hand.adjust(1, "stiffness.bound = 2").expect("adjusted");
     assert_eq!(hand.limits(1).expect("limits").stiffness, 2.0);
     assert!(hand.send_stiffness(1, [[2.5, 0.0, 0.0], [0.0, 2.5, 0.0], [0.0, 0.0, 2.5]]).is_err());
-    // The file in which a hand begins must have an initial stiffness within the bound.
+    // The configuration with which a hand is opened must have an initial stiffness within the bound.
     let mut configuration = slow();
     configuration.fingers[0].stiffness.bound = Some(2.0);
     let refused = Hand::open(configuration).err().expect("refused");

@@ -158,7 +158,7 @@ fn state_feedback_carries_its_stiffness_against_walls() {
     assert!(found.stiffness >= 6.0 && found.uncovered.is_empty(), "{found:?}");
 }
 
-/// Figure 10 is stable on the plant of its model. With one more cycle of delay, some samples are unstable even with the
+/// Figure 10 is stable on the nominal plant. With one more cycle of delay, some samples are unstable even with the
 /// softest spring of the search.
 #[test]
 fn a_plant_of_the_set_is_unstable_although_the_nominal_plant_is_stable() {

@@ -15,7 +15,7 @@ use tempfile::{TempDir, tempdir};
 const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500 # slow cable\n\n[finger.encoder]\n\
      zero = [1, 2, 3, 4]\n\n[finger.2.tendon]\nstiffness = [ 300.0, 300, # new\n  310.0, 300.0 ] # N/cm\n";
 
-/// A worker that stores the same kind of finding repeatedly. No two workers store the same kind.
+/// A worker that stores the same kind of finding repeatedly. No two workers store the same kind for the same finger.
 #[derive(Clone, Copy, Debug)]
 struct Worker {
     finger: FingerNumber,

@@ -1,7 +1,7 @@
-//! Lists what this run of `cargo test` has skipped because tools are missing. Cargo runs the test programs of a package
-//! in alphabetical order, so this program runs last. The library and the tool both have it. Each copy lists the tests
-//! that were skipped since the other copy ran. This program does not use libtest: a filter of test names would skip it,
-//! and its output would be captured.
+//! Lists what this run of `cargo test` has skipped, for example because a tool is missing. Cargo runs the test programs
+//! of a package in alphabetical order, so this program runs last. The library and the tool both have it. Each copy
+//! lists the tests that were skipped since the other copy ran. This program does not use libtest: a filter of test
+//! names would skip it, and its output would be captured.
 
 #[allow(dead_code)]
 #[path = "common/tools.rs"]

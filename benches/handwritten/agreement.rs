@@ -10,6 +10,6 @@ pub fn larger(a: f64, b: f64) -> f64 {
 pub fn apart(ours: &[f64; 4], theirs: &[f64; 4]) -> f64 {
     let apart = ours.iter().zip(theirs).map(|(ours, theirs)| (ours - theirs).abs()).fold(0.0, larger);
     let largest = theirs.iter().map(|torque| torque.abs()).fold(0.0, larger);
-    // Without torques there is nothing to relate a difference of zero to.
+    // If all torques are zero, the quotient would be 0 / 0.
     if apart == 0.0 { 0.0 } else { apart / largest }
 }

@@ -1,4 +1,4 @@
-//! Compiles and loads `step.c`, and defines the structures of its interface.
+//! Compiles and loads `step.c`, and defines the structures of its interface other than `struct parameters`.
 
 use crate::parameters::Parameters;
 use std::error::Error;

@@ -4,7 +4,8 @@
  * fingertip that is a spring with the report's law. Gravity compensation is off in both. This step does not estimate
  * the contact force, which the library does in every step.
  *
- * The units are those of the library: rad, cm, N, N cm, s. by_hand.rs repeats the structures of structures.h.
+ * The units are those of the library: rad, cm, N, N cm, s. parameters.rs and by_hand.rs repeat the structures of
+ * structures.h.
  */
 #include <math.h>
 #include <stddef.h>

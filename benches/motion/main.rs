@@ -23,7 +23,7 @@ use sun2xp::model::{FingerNumber, InverseKinematics};
 /// The pose at which the circle begins, rad.
 const START: Vector3<f64> = Vector3::new(0.2, 0.6, 1.1);
 
-/// Time in which the speed along the circle rises and falls, s.
+/// Time in which the speed along the circle rises, and time in which it falls, s.
 const RAMP: f64 = 0.5;
 
 const TURNS: f64 = 3.0;

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-/// A measurement is repeated until this number of measurements has failed. Later ones are skipped.
+/// A measurement that fails is repeated, until this number of measurements has failed in total. Later ones are skipped.
 pub const MOST_DISTURBED: usize = 10;
 
 /// What has become of the measurements.
@@ -30,8 +30,8 @@ impl Attempts {
         None
     }
 
-    /// Checks that something was measured of everything. Each entry has a name and the number of measurements that have
-    /// succeeded.
+    /// Checks that every entry has at least one measurement that has succeeded. An entry has a name and the number of
+    /// these measurements.
     ///
     /// # Errors
     /// Returns the names of what was not measured at all.

@@ -71,9 +71,13 @@ impl UnknownFinger {
         let controlled = Calibration::controlled(belief, self.rate);
         let controller = Controller::new(&controlled, self.rate).expect("the default controller");
         let mut state = controller.start(&self.read());
-        for _ in 0..(0.3 * self.rate) as usize {
+        // A finger that does not come under tension is refused by the routine.
+        for cycle in 0..(10.0 * self.rate) as usize {
             let feedback = self.read();
-            self.advance(&controller, &mut state, &feedback, &Activity::TakeUpSlack);
+            let report = self.advance(&controller, &mut state, &feedback, &Activity::TakeUpSlack);
+            if report.under_tension && cycle as f64 > 0.3 * self.rate {
+                break;
+            }
         }
         let mut calibration = Calibration::new(task, belief, self.rate).expect("the default finger");
         let mut report = Report::default();

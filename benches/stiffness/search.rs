@@ -59,7 +59,7 @@ pub fn run(arguments: &Arguments, only: &str) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns the cost of one finger. The numbers are the goals, in the units of [`Trial`].
+/// Returns the cost of one finger. The constants are the goals, in the units of [`Trial`].
 fn cost_of(all: &[Vec<Trial>]) -> f64 {
     let most = |of: &dyn Fn(&Trial) -> f64, goal: f64| (worst(all.iter().flatten().map(of)) / goal).min(MOST).powi(4);
     most(&|trial| worst(trial.error), 0.1)

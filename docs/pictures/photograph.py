@@ -39,7 +39,7 @@ def photograph(sessions, profile, address, file, seconds):
     session = f"{sessions}/{session['sessionId']}"
     try:
         post(f"{session}/url", {"url": address})
-        # The plots of the page fill.
+        # During this time, the plots of the page fill with data.
         time.sleep(seconds)
         with urllib.request.urlopen(f"{session}/screenshot") as answer:
             picture = base64.b64decode(json.load(answer)["value"])

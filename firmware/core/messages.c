@@ -20,7 +20,7 @@ void read_configure(const struct frame *frame, struct configure *configure)
     }
 }
 
-/* Converts to two's complement. An out-of-range conversion would be implementation-defined. */
+/* Converts from two's complement. A cast of an out-of-range value would be implementation-defined. */
 static int16_t as_signed(uint16_t value)
 {
     return (int16_t)(value < 0x8000u ? (int32_t)value : (int32_t)value - 0x10000);

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-/* us since power-up. The interrupt of the line calls it too. */
+/* Returns the time since power-up, us. The interrupt of the line calls this function too. */
 uint32_t time_microseconds(void);
 
 #endif

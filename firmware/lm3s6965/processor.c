@@ -38,7 +38,7 @@ enum { CLOCK_MEGAHERTZ = 50, WAKE_UP_MICROSECONDS = 500, BAUD = 1000000 };
 
 const uint8_t processor_name[8] = {'l', 'm', '3', 's', '6', '9', '6', '5'};
 
-/* Wakes the main loop, which is its only purpose. */
+/* The only purpose of this interrupt is to wake the main loop. */
 void wake_up_interrupt(void)
 {
     *timer_interrupt_clear = 1;

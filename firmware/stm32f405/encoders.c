@@ -6,8 +6,8 @@
 
 static struct timer *const timers[MOTORS] = {TIM2, TIM5, TIM3, TIM4};
 
-/* An edge counts after it has been stable for 6 samples at half of the 84 MHz: 0.14 us (18.4.7, ICxF = 4). So an
-   encoder may deliver 3 million edges per second. */
+/* An edge counts after it has been stable for 6 samples at half of the timer clock of 84 MHz: 0.14 us (18.4.7,
+   ICxF = 4). So an encoder may deliver 3 million edges per second. */
 enum { FILTER = 4 };
 
 static uint32_t raw[MOTORS];

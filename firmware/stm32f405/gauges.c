@@ -12,7 +12,7 @@
    4.15 us and a word 1.6 us. */
 enum { ROUNDS = 200 };
 
-/* Conversions in a row that may fail. The next failure is reported: 6 ms at 500 Hz. */
+/* Number of conversions in a row that may fail. The next failure is reported. Three conversions take 6 ms at 500 Hz. */
 enum { FAILURES_MOST = 2 };
 
 static uint16_t latest[MOTORS];

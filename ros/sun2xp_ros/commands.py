@@ -1,4 +1,4 @@
-"""The topics that move the hand. A command that the hand cannot execute changes nothing, and the log says why."""
+"""The topics that move the hand. A command that the hand cannot execute is refused, and the log says why."""
 
 from __future__ import annotations
 

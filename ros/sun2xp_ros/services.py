@@ -45,7 +45,7 @@ class Services:
             try:
                 done.set_result(self._answer(fingers, action, request, response))
             except BaseException as defect:
-                # The node ends with it, as with an exception of any other callback. A planner must not wait for ever.
+                # This exception ends the node, as in any other callback. A planner must not wait for ever.
                 done.set_exception(defect)
 
         self._waiting.submit(work)
@@ -57,7 +57,7 @@ class Services:
             try:
                 said.append(f"finger {finger} {action(finger)}")
             except Exception as refusal:
-                # After a defect of one finger, the other fingers must be stopped too.
+                # If the service stop fails for one finger, it must still stop the others.
                 text = str(refusal) if isinstance(refusal, sun2xp.Error) else f"finger {finger}: {refusal!r}"
                 response.success = False
                 said.append(text)

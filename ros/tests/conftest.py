@@ -102,8 +102,8 @@ class Planner:
     def wait(self, topic, condition=lambda message: True):
         """Waits for a message that arrives after this call and fulfils the condition, and returns it.
 
-        For the log, it is a line that arrives after the last message was published. The node may write this line before
-        this call.
+        On /rosout, every line since the last published message counts, because the node may write its line before this
+        call.
         """
         deadline = time.monotonic() + LONGEST
         with self.changed:

@@ -168,7 +168,7 @@ def test_a_stiffness_is_taken_in_newtons_a_metre(planner):
     planner.wait("/rosout", refused("3 x 3"))
     count = len(planner.received["/rosout"])
     planner.stiffnesses.publish(Float64MultiArray(data=numpy.diag([200.0, 200.0, 100.0]).ravel().tolist()))
-    # The node takes the messages of a topic one after the other: with this refusal, the message before it was taken.
+    # The node takes the messages of a topic in order: when it refuses this message, it has taken the one before.
     planner.stiffnesses.publish(Float64MultiArray(data=[1.0]))
     planner.wait("/rosout", refused("3 x 3"))
     lines = [line.msg for line in planner.received["/rosout"][count:] if refused("stiffness")(line)]

@@ -30,7 +30,7 @@ const GOAL: f64 = 1.1;
 
 #[derive(Parser)]
 struct Arguments {
-    /// Number of turns of each side.
+    /// Number of turns of each arrangement: no clients, clients at another server, and clients at the server.
     #[arg(long, default_value_t = 6)]
     turns: usize,
     /// Duration of a turn, s.

@@ -218,8 +218,8 @@ mod tests {
         }
     }
 
-    /// The protocol demands this of every record of a finger that has stopped, also of the record of the cycle in which
-    /// the finger faulted.
+    /// The protocol demands that no record of a stopped finger has a set point or a force, not even the record of the
+    /// cycle in which the finger faulted.
     #[test]
     fn a_finger_that_stops_has_neither_set_point_nor_force() {
         let mut configuration = Configuration::default();

@@ -47,7 +47,7 @@ pub enum ServeError {
     /// A certificate cannot be made, read or written.
     #[error("{}: {reason}", path.display())]
     Certificate {
-        /// The file.
+        /// The file, or the folder of the certificates.
         path: PathBuf,
         /// What is wrong, with the remedy.
         reason: String,
@@ -78,7 +78,7 @@ impl ServeError {
         Self::System { doing, reason: with_remedy(error) }
     }
 
-    /// The error about this file of a certificate.
+    /// The error about this file of a certificate, or about the folder of the certificates.
     pub(crate) fn certificate(path: &Path, reason: impl ToString) -> Self {
         Self::Certificate { path: path.into(), reason: reason.to_string() }
     }

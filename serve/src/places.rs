@@ -1,4 +1,5 @@
-//! Places of queries that wait for their answer. A client that asks faster than it reads takes no place from others.
+//! Places of queries that wait for their answer. A client that asks faster than it reads takes no place from the
+//! Requests of other clients.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

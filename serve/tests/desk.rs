@@ -44,7 +44,8 @@ fn a_part_with_a_path_and_a_stiffness_is_applied_as_a_whole() {
     assert_eq!(rig.report(1).set_point.stiffness[(0, 0)], STIFF[0][0]);
 }
 
-/// The hand admits more rounding at the lower limit of joint 2, 5 degrees, than this limit itself has as `float`.
+/// The hand admits the rounding error of the larger limit of a joint at both limits. At the lower limit of joint 2,
+/// 5 degrees, this is more than the rounding error of the limit itself as `float`.
 #[test]
 fn the_lead_bounds_the_force_of_a_limit_that_was_rounded() {
     let mut rig = Rig::new("lead_force = 1.0");

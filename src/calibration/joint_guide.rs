@@ -66,7 +66,7 @@ impl JointGuide {
         let torques = instruments.hold.torques(&(self.anchor - self.joints), &slip, self.limit);
         let common = instruments.pretension * (self.common / instruments.minimum);
         let tensions = instruments.distribution.distribute(&torques).tensions + common;
-        // Only if something blocks the finger can a sum exceed t_max.
+        // The sum can exceed t_max only if something blocks the finger.
         let tensions = tensions.map(|tension| tension.min(instruments.maximum));
         Activity::Tense(instruments.for_controller(tensions))
     }

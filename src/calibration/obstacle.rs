@@ -4,7 +4,7 @@ use super::causes::{DOES_NOT_RETURN, NARROW, STAYS_BEHIND, WIDE};
 use crate::model::Part;
 use thiserror::Error;
 
-/// The reason for a refusal, and its remedy. A routine that is refused changes nothing.
+/// The reason for a refusal, and its remedy. A routine that is refused changes no value of the configuration.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum Obstacle {

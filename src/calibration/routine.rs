@@ -156,8 +156,8 @@ impl Calibration {
 mod tests {
     use super::*;
 
-    /// With state feedback, only calibrations use these two gains, so a reader must not take the values for Figure 10
-    /// as the values in force.
+    /// With state feedback, only calibrations use `tension_gain` and `tension_integral`. Without their values in a
+    /// calibration, a reader of the reference would take the values for Figure 10 as those in force.
     #[test]
     fn the_reference_gives_the_gains_of_a_calibration() {
         let controller = Calibration::controlled(&ConfiguredFinger::default(), GENTLE_RATE).controller;

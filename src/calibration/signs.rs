@@ -74,7 +74,7 @@ enum Phase {
         seconds: f64,
     },
     Sweep(Sweep),
-    /// Every sign is known.
+    /// Every sign is known, except that of a gauge that has never responded.
     Wiring(Wiring),
 }
 

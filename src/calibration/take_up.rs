@@ -43,7 +43,7 @@ impl TakeUp {
         }
         if self.seconds > LIMIT {
             // Motors with much static friction may stick and slip without end, so they never count as at rest. Their
-            // tendons are tight nevertheless.
+            // tendons can be tight nevertheless.
             if tensions.min() >= TIGHT * instruments.minimum {
                 return Ok(None);
             }

@@ -1,9 +1,9 @@
 //! The entry and exit of every call. No panic leaves a call, and no cancellation interrupts it. Every call restores the
 //! planner's floating-point environment and signal mask. A successful call also restores the planner's errno.
 //!
-//! A quick call runs in the planner's thread. A slow call runs in its own thread, and the planner's thread waits for
-//! it. So a slow call needs little of the planner's stack. If a signal handler jumps out of the wait (siglongjmp),
-//! nothing stays locked, because the call continues to its end.
+//! A quick call runs in the planner's thread. A slow call runs in its own thread (see [`delegated_or_done_here`] for an
+//! exception), and the planner's thread waits for it. So a slow call needs little of the planner's stack. If a signal
+//! handler jumps out of the wait (siglongjmp), nothing stays locked, because the call continues to its end.
 
 use crate::capi::forked::is_forked_child;
 use crate::capi::handle::Handle;

@@ -102,8 +102,8 @@ impl HandEvents {
     }
 
     /// Ends the callback that was replaced. Then waits until no removed callback runs, unless `in_callback` is true. A
-    /// callback that has removed itself may still be running although no callback was installed. The caller must hold
-    /// no lock, because the callback may make calls that need it.
+    /// callback that has removed itself may still be running although `previous` is `None`. The caller must hold no
+    /// lock, because the callback may make calls that need it.
     pub fn end_previous(&self, previous: Option<Listener>, in_callback: bool) {
         if let Some(previous) = previous {
             previous.end(in_callback);

@@ -24,7 +24,7 @@ pub(super) const MOST_HANDS: usize = 16;
 /// The place of the hand of OpenHand in the table.
 pub(super) const DEFAULT: usize = 0;
 
-/// Number of places in the table: that of the hand of OpenHand, and those of the hands of sun2xp_open.
+/// Number of places in the table: one for the hand of OpenHand, and one for each hand of sun2xp_open.
 pub(super) const PLACES: usize = MOST_HANDS + 1;
 
 /// Bits of the place in the table.

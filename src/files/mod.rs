@@ -19,8 +19,8 @@ pub use update::{UpdateError, update_file};
 
 use std::io::{Error, ErrorKind};
 
-/// Returns the remedy of an error in writing a file, as a sentence after its text. Returns no text if the error itself
-/// tells what to change: errors of [`update_file`], and the system's reports of a full disk and others.
+/// Returns the remedy of an error in writing a file, as a sentence after its text. Returns no text for any other
+/// error, because the texts of these errors already show what to change, for example that the disk is full.
 pub fn write_remedy(error: &Error) -> &'static str {
     match error.kind() {
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {

@@ -1,4 +1,4 @@
-//! Writes complete files: under a temporary name in the same folder, and then moved to their place in one step.
+//! Writes each file completely under a temporary name in its folder, and then moves it to its place in one step.
 
 use super::regular::check_kind;
 use std::collections::hash_map::RandomState;

@@ -19,7 +19,7 @@ const LOOKING: Duration = Duration::from_millis(5);
 /// has already been replaced.
 #[derive(Debug)]
 pub enum UpdateError<E> {
-    /// The system reported an error, or another process did not release the file.
+    /// An error that the system reported, or an error of one of the kinds that [`update_file`] lists.
     File(io::Error),
     /// The change was refused. The function that changes the text returned this error.
     Change(E),
@@ -45,7 +45,7 @@ impl<E> From<io::Error> for UpdateError<E> {
 /// - [`io::ErrorKind::InvalidInput`] if the path does not lead to a regular file
 /// - [`io::ErrorKind::InvalidData`] if the file is not UTF-8 text
 /// - [`io::ErrorKind::FileTooLarge`] if the file has more than `largest` bytes
-/// - [`io::ErrorKind::ResourceBusy`] if other threads or processes do not release the file in time
+/// - [`io::ErrorKind::ResourceBusy`] if other threads or processes do not release the file in time, or keep changing it
 /// - [`io::ErrorKind::Unsupported`] if the file system does not support locks
 pub fn update_file<E>(
     path: &Path,

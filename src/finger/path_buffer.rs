@@ -1,5 +1,5 @@
-//! The path that a planner sends to a servo. The tables are large, so they have pages of their own: only the struct
-//! moves through the stack.
+//! The path that a planner sends to a servo. Its tables of pieces and of stiffnesses are large, so they have pages of
+//! their own: only the struct moves through the stack.
 
 use crate::control::motion::{PathTable, TimedStiffness};
 use crate::model::path::Piece;

@@ -20,7 +20,7 @@ pub struct Replayed {
     pub cycles: usize,
     /// Cycles whose result differs from the recorded one.
     pub different: usize,
-    /// The first of these cycles.
+    /// The first cycle whose result differs.
     pub first: Option<Difference>,
 }
 

@@ -79,7 +79,8 @@ impl SentSetPoint {
         if report.springs == self.spring {
             return;
         }
-        // A correction of the set point that has expired is not ahead, so the servo discards it.
+        // A correction by the library does not raise `planned`. If only a correction of the expired set point was sent,
+        // `ahead` is not positive, and the servo discards the correction.
         let ahead = self.planned.wrapping_sub(report.set_point_number).cast_signed();
         if report.expired_phase == Some(self.spring) && ahead > 0 {
             self.spring = report.springs;

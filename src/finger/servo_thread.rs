@@ -116,7 +116,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
             }
         }
         self.announce_events();
-        // The reports of this cycle were made before its end was known. Those of the next cycle have this overrun.
+        // The reports of this cycle were made before its end was known. The next reports count this overrun.
         if overrun.is_none() && computing > self.schedule.next() {
             for port in self.ports.iter_mut() {
                 port.fingers.iter_mut().for_each(FingerServo::count_late_computation);

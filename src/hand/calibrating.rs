@@ -186,7 +186,7 @@ impl Calibrating {
 }
 
 impl Hand {
-    /// Finds the directions in which motors, encoders and gauges of finger 1, 2 or 3 count. The finger stays limp.
+    /// Finds the signs of motors, encoders and gauges of finger 1, 2 or 3. The finger stays limp.
     ///
     /// `progress` is called 200 times per second.
     ///

@@ -1,5 +1,5 @@
-//! Stores results in the configuration file: writes only their keys, in the finger's own table, and keeps comments and
-//! layout.
+//! Stores the results of calibrations in the configuration file: writes only their keys, in the finger's own table, and
+//! keeps comments and layout.
 
 mod editing;
 

@@ -134,8 +134,8 @@ impl Configured {
         self.said.remote
     }
 
-    /// Ignores a table `[remote]`. The server of a hand opens the hand of this machine, and its clients may share its
-    /// file.
+    /// Ignores a table `[remote]`. The server of a hand opens the hand of this machine, and its clients may read the
+    /// same file.
     #[must_use]
     pub fn of_this_machine(mut self) -> Self {
         self.said.remote = false;

@@ -31,7 +31,7 @@ pub(super) struct Dispatcher {
     members: Arc<Vec<Member>>,
     /// The fingers that the hand has. Not all of them need to be open.
     fingers: Fingers,
-    /// Lets the fingers of a group change in the same period.
+    /// Makes the set points of a group take effect in the same period.
     pub gate: GroupGate,
     collected: Arc<Vec<Mutex<Collected>>>,
     collector: Option<(Sender<()>, JoinHandle<()>)>,
@@ -130,9 +130,9 @@ impl Dispatcher {
     pub fn reset_timing(&self, finger: FingerNumber) -> Result<(), HandError> {
         let place = self.place(finger)?;
         let mut collected = self.collected(finger)?;
-        // The cycles up to this report are no longer counted, so their timings must be discarded. Therefore the report
-        // is read before the timings. If the servo has published this report but not yet the timing of the same cycle,
-        // that one timing is not discarded.
+        // The cycles up to the newest report are no longer counted, so their timings must be discarded. Therefore the
+        // report is read before the timings. If the servo has published this report but not yet the timing of the same
+        // cycle, that one timing is not discarded.
         collected.losses_before = self.members[place].mailbox.report().losses;
         collected.collect();
         collected.histograms.reset();

@@ -19,7 +19,8 @@ impl Hand {
     /// if a finger is faulted. The other fingers then have the new gravity, and the faulted finger takes the new
     /// gravity when it recovers.
     pub fn set_gravity(&self, gravity: [f64; 3]) -> Result<(), HandError> {
-        // The range is that of the configuration. The check of the configuration would allocate the text of a refusal.
+        // The range is that of `hand.gravity`. The check of the configuration is not called here, because it would
+        // allocate the text of a refusal.
         if let Some(component) = gravity.iter().position(|value| !(-LARGEST..=LARGEST).contains(value)) {
             return Err(SetPointError::Gravity { component, value: gravity[component] }.into());
         }

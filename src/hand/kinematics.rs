@@ -13,8 +13,8 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 pub struct JointTorques {
     /// R t (eq. 13 of the report) with the moment arms R and the measured tensions t.
     pub measured: [f64; 3],
-    /// What the controller commands: the torques of spring, damper, limits and gravity compensation, scaled to the part
-    /// that the tension bounds permit.
+    /// What the controller commands: the torques of spring, damper, limits, gravity compensation and feed-forward,
+    /// scaled to the part that the tension bounds permit.
     pub commanded: [f64; 3],
 }
 

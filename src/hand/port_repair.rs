@@ -222,8 +222,8 @@ impl KnownBoard {
         // gets no Stop in this attempt, and its watchdog stops it.
         let loses_touch = self.identity.capabilities.has(Capabilities::TACTILE);
         if self.has_io || self.zero_valid && !loses_touch {
-            // Hardware of the program does not confirm a Stop that fails. The terms below stop it again, and report the
-            // error of the program.
+            // Hardware of the program does not confirm a Stop that fails. The call of `agree` below stops it again, and
+            // reports the error of the program.
             let _ = link.stop(self.address, 0);
         } else {
             // A board that never reports valid zeros has lost its counts exactly if it has lost its terms. The same is

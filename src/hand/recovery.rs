@@ -1,5 +1,5 @@
-//! Recovery after a fault: ports are opened again, handshakes are repeated, and the finger takes up slack as after
-//! opening.
+//! Recovery after a fault: ports are opened again, handshakes are repeated, and the finger takes up slack as it does
+//! when the hand is opened.
 //!
 //! The servo releases its link when every finger on it is at rest, because opening a port and shaking hands take too
 //! long for a servo. A recovery call opens the port and shakes hands on the planner's thread. If `finger.reconnect` is

@@ -15,7 +15,7 @@ const STRONGEST: f64 = 1000.0;
 /// Largest angle of a rule, rad.
 const WIDEST: f64 = std::f64::consts::PI;
 
-/// Largest damping ratio of a rule. The servo clamps it to the range for the stiffness.
+/// Largest damping ratio of a rule. The servo clamps the ratio of a rule to the range for the stiffness.
 const MOST_DAMPED: f64 = 10.0;
 
 impl Hand {

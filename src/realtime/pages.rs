@@ -38,7 +38,7 @@ impl<T> Pages<T> {
         Self::try_new(value).unwrap_or_else(|| handle_alloc_error(Layout::new::<T>()))
     }
 
-    /// As [`Pages::new`]. Returns none if the system has no memory.
+    /// Does the same as [`Pages::new`], but returns none if the system has no memory.
     pub(super) fn try_new(value: T) -> Option<Self> {
         let mapping = Mapping::new(Layout::new::<T>())?;
         let place = mapping.start.cast();

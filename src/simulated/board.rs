@@ -42,7 +42,7 @@ pub struct SimulatedBoard {
     fingers: Vec<SimulatedFinger>,
     /// The object that the fingers can touch.
     scene: Option<Scene>,
-    /// Time up to which the physics has been computed, ns. `None` before the first call.
+    /// Time up to which the physics has been computed, ns. `None` before the first call that passes a time.
     time: Option<u64>,
 }
 

@@ -24,7 +24,7 @@ use thiserror::Error;
 /// Interval at which the physics advances while no bytes arrive.
 const TICK: Duration = Duration::from_millis(1);
 
-/// Interval at which the physics advances while the answer to a host waits for the time to advance.
+/// Interval at which the physics advances while the bytes of a host cannot be taken yet ([`SharedTime::takes`]).
 const SHORT_TICK: Duration = Duration::from_micros(100);
 
 /// A port is prepared for a new host when its host has sent nothing for longer than this time, ns.

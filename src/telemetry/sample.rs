@@ -16,8 +16,9 @@ pub struct Sample {
     pub began: u64,
     /// Stage of the finger at the end of the cycle.
     pub stage: Stage,
-    /// Whether the controller ran in this cycle. If it did not, for example because the finger has just faulted, the
-    /// values below are those of the last cycle in which it ran, or 0.
+    /// Whether the controller ran in this cycle. If it did not, for example because the finger has just faulted, most
+    /// values below are those of the last cycle in which it ran, or 0. The exceptions are the contact, which only a
+    /// finger in the stage `Running` has, and the times `wake_up` and `whole` of this cycle.
     pub computed: bool,
     /// Measured joint angles.
     pub joints: [f64; 3],

@@ -20,7 +20,8 @@ pub fn exported(folder: &Path) -> BTreeSet<String> {
     texts.flat_map(names).collect()
 }
 
-/// Other functions of the folder are not exported.
+/// Returns whether a function has a name of the C interface. The folder has other `extern "C"` functions, which are not
+/// exported.
 fn is_of_c(name: &str) -> bool {
     name.starts_with(char::is_uppercase) || name.starts_with("sun2xp_")
 }

@@ -19,8 +19,8 @@ fn a_cycle_echoes_sequence_and_measures_before_the_command_acts() {
     for sequence in [255, 0, 1] {
         last = cycle(&mut link, sequence, pull(3000));
     }
-    // The board's clock advances in steps of the physics of 100 us, so the three periods of 1 ms may measure one step
-    // more or less.
+    // The board's clock advances with the steps of its physics, 100 us each, so the three periods of 1 ms may measure
+    // one step more or less.
     assert!((2900..=3100).contains(&last.sampled_at.wrapping_sub(first.sampled_at)));
     assert_eq!(link.counters().damaged + link.counters().foreign + link.counters().unsent, 0);
 }

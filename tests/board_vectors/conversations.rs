@@ -1,5 +1,5 @@
-//! Every conversation as lines of the file and as a test of the simulated board. Both follow the state diagram of a
-//! board.
+//! Every conversation as lines of protocol/vectors.json and as a test of the simulated board. The conversations follow
+//! the state diagram in docs/board-protocol.md.
 
 use super::json::{hex, list, object, text};
 use super::scripts::conversations;

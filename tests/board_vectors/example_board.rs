@@ -1,4 +1,4 @@
-//! The example board of docs/board-protocol.md and of the vectors.
+//! The example board of docs/board-protocol.md and of protocol/vectors.json.
 
 use sun2xp::board::protocol::{Capabilities, FirmwareVersion, Identity};
 

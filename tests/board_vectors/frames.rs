@@ -150,7 +150,7 @@ fn terms_fields(terms: &Configure) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Field names as in the tables of the page.
+/// Field names as in the tables of docs/board-protocol.md.
 fn fields(frame: &Frame) -> Vec<(&'static str, String)> {
     match frame {
         Frame::Hello(hello) => {

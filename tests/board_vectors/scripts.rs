@@ -7,7 +7,7 @@ use sun2xp::board::protocol::*;
 /// A name, and the steps from power-up.
 pub type Conversation = (&'static str, Vec<Step>);
 
-/// All conversations, in the order of the file.
+/// All conversations, in the order of protocol/vectors.json.
 pub fn conversations() -> Vec<Conversation> {
     [orderly_use(), watchdog(), holds(), refusals(), damage(), faults()].concat()
 }

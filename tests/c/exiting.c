@@ -1,6 +1,7 @@
 /* Exit handlers of a planner that leaves its hand open. One registered after OpenHand runs while the hand is open. One
-   registered before runs after the library has closed the hand: there calls that read still work, and calls that would
-   move or open a hand are refused. Each prints a line, so that a handler that does not run is noticed. */
+   registered before runs after the library has closed the hand. In this second handler, calls that read still work,
+   and calls that would move or open a hand are refused. Each handler prints a line, so that a handler that does not
+   run is noticed. */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>

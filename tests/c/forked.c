@@ -1,4 +1,5 @@
-/* A forked child is refused all calls but three and ends without touching the hand. The parent's hand keeps running. */
+/* In a forked child every call that opens, closes, reads or commands a hand is refused, except sun2xp_stop_all, which
+   does nothing. The child ends without touching the hand. The parent's hand keeps running. */
 #include <errno.h>
 #include <string.h>
 #include <sys/wait.h>

@@ -1,6 +1,6 @@
 /* Children in which no fork handler of the library has run: those of _Fork and of raw system calls, and a child in
-   which a handler of the planner, registered before OpenHand, makes the calls. All calls are refused, and the
-   parent's hand keeps running. */
+   which a handler of the planner, registered before OpenHand, makes the calls. Every call that opens, closes,
+   reads or commands a hand is refused, except sun2xp_stop_all, and the parent's hand keeps running. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <pthread.h>

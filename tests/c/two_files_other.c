@@ -1,4 +1,4 @@
-/* The other file. */
+/* One of two files of a program that both include Sun2Xp.c. The main program is in two_files.c. */
 #include "Sun2Xp.c"
 #include "Sun2Xp.c"
 

@@ -6,7 +6,7 @@ use super::c::{
 use super::manual::{Example, HANDLES, Manual, OF_1990};
 use std::process::Command;
 
-/// The headers that examples need which consist of statements.
+/// The headers for the examples that are only statements.
 const INCLUDED: &[&str] = &["errno.h", "poll.h", "signal.h", "stdio.h", "stdlib.h", "unistd.h"];
 
 /// For some examples: the call that the example belongs to, statements that run before it to prepare it, and statements
@@ -139,8 +139,8 @@ fn every_example_runs() {
     }
 }
 
-/// Runs the command in a folder with `planner.c`. There pkg-config finds the library of this build. The finger must
-/// arrive.
+/// Runs the command of each quick start in a folder with its program as `planner.c`. pkg-config finds the library of
+/// this build. The finger must arrive.
 #[test]
 fn the_quick_starts_are_compiled_and_run_by_their_commands() {
     if !available("pkg-config", "the commands of the quick starts") {
@@ -164,7 +164,8 @@ fn the_quick_starts_are_compiled_and_run_by_their_commands() {
     }
 }
 
-/// The port belongs to the reader's machine, so the port is the only permitted reason to refuse the file.
+/// The example of a configuration names a port of its reader's machine, so the port is the only permitted reason to
+/// refuse the example.
 #[test]
 fn the_configuration_is_refused_only_for_its_port() {
     let bench = Bench::new();

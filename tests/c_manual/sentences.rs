@@ -34,7 +34,7 @@ fn the_calls_that_signal_handlers_may_make_are_named() {
 }
 
 /// `a_small_stack_is_enough_for_every_call` tests the sentence about the stack for the calls of small_stack.c. The
-/// compiler refuses a function of this file that is not in the table of calls.
+/// compiler refuses a function of small_stack.c that is not in the table of calls.
 #[test]
 fn the_stack_of_every_call_is_measured() {
     let source = fs::read_to_string(root().join("tests/c/small_stack.c")).expect("a source file");
@@ -44,8 +44,7 @@ fn the_stack_of_every_call_is_measured() {
     assert!(missing.is_empty(), "tests/c/small_stack.c does not make these calls: {missing:?}");
 }
 
-/// The entry of sun2xp_identify has no list of errnos: the list of sun2xp_zero applies to it. sun2xp_wait_event and
-/// others return more than 0.
+/// The entry of sun2xp_identify has no list of errnos: the list of sun2xp_zero applies to it.
 #[test]
 fn the_calls_that_a_forked_child_may_make_are_named() {
     let manual = Manual::read(HANDLES);
@@ -77,7 +76,7 @@ fn counts_of_the_status_are_those_of_the_timing() {
     assert_eq!(Some(skipped), timing("skipped_periods").strip_suffix("up to the last cycle"));
 }
 
-/// A planner that does not know these rules takes another reason for what it sees.
+/// The author of a planner who does not know the rules below would assume a wrong reason for a result.
 #[test]
 fn the_entries_say_what_else_a_result_depends_on() {
     let manual = Manual::read(HANDLES);

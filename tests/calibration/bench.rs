@@ -40,7 +40,7 @@ impl Bench {
         Self::in_gravity(truth, belief, Vector3::zeros(), rate)
     }
 
-    /// The same with gravity, m/s^2 in the finger's frame.
+    /// Does the same as [`Bench::new`], with gravity, m/s^2 in the finger's frame.
     pub fn in_gravity(truth: &ConfiguredFinger, belief: &ConfiguredFinger, gravity: Vector3<f64>, rate: f64) -> Self {
         let mut plant = Plant::new(truth, gravity).unwrap();
         let mut sensors = Sensors::new(truth);
@@ -127,7 +127,8 @@ impl Bench {
         self.calibrate_with(task, |_, _| {})
     }
 
-    /// The same with a function that is called every cycle with the seconds since the beginning and the plant.
+    /// Does the same as [`Bench::calibrate`]. Also calls `happen` in every cycle, with the seconds since the beginning
+    /// and with the plant.
     pub fn calibrate_with(
         &mut self,
         task: Task,

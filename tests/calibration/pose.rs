@@ -54,7 +54,7 @@ impl Trial {
         }
         let mut belief = truth.clone();
         for tendon in 0..4 {
-            // Corresponds to some hundredths of a radian at a joint and one newton.
+            // The errors correspond to some hundredths of a radian at a joint, and to one newton.
             belief.encoder.zero[tendon] += chance.between(-300.0, 300.0) as i32;
             truth.gauge.zero[tendon] = 220.0;
             belief.gauge.zero[tendon] = 220.0 + chance.between(-40.0, 40.0);

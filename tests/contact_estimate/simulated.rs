@@ -38,8 +38,8 @@ fn a_finger_at_rest_notices_a_tenth_of_a_newton() {
     let pushes = noticed::at_rest(case("nominal"), &ConfiguredContact::default(), 1).expect("a finger");
     let weak = with_force(&pushes, 0.1);
     assert_eq!(weak.noticed, weak.pushes);
-    // A force at the threshold is noticed when the dither and the noise of the gauges add to it. The last push depends
-    // on the noise: in 300 pushes of other seeds, the latest was noticed after 0.30 s.
+    // A force at the threshold is noticed when the dither and the noise of the gauges add to it. The longest time
+    // depends on the noise: in 300 pushes of other seeds it was 0.30 s.
     assert!(weak.times[weak.times.len() * 9 / 10] < 0.1, "{:?}", weak.times);
     assert!(*weak.times.last().expect("pushes") < 0.35, "{:?}", weak.times);
     assert!(*weak.losses.last().expect("pushes") < 0.15, "{:?}", weak.losses);

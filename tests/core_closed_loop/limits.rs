@@ -129,7 +129,7 @@ fn a_warm_motor_does_not_change_the_direction_of_the_torque() {
 
 const FIGURES: [Scheme; 3] = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11];
 
-/// A finger whose motors can give 21 N continuously and become warm after half a second of more.
+/// A finger whose motors can give 21 N continuously, and become warm after half a second with a larger pull.
 fn soon_warm(scheme: Scheme) -> ConfiguredFinger {
     let mut finger = finger_with(scheme);
     finger.motor.continuous_torque = [1.0; 4];

@@ -50,7 +50,7 @@ impl Loop {
         Self::in_gravity(finger, belief, &Vector3::zeros(), rate)
     }
 
-    /// The same with gravity in the finger's frame, m/s^2, which the controller knows.
+    /// Does the same as [`Loop::with_belief`], with gravity in the finger's frame, m/s^2, which the controller knows.
     pub fn in_gravity(finger: &ConfiguredFinger, belief: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Self {
         let plant = Plant::new(finger, *gravity).unwrap();
         let mut sensors = Sensors::new(finger);
@@ -190,7 +190,7 @@ pub fn poses() -> Vec<Vector3<f64>> {
     poses_of(24)
 }
 
-/// The same from another seed.
+/// Returns 24 poses in the ranges of [`poses`], from this seed.
 pub fn poses_of(seed: u64) -> Vec<Vector3<f64>> {
     let mut random = Pcg64::seed_from_u64(seed);
     let mut within =

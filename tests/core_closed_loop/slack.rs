@@ -76,7 +76,8 @@ fn they_stay_about_there_in_a_calibration() {
     }
 }
 
-/// Pulling every tendon independently of the others makes the same fingers drift, so the test above can fail.
+/// Pulling every tendon independently of the others makes the same fingers drift, so `the_joints_stay_where_they_are`
+/// can fail.
 #[test]
 fn without_regard_to_the_joints_they_move() {
     let finger = ConfiguredFinger::default();

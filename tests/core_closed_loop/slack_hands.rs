@@ -15,15 +15,15 @@ struct Hand {
     name: &'static str,
     /// The named hand that the other values change.
     hand: NamedHand,
-    /// True Coulomb friction of motors and joints, divided by the friction of the default hand.
+    /// True Coulomb friction of motors and joints, divided by that of the named hand.
     coulomb: f64,
-    /// The same for viscous friction.
+    /// True viscous friction of motors and joints, divided by that of the named hand.
     viscous: f64,
-    /// Gauge noise, divided by the noise of the default hand.
+    /// Gauge noise, divided by that of the named hand.
     noise: f64,
     /// Largest slack of a tendon, cm.
     slack: f64,
-    /// Static friction divided by Coulomb friction.
+    /// Ratio of static to Coulomb friction, divided by that of the named hand.
     stiction: f64,
     /// Friction of the conduits and of the pulleys, fractions of the tension, in addition to that of the named hand.
     conduit: f64,

@@ -46,7 +46,7 @@ fn a_hand_that_turns_once_a_second_holds_its_pose_as_one_at_rest() {
         let turning = deviation(&finger, |time| turned(TAU * time));
         println!("{scheme:?}: {turning:.4} cm, at rest {at_rest:.4} cm");
         assert!(turning < at_rest + increase, "{scheme:?}: {turning} cm while it turns, {at_rest} cm at rest");
-        // Without the new values the finger sags.
+        // Without compensation the finger sags.
         let stale = {
             let mut finger = finger.clone();
             finger.controller.gravity_compensation = false;

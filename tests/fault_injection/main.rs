@@ -21,9 +21,9 @@ const PATIENCE: f64 = 10.0;
 struct Outcome {
     /// From the injection until the fault becomes detectable.
     detectable: f64,
-    /// From then until the fault is named.
+    /// From the moment at which the fault becomes detectable until it is named.
     found: f64,
-    /// From then until the motors are off; 0 for a warning.
+    /// From the moment at which the fault becomes detectable until the motors are off; 0 for a warning.
     ended: f64,
 }
 
@@ -57,7 +57,7 @@ fn trial(case: &Case, rate: f64, seed: u64, warns: bool) -> Result<Outcome, Stri
         if let Some(detectable) = case.detectable.filter(|_| known.is_none()) {
             let holds = (detectable.holds)(&bench.truth, &injected, bench.finger());
             since = since.filter(|_| holds).or(holds.then_some(now));
-            // A fault that is named shortly before the stretch is over belongs to that stretch.
+            // A fault may be named shortly before the stretch of `lasts_ms` is over. It belongs to this stretch too.
             known = since.filter(|since| now - since >= detectable.lasts_ms || named);
         }
         found = found.or(named.then_some(now));

@@ -46,7 +46,7 @@ fn a_path_begins_with_the_stiffness_that_was_sent_in_the_same_period() {
     }
 }
 
-/// The servo does not take the set point with the Kx, because that of the path follows in the same period.
+/// The servo never takes the set point with the Kx, because the set point of the path replaces it in the same period.
 #[test]
 fn a_path_after_a_joint_stiffness_begins_with_the_kx_that_was_sent_just_before() {
     let mut bench = Bench::new();

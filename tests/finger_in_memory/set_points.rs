@@ -56,7 +56,7 @@ fn set_points_sent_before_a_fault_are_discarded() {
     bench.opens();
     let found = bench.report().set_point.joints;
     assert!((found - far).amax() > 0.1, "the finger must be found far from the pose that was sent");
-    // This is the first call. Nothing has read the finger's state before it.
+    // This is the first set point that is sent after the recovery.
     soften(&bench);
     holds(&mut bench, found);
 }
@@ -94,7 +94,7 @@ fn orders_in_transit_at_a_fault_are_not_executed_after_recovery() {
     bench.opens();
     bench.cycles(10);
     assert_eq!((bench.stage(), bench.report().orders), (Stage::Running, 1));
-    // The next one is accepted.
+    // The next order is accepted.
     assert_eq!(bench.mailbox.order(Order::Restart { limp: true }), Ok(Some(2)));
     bench.cycles(1);
     assert_eq!(bench.stage(), Stage::Limp);

@@ -44,8 +44,9 @@ pub const STM32F405: Emulated = Emulated {
 
 impl Emulated {
     /// Number of boards of the hand. Each emulator of a board with one finger needs up to two thirds of a processor, so
-    /// there are no more of them than processors. With three emulators on two processors, the kernel's threads that
-    /// carry the bytes of the terminals get too little time, and replies are lost for a second.
+    /// there are no more of them than processors, but two on a single processor, because the tests need finger 2. With
+    /// three emulators on two processors, the kernel's threads that carry the bytes of the terminals get too little
+    /// time, and replies are lost for a second.
     pub fn boards(self) -> usize {
         let processors = std::thread::available_parallelism().map_or(1, NonZero::get);
         self.images.len().min(processors.max(2))

@@ -1,6 +1,6 @@
-//! Tests the library against the reference firmware on two emulated boards. Laboratories port the
-//! protocol core of the firmware to their boards. Here it is compiled for a microcontroller, and runs with its own
-//! interrupts and its own time.
+//! Tests the library against the reference firmware on two kinds of emulated boards. Laboratories port the protocol
+//! core of the firmware to their boards. Here it is compiled for a microcontroller, and runs with its own interrupts
+//! and its own time.
 
 #[path = "../common/attempts.rs"]
 mod attempts;
@@ -30,8 +30,8 @@ use sun2xp::finger::{FaultKind, Stage};
 use sun2xp::hand::{Hand, HandError, read_configuration};
 use sun2xp::model::configuration::Configuration;
 
-/// Allows one emulator at a time, because two would compete for the processor. Returns `None` if the emulator or its
-/// compiler is missing.
+/// Allows one test with emulators at a time, because two would compete for the processors. Returns `None` if the
+/// emulator or the compiler of the firmware is missing.
 fn alone() -> Option<MutexGuard<'static, ()>> {
     static ONE: Mutex<()> = Mutex::new(());
     let usable = ["arm-none-eabi-gcc", "qemu-system-arm"].iter().all(|tool| tools::available(tool, "the whole test"));

@@ -120,8 +120,8 @@ fn an_identified_hand_has_no_fault() {
     }
 }
 
-/// Poses, degrees, in which the push makes two tendons slack for a moment. The other two tendons meanwhile slide in
-/// their conduits, and turn back when the first two are taut again.
+/// Poses, degrees, in which a push of 1.2 N along x makes two tendons slack for a moment. The other two tendons
+/// meanwhile slide in their conduits, and turn back when the first two are taut again.
 const SLACKENED: [[f64; 3]; 4] = [[-9.4, 6.6, 41.8], [-9.9, 1.8, 53.1], [-15.5, -4.0, 60.0], [-12.0, 3.0, 50.0]];
 
 /// The stiffness tolerance is small, as after an identification. So only the tolerance for friction can explain the

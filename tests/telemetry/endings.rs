@@ -35,8 +35,8 @@ fn a_killed_hand_leaves_nothing_behind_and_is_a_clear_end() {
     let mut reader = reader(&name);
     read_for(&mut reader, Duration::from_millis(200), &mut Vec::new());
     assert!(hands().expect("names").contains(&name));
-    // The shared memory of the hand has no name in a folder, so it cannot stay there. The folder itself is not
-    // compared, because other programs of the machine use it too.
+    // The shared memory of the hand has no file in /dev/shm, so none can be left behind. The contents of /dev/shm are
+    // not compared, because other programs of the machine use that folder too.
     let mapped = fs::read_to_string(format!("/proc/{}/maps", process.child.id())).expect("the memory of the process");
     assert!(mapped.contains("/memfd:sun2xp telemetry"), "{mapped}");
     assert!(!mapped.contains("/dev/shm/"), "{mapped}");
@@ -71,7 +71,7 @@ fn a_killed_reader_disturbs_neither_hand_nor_other_readers() {
     read_for(&mut own, Duration::from_millis(300), &mut messages);
     assert_eq!(own.lost(), [0; 3]);
     drop(own);
-    // The hand releases the memory with its last reader, and serves the next one again.
+    // The hand releases the shared memory when its last reader has ended, and serves the next reader again.
     std::thread::sleep(Duration::from_millis(200));
     let mut next = reader(&name);
     read_for(&mut next, Duration::from_millis(300), &mut messages);

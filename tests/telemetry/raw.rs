@@ -10,7 +10,7 @@ use std::time::Duration;
 pub struct RawSocket(OwnedFd);
 
 impl RawSocket {
-    /// Connects to an abstract name. Does not wait if too many others wait.
+    /// Connects to an abstract name. Fails at once if too many connections already wait for the listener.
     pub fn connect(name: &str) -> Result<Self> {
         Self::open(name, |socket, address, length| {
             // SAFETY: the address has `length` bytes.

@@ -59,7 +59,7 @@ function button(text, title, act, className = "") {
 
 export class Control {
   /// `send(message)` sends a command. `desired(finger)` returns the joint angles of the set point in force.
-  /// `opened(width)` is called with the width of the panel, pixels, or 0.
+  /// `opened(width)` is called with the width of the panel, pixels, or with 0 if the panel is hidden.
   constructor(form, toggle, { send, desired, opened }) {
     Object.assign(this, { form, toggle, send, desired, opened, finger: null, wanted: null, stopping: false });
     form.addEventListener("submit", (event) => event.preventDefault());

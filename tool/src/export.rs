@@ -165,7 +165,7 @@ impl Files<'_> {
         Ok(output.writer())
     }
 
-    /// Gives the files their names. Until here nothing in the folder has changed.
+    /// Gives the files their names. Until then they have temporary names, and no existing file has changed.
     fn finish(mut self) -> Result<(), Failure> {
         self.open.values_mut().try_for_each(Output::flush)?;
         let force = self.arguments.force;

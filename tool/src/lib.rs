@@ -122,7 +122,7 @@ pub fn urdf(configuration: &Configuration) -> String {
     model::urdf(configuration)
 }
 
-/// The command line. The help of every command ends with its exit statuses.
+/// The command line. The help of every command names its exit statuses: in its description, or otherwise at the end.
 fn command() -> Command {
     Arguments::command().mut_subcommands(|command| {
         let described = command.get_long_about().is_some_and(|about| about.to_string().contains("Exit status:"));

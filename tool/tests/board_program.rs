@@ -151,7 +151,8 @@ fn a_refused_order_leaves_no_link() {
     assert!(!link.is_symlink());
 }
 
-/// The ports of a file are ignored, so the physics must suit the step also if the file names a real port.
+/// `sun2xp board` ignores the ports of a file. The simulation must therefore be stable with its time step, even if the
+/// file names a real port.
 #[test]
 fn values_of_the_simulation_are_checked_although_the_file_names_a_port() {
     let folder = tempfile::tempdir().unwrap();

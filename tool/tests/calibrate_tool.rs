@@ -62,7 +62,7 @@ fn contains(text: &str, parts: &[&str]) {
     }
 }
 
-/// The other fingers have neither boards nor ports.
+/// The ports of the other fingers do not exist.
 #[test]
 fn a_person_is_asked_to_hold_one_finger_in_its_pose() {
     let links = tempfile::tempdir().expect("a folder");

@@ -159,7 +159,7 @@ def notices_a_short_press_of_the_stop():
 def refuses_to_move_without_a_crystal():
     board = started(crystal=False)
     assert 16e6 / board.registers.values[reg.USART1 + 8] == 1e6
-    # The model runs at 168 MHz, so the line takes the same number of cycles as at 16 MHz.
+    # The model counts 168 cycles in a us even without the crystal, so a byte at 1 Mbaud takes 1680 cycles.
     board.registers.byte_cycles = 1680
     refused = board.ask(configure(), baud=1_000_000)
     assert refused[0] == 0xD1 and refused[3] == 5 and refused[4] | refused[5] << 8 == SENSOR, refused.hex()
@@ -182,7 +182,7 @@ def feeds_the_watchdog():
     for _ in range(5):
         board.ask(command([1000] * 4))
     board.run_for(12000)
-    # 6.8 ms at the fastest oscillator.
+    # With the fastest oscillator, the watchdog resets the processor after 6.8 ms.
     assert board.registers.longest_unfed < 168 * 500, board.registers.longest_unfed / 168
     assert board.registers.overruns == 0
 

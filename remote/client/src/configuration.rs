@@ -57,7 +57,7 @@ impl RemoteConfiguration {
     /// files are relative to the folder of the configuration file.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be read, or if its text is wrong, with the line.
+    /// Returns an error if the file cannot be read. If its text is wrong, returns an error with the line.
     pub fn read(path: &Path) -> Result<Option<Self>, RemoteError> {
         let unreadable = |source| RemoteError::System { doing: format!("read {}", path.display()), source };
         let metadata = std::fs::metadata(path).map_err(unreadable)?;
@@ -73,7 +73,7 @@ impl RemoteConfiguration {
     /// Reads the tables of the text of a configuration. Relative names of files are relative to `folder`.
     ///
     /// # Errors
-    /// Returns an error if the text is wrong, with the line.
+    /// Returns an error with the line if the text is wrong.
     pub fn from_text(text: &str, folder: &Path) -> Result<Option<Self>, RemoteError> {
         Self::parse(text, folder).map_err(|wrong| wrong.in_file(Path::new("the text of the configuration"), text))
     }

@@ -11,7 +11,7 @@ use sun2xp_serve::certificates::{Wanted, make};
 use sun2xp_serve::server::{Server, prepare};
 use sun2xp_serve::settings::{Overrides, Settings};
 
-/// The clients. Alice commands; the others only read.
+/// The clients. Alice owns the hand, bob sends Targets with an epoch that is not in force, and carol only reads.
 const CLIENTS: &str = "[serve.clients]\nalice = 'command'\nbob = 'command'\ncarol = 'read'\n";
 
 /// The simulated hand with these fingers at this rate, Hz.

@@ -1,4 +1,4 @@
-//! Messages over Zenoh: a put there, and a put back.
+//! Messages over Zenoh: the client puts a message under one key, and the server puts it back under another.
 
 use crate::Failure;
 use crate::certificates::Files;

@@ -22,7 +22,7 @@ pub(super) struct LedPlace {
 }
 
 impl LedPlace {
-    /// Whether a set point with these joint angles, rad, is almost there.
+    /// Whether a set point with these joint angles, rad, is almost at this place.
     pub fn is_near(&self, set_point: &Vector3<f64>) -> bool {
         (self.joints - set_point).amax() < SMALLEST_STEP
     }
@@ -88,8 +88,8 @@ impl Fingers {
     }
 
     /// Returns the joint angles within the limits that the hand uses if `joints` are sent, rad; none if the hand
-    /// refuses `joints`. The check is that of the hand: angles that only the hand admits would be sent without the
-    /// lead.
+    /// refuses `joints`. The check is the hand's own. If it were stricter, angles that only the hand admits would be
+    /// sent without the bound of the lead.
     pub(super) fn within_limits(
         &self,
         finger: FingerNumber,

@@ -1,4 +1,4 @@
-//! A client of raw zenoh and the codec.
+//! A client that uses only zenoh and the codec.
 
 use super::{PATIENCE, wait_for};
 use std::path::Path;

@@ -91,7 +91,8 @@ fn ramp(line: Line, name: &str, catch_ms: u32, spoil: impl FnOnce(&Line)) -> See
 /// Checks that the planner has sent every set point that was applied, that the set points are in order, and that the
 /// finger moves smoothly.
 fn assert_ordered(seen: &Seen, name: &str) {
-    // When the line is spoiled, the finger follows the planner. It is caught 100 ms after the newest Target.
+    // When the line is spoiled, the finger follows the planner. It is caught `catch_ms`, 100 ms or more,
+    // after the newest Target.
     assert!(seen.set_points.len() >= 20, "{name}: only {} cycles followed the planner", seen.set_points.len());
     for pair in seen.set_points.windows(2) {
         assert!(pair[1] >= pair[0], "{name}: {} follows {}", pair[1], pair[0]);

@@ -1,4 +1,4 @@
-//! Noise and spoiled Targets are refused and counted, and nothing moves: in process, and over the line.
+//! Noise and spoiled Targets are refused and counted, and nothing moves: in process, and over loopback.
 
 use super::noise::Noise;
 use super::raw::{Raw, joints};

@@ -125,7 +125,7 @@ fn opened(configuration: &str) -> RemoteHand {
     }
 }
 
-/// Moves the hand until it is killed or the hand is lost.
+/// Moves the hand until this process is killed or has lost the hand.
 fn run(configuration: &str, motion: Motion) {
     let hand = opened(configuration);
     let stiffness = [[STIFF, 0.0, 0.0], [0.0, STIFF, 0.0], [0.0, 0.0, STIFF]];
@@ -138,7 +138,7 @@ fn run(configuration: &str, motion: Motion) {
         if let Err(error) = hand.send_group(&commands)
             && !hand.is_owner()
         {
-            // Nobody may be there to read it.
+            // Perhaps nobody reads the output any more.
             let _ = writeln!(std::io::stdout(), "planner ends: {error}");
             return;
         }

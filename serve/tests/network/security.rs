@@ -178,7 +178,7 @@ fn only_certificates_of_the_authority_get_in_and_a_name_opens_only_its_own_keys(
     assert!(connect("planner", Some(mixed)).is_err());
     assert!(Raw::connect(&endpoint.replace("tls/", "tcp/"), "hand", "planner", None).is_err());
 
-    // A name of the authority that is not listed gets nothing.
+    // A client that the server does not list gets nothing, although its certificate is of our authority.
     let stranger = Certificate::of(&ours, "stranger");
     let stranger = connect("planner", Some(stranger.files())).expect("a certificate of the authority");
     assert!(stranger.status().is_none(), "the Status is not for strangers");

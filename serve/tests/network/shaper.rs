@@ -12,7 +12,7 @@ pub struct Conditions {
     pub loss: f64,
     /// Smallest delay of a packet.
     pub delay: Duration,
-    /// Largest further delay. It is uniformly distributed from 0 to this value.
+    /// Largest further delay. The further delay is uniformly distributed from 0 to this value.
     pub jitter: Duration,
     /// Whether a packet may overtake an earlier one with a longer delay.
     pub reorders: bool,

@@ -16,7 +16,8 @@ impl Status {
     /// The end state *hold* is in progress.
     pub const HOLDING: Status = Status(1 << 4);
     /// The board knows that its encoder counts are continuous with those that the host last received, even across a
-    /// loss of power. The host's zero is then valid. Only a board with capability 1 sets this bit.
+    /// loss of power. The host's zero is then valid. Only a board with
+    /// [`Capabilities::KEEPS_ZERO`](super::Capabilities::KEEPS_ZERO) sets this bit.
     pub const ZERO_VALID: Status = Status(1 << 5);
     /// The emergency stop input for this finger is active, or was active at some time since the last Configure.
     pub const EMERGENCY_STOP: Status = Status(1 << 6);

@@ -17,17 +17,18 @@ use std::f64::consts::TAU;
 /// lower one is given the same amplitude. They are well above the resonance of the rotors with their tendons: 17 Hz on
 /// the default finger. At higher frequencies a lag of the amplifiers matters more.
 const FREQUENCIES: [f64; 2] = [60.0, 40.0];
-/// Smallest number of cycles in a period. At a rate that is too low for it, the inertia is not measured.
+/// Smallest number of servo cycles in a period of the oscillation. At a lower servo rate, the inertia is not measured.
 const LEAST_CYCLES: f64 = 7.5;
 /// The oscillation grows until every motor has this amplitude at its tendon, cm, and this many counts of its encoder.
 /// The friction of a motor that turns so far is smaller than the force that accelerates its rotor.
 const TRAVEL: f64 = 0.01;
 const COUNTS: f64 = 10.0;
-/// The oscillation also stops growing when a tension has this amplitude as a part of its mean. No tendon becomes slack.
+/// The oscillation also stops growing when the amplitude of a tension reaches this part of the tension's mean. Then no
+/// tendon becomes slack.
 const SWING: f64 = 0.4;
 /// Largest amplitude of the commanded common tension as a part of its mean. Heavy rotors hardly follow the command.
 const LARGEST: f64 = 1.4;
-/// Change of this amplitude from one period to the next.
+/// Growth of the amplitude of the commanded common tension from one period to the next, as a part of its mean.
 const GROWTH: f64 = 0.04;
 /// Duration of the motion of the joints, s: that of settling and measurement at both frequencies.
 const MOVING: f64 = 1.2;
@@ -193,7 +194,7 @@ impl Oscillating {
     }
 }
 
-/// Returns the cycles in a period of a frequency.
+/// Returns the number of servo cycles in a period of a frequency.
 fn cycles(instruments: &Instruments, tone: usize) -> usize {
     (1.0 / (FREQUENCIES[tone] * instruments.period)).round().max(1.0) as usize
 }

@@ -96,7 +96,7 @@ impl Oscillation {
         1.0 / (self.samples.max(1.0) * (0.5 * self.step).sin())
     }
 
-    /// Returns m w^2 - k, N/cm. `ratio` is a.
+    /// Returns m w^2 - k, N/cm. `ratio` is the ratio a of the commanded pull to the tension.
     fn stiffness(&self, ratio: &Vector4<f64>) -> Vector4<f64> {
         let tension = self.tension.in_phase_with(&self.travel).component_mul(ratio);
         let pull = self.pull.held(self.step).in_phase_with(&self.travel);

@@ -25,7 +25,7 @@ const DIRECTIONS: [[f64; 3]; 2] = [[1.0, 0.5, 1.0], [1.0, -0.5, -1.0]];
 const MOTIONS: [(usize, bool, f64); STROKES] =
     [(0, false, SLOW), (0, false, FAST), (0, true, FAST), (1, true, FAST), (1, false, FAST)];
 
-/// Tension of the tendon with the largest pretension at the higher level, as a fraction of t_max.
+/// At the higher level, tension of the tendon with the largest pretension, as a fraction of t_max.
 const HIGH: f64 = 0.4;
 /// Rate at which the common tension changes, N/s.
 const RISING: f64 = 10.0;

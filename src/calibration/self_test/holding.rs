@@ -21,7 +21,7 @@ const SETTLING: f64 = 0.05;
 const READING: f64 = 0.04;
 /// Rise of the tensions, as a multiple of the pretension.
 const RAISED: f64 = 2.0;
-/// Time of that rise, s.
+/// Time in which all tensions rise together, s.
 const RAISING: f64 = 0.12;
 /// Pull of a pulse, in t_min. After a pulse the links vibrate until their friction stops them. The stronger the pulse,
 /// the longer they vibrate.
@@ -45,7 +45,7 @@ const DELAY: f64 = 1.5;
 pub(super) struct Holding {
     /// Place at which each motor is held, cm.
     target: Vector4<f64>,
-    /// The place at the beginning of the phase.
+    /// The place at the beginning of [`Phase::Tightening`] or [`Phase::Raising`].
     from: Vector4<f64>,
     phase: Phase,
     seconds: f64,

@@ -14,7 +14,7 @@ const FIRST_PUSH: f64 = 0.4;
 const GROWTH: f64 = 1.3;
 /// Largest push, in t_min.
 const HARDEST_PUSH: f64 = 2.0;
-/// Duration of a push, and of the pause after it, s.
+/// Longest duration of a push, and duration of the pause after the motor has turned, s.
 const PUSH: f64 = 0.1;
 /// Rest before the first measurement, s.
 const REST: f64 = 0.2;
@@ -59,7 +59,7 @@ impl SignSearch {
         Ok(torques)
     }
 
-    /// Lets the pushed motor come to rest before the next push, or before the first sweep.
+    /// Lets the pushed motor come to rest before the next motor is pushed, or before the first sweep.
     pub(super) fn pause(&mut self, seconds: f64, instruments: &Instruments, travel: &Vector4<f64>) -> Vector4<f64> {
         let seconds = seconds + instruments.period;
         self.phase = if seconds <= PUSH {

@@ -54,7 +54,7 @@ impl Zeroing {
         let done = swing.step(instruments, sample, &mut guide);
         let part = 0.3 + 0.2 * (joint as f64 + if upper { 0.7 } else { 0.2 });
         let activity = guide.activity(instruments, sample);
-        // The instruments have already subtracted the offsets.
+        // The instruments have already subtracted the offsets of the gauges.
         let angle = swing.reading.joints(instruments, &Vector4::zeros())[joint];
         self.phase = match (done, upper) {
             (false, _) => Phase::ReadStop { guide, joint, upper, swing },
@@ -119,7 +119,7 @@ impl Zeroing {
             self.phase = Phase::ReadAgain { guide, reading };
             return going(Step::ReadingEncoders, 0.95, guide.activity(instruments, sample));
         }
-        // The instruments have already subtracted the offsets.
+        // The instruments have already subtracted the offsets of the gauges.
         let none = Vector4::zeros();
         // A wrong stiffness shifts the two stops of a joint in opposite directions, so their mean is correct.
         let too_far = (self.stops_found.0 + self.stops_found.1 - self.stops.0 - self.stops.1) * 0.5;

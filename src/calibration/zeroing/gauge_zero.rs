@@ -14,7 +14,7 @@ const LET_OUT: f64 = 0.15;
 /// Force with which a motor begins to let its tendon out, as a fraction of t_min. Most motors that can control t_min
 /// have less friction than this force.
 const PUSH: f64 = 0.8;
-/// Rate at which this force rises until the tendon is out, t_min/s, and the limit of the force, as a fraction of t_min.
+/// Until its tendon is out, the force of a motor rises at the rate [`HARDER`], t_min/s, up to [`HARDEST`], in t_min.
 const HARDER: f64 = 0.5;
 const HARDEST: f64 = 2.0;
 /// Time limit for letting the tendons out, s.

@@ -7,8 +7,8 @@ use crate::model::Links;
 use nalgebra::{Matrix2, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Moment arm, cm. A force with a smaller arm causes torques that are too small to measure. `FingerTip` uses the same
-/// limit.
+/// Moment arm, cm. A force with a smaller arm causes torques that are too small to measure. `FingertipState` uses the
+/// same limit.
 const FELT: f64 = 0.3;
 
 /// The Jacobian of the tip at one pose, and its inverse.

@@ -7,8 +7,8 @@ use crate::control::tendons::tension_integral::{TendonInput, TendonState};
 use nalgebra::{Vector3, Vector4};
 
 /// Fraction of its desired tension below which a tendon counts as slack while the finger does not follow a set point. A
-/// motor brings a tight tendon to a much larger fraction even without the integral, and despite its friction and the
-/// error of its torque constant.
+/// motor brings a tight tendon to a much larger fraction even without the integral of the tendon controller, and
+/// despite its friction and the error of its torque constant.
 const SLACK: f64 = 0.2;
 
 impl Controller {

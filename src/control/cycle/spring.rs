@@ -40,8 +40,8 @@ impl Controller {
         let mut torques = spring.torques(&anchor);
         if let Some(joint_spring) = joint_spring.map(|joint_spring| joint_spring.softened(scale)) {
             torques += joint_spring.torques(&(anchor - joints));
-            // The damper follows from the stiffness of both springs. This sum does not change the torque of the tip's
-            // spring, which is already computed.
+            // The damper follows from the sum of the stiffnesses of both springs. The addition to `k_theta` does not
+            // change the torque of the tip's spring, which is already computed.
             spring.k_theta += joint_spring.k_theta;
         }
         let torques = torques - spring.damper(&(joint_rates - rates));

@@ -34,7 +34,7 @@ pub(super) struct ArrivalState {
     arrival: Arrival,
     /// Joint angles that the joints have kept, rad.
     kept: Vector3<f64>,
-    /// Number of cycles for which they have kept these angles.
+    /// Number of cycles for which the joints have kept the angles `kept`.
     rest: u32,
 }
 

@@ -16,7 +16,7 @@ pub(super) struct JointLimits {
     low: Vector3<f64>,
     /// Upper limits, rad.
     high: Vector3<f64>,
-    /// Distance from its limit within which a joint is at the limit, rad.
+    /// A joint within this distance from a limit is at the limit, rad.
     margin: f64,
 }
 

@@ -54,7 +54,7 @@ impl TensionBounds {
         above.or(self.below.filter(|&bound| tension < bound).map(|bound| (Side::Below, bound)))
     }
 
-    /// Returns whether the tension is beyond the bound moved inward by the hysteresis.
+    /// Moves the bound inward by the hysteresis, and returns whether the tension is beyond the moved bound.
     fn is_near(&self, tension: f64, side: Side) -> bool {
         let hysteresis = |bound: f64| (HYSTERESIS * bound).max(LEAST_HYSTERESIS);
         match side {

@@ -59,8 +59,8 @@ impl EncoderJump {
         }
         let (turned, elapsed) = (std::mem::take(&mut memory.turned), std::mem::take(&mut memory.elapsed));
         let (before, interval) = memory.speed.replace((turned / elapsed, elapsed))?;
-        // Both speeds are means, so the speed may have changed during both intervals. After lost replies the first one
-        // is much longer than the second.
+        // Both speeds are means, so the speed may have changed during both intervals. After lost replies the first
+        // interval is much longer than the second.
         let mean_interval = 0.5 * (interval.max(elapsed) + elapsed);
         first_of(Symptom::EncoderJump, Part::encoder, |encoder| {
             let unexpected = (turned[encoder] - before[encoder] * elapsed) * self.counts_per_radian[encoder];

@@ -23,7 +23,7 @@ impl GaugeEnds {
         count.wrapping_sub(u16::from(self.falling[gauge])) >= full_scale
     }
 
-    /// Returns whether a gauge is at the other end of its range.
+    /// Returns whether a gauge is at the end of its range at which its tendon is slack.
     #[inline]
     pub fn at_lowest(&self, gauge: usize, count: u16, full_scale: u16) -> bool {
         if self.falling[gauge] { count >= full_scale } else { count == 0 }

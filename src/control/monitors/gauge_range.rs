@@ -77,7 +77,8 @@ mod tests {
     use crate::control::signals::{Feedback, Report};
     use nalgebra::Vector4;
 
-    /// Watches a finger whose gauge 2 is falling, with this zero, for 10 ms at each of these tensions.
+    /// Watches a finger for 10 ms at each of these tensions of tendon 2. The counts of gauge 2 fall when the tension
+    /// rises, and `zero` is its zero.
     fn alarmed(zero: f64, tensions: &[f64]) -> Option<Symptom> {
         let mut finger = ConfiguredFinger::default();
         finger.gauge.newton_per_count[1] *= -1.0;

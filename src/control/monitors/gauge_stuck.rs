@@ -229,7 +229,7 @@ mod tests {
     use super::*;
     use crate::control::signals::{Feedback, Report};
 
-    /// At 1000 Hz, a gauge without noise reaches this number in 50 days.
+    /// At 1000 Hz, a gauge without noise reaches the largest number of repetitions, 2^32 - 1, in 50 days.
     #[test]
     fn a_gauge_may_repeat_its_count_more_often_than_can_be_counted() {
         let monitor = GaugeStuck::new(&ConfiguredFinger::default());

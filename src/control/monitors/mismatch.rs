@@ -1,4 +1,4 @@
-//! Learns how the stiffness of the tendons, the gauges and the moment arms of a finger differ from the configured ones.
+//! Learns how the tendon stiffnesses, gauge gains and moment arms of a finger differ from the configured values.
 //!
 //! These errors make gauges and encoders disagree by a sum of seven terms: one for each tendon, in proportion to the
 //! change of its tension, and one for each joint, in proportion to its motion. A Kalman filter estimates the factors of
@@ -23,8 +23,8 @@ type Estimate = SVector<f64, 8>;
 /// more information.
 const PERIOD: f64 = 0.01;
 
-/// Variance that the offset gains between two estimations, as a part of the variance of the noise. It makes the offset
-/// follow a drift.
+/// Variance that the offset gains between two estimations, as a part of the variance of the noise of the disagreement.
+/// It makes the offset follow a drift.
 const DRIFT: f64 = 0.1;
 
 /// Least noise of the disagreement, N rms: the resolution of encoders and gauges.

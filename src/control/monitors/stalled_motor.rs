@@ -8,8 +8,8 @@ use crate::model::{Part, Tendons};
 use nalgebra::Vector4;
 
 /// Smallest tolerated imbalance as a multiple of the configured friction. It matters only if the configured friction is
-/// larger than the thresholds allow for. Otherwise the thresholds apply, so a low configured friction does not make the
-/// monitor more sensitive.
+/// larger than the thresholds `monitors.stall_torque` and `monitors.stall_fraction` allow for. Otherwise these
+/// thresholds apply, so a low configured friction does not make the monitor more sensitive.
 const FRICTION: f64 = 1.5;
 
 /// Total time for which the imbalance must exceed the tolerated one, s. In this time a free motor would turn by dozens

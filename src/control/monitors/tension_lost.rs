@@ -28,15 +28,16 @@ const GONE: f64 = 0.1;
 /// is not zero on a finger with friction along its tendons or with inexact parameters.
 const MISSED: f64 = 0.3;
 
-/// If the mean is positive, the tension that must be missing is larger by this fraction of the mean. A positive mean
-/// shows that the configuration indicates too much stretch. The configuration indicates even more stretch when the
-/// tensions of the other tendons rise.
+/// If the mean of the missing tension (see [`MISSED`]) is positive, the tension that must be missing is larger by this
+/// fraction of the mean. A positive mean shows that the configuration indicates too much stretch. The configuration
+/// indicates even more stretch when the tensions of the other tendons rise.
 const INEXACT: f64 = 0.5;
 
 /// A low tendon that shows some tension does not count as slipping if another tendon became low within this time before
 /// or after it, s. The tendons of a finger whose clamp slips lose their tension one after the other. Two tendons of an
-/// intact finger lose it together in a push if the controller commands small pulls because the configuration is not
-/// exact. With a condition on the pull of the motor instead, a slipping tendon was reported only after 56 ms.
+/// intact finger lose their tension together in a push if the controller commands small pulls because the configuration
+/// is not exact. With a condition on the pull of the motor instead of this time, a slipping tendon was reported only
+/// after 56 ms.
 const TOGETHER: f64 = 0.004;
 
 /// Time constant of the mean of the missing tension before any tendon became low, s.
@@ -175,7 +176,7 @@ mod tests {
     }
 
     /// Returns the fault of a finger whose tendons show 10 N and whose tendon 0 misses `before`, N, for 0.1 s. Then the
-    /// tendons show the tensions of `shown`, N, and tendon 0 misses the tension `then`, N, for this number of ms.
+    /// tendons show the tensions of `shown`, N, and tendon 0 misses the tension `then`, N, for `time` ms.
     fn fault_within(time: usize, before: f64, then: f64, shown: [f64; 4]) -> Option<Symptom> {
         let lost = TensionLost::new(&ConfiguredFinger::default());
         let (feedback, report) = (Feedback::default(), Report::default());

@@ -33,9 +33,9 @@ pub(crate) fn stiffness_of_tendons(finger: &ConfiguredFinger, tendons: &Tendons)
 /// The shares of R k R^T that two stiffnesses use.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct UsedShares {
-    /// That of K_theta.
+    /// The share that K_theta uses.
     pub spring: f64,
-    /// That of the soft joint limits.
+    /// The share that the stiffness of the soft joint limits uses.
     pub limits: f64,
 }
 

@@ -46,8 +46,8 @@ impl GravityCompensation {
         }
     }
 
-    /// Returns the torques, N cm, at joint angles, rad, that compensate gravity. `changed` is the value that has
-    /// replaced the initial one, m/s^2.
+    /// Returns the torques, N cm, that compensate gravity at joint angles, rad. `changed` is the gravity that has
+    /// replaced `initial`, m/s^2.
     pub fn torques(&self, changed: &Option<Vector3<f64>>, joints: &Vector3<f64>) -> Vector3<f64> {
         if !self.wanted || (self.weightless && changed.is_none()) {
             return Vector3::zeros();

@@ -22,7 +22,7 @@ impl JointSprings {
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Option<Self> {
         let admissible = AdmissibleStiffness::new(finger, &finger.tendons().ok()?, rate)?;
         Some(Self {
-            // The time constant affects only the damper.
+            // `rate_time` affects only the damper.
             joint_stiffness: JointStiffness::new(finger.links(), 0.0),
             soft_limits: SoftLimits::new(finger, &admissible.of_joints()),
         })

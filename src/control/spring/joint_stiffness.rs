@@ -210,8 +210,8 @@ impl PosedSpring<'_> {
     /// Returns tau of the damper, N cm, at joint rates, rad/s. Its matrix is symmetric, positive definite, and
     /// proportional to the spring's relative damping.
     pub fn damper(&self, rates: &Vector3<f64>) -> Vector3<f64> {
-        // b = (beta^2 K_ref / K_jj)^(1/4). Without stiffness the lower bound of K_jj avoids a division by zero, and the
-        // product with K_theta is zero.
+        // b = sqrt(beta) = (rate_time^2 K_ref / K_jj)^(1/4), where K_ref is the reference value of K_jj. Without
+        // stiffness the lower bound of K_jj avoids a division by zero, and the product with K_theta is zero.
         let stiffness = self.k_theta.diagonal();
         let b = stiffness.zip_map(&self.of.damping, |k, damping| (damping / k.max(1e-6)).sqrt().sqrt());
         let damped = (self.k_theta * rates.component_mul(&b)).component_mul(&b) + rates * LIMP_DAMPING;

@@ -32,8 +32,8 @@ const STAYING: f64 = 0.1;
 /// Time constant with which the envelope decays, s: some periods of the dither.
 const DECAYING: f64 = 0.08;
 
-/// Computes the envelope from the reference and the torque of the spring. The dither itself cannot trigger it, because
-/// the rates of the reference do not depend on measurements.
+/// Computes the envelope from the reference and the torque of the spring. The dither itself cannot trigger a burst,
+/// because the rates of the reference do not depend on measurements.
 #[derive(Clone, Debug)]
 pub(super) struct DitherBurst {
     /// Largest torque of the spring with which a burst begins, N cm.
@@ -61,7 +61,7 @@ impl DitherBurst {
     pub fn new(torques: &Vector3<f64>, rate: f64) -> Self {
         Self {
             held: torques * HELD,
-            // At 500 Hz, nominal fingers at walls moved by 65 um rms.
+            // When `waits` was also true at 500 Hz, nominal fingers at walls moved by 65 um rms.
             can_wait: rate >= FULL_RATE,
             period: 1.0 / rate,
             rising: (1.0 / (RISING * rate)).min(1.0),

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 /// joint divided by the sum of the magnitudes of the torques of its four tendons at the pretension.
 const FIRMNESS: f64 = 2.0;
 
-/// The same for the firmness of a joint while the other joints are free. This firmness is small if the finger is nearly
-/// straight. With 0.2, the amplitude is smallest if joint 2 is bent by 32 degrees or more, and as configured at 21
-/// degrees.
+/// Like [`FIRMNESS`], but for the firmness of a joint while the other joints are free, 1/rad. This firmness is small if
+/// the finger is nearly straight. With 0.2, the amplitude is smallest if joint 2 is bent by 32 degrees or more, and as
+/// configured at 21 degrees.
 const FREE_FIRMNESS: f64 = 0.2;
 
 /// Range of the factor on the amplitude. With a factor of up to 2.5 the softest poses are more exact, but they creep
@@ -19,14 +19,14 @@ const FACTORS: [f64; 2] = [0.7, 2.0];
 /// Additional factor on the amplitude of a finger that touches something. At walls the dither moves the tip.
 const TOUCHING: f64 = 0.7;
 
-/// Time constant with which this factor begins and ceases to act, s.
+/// Time constant with which the factor [`TOUCHING`] begins and ceases to act, s.
 const CHANGING: f64 = 0.05;
 
 /// Pulleys that dither keeps sliding act like viscous friction. A finger that was pushed therefore approaches its rest
 /// position with a time constant that is inversely proportional to the stiffness of the joints and to the amplitude of
 /// the dither. In a pose in which the tip is close to the axis of a joint, this joint is soft. A nearly straight finger
-/// is soft along its links. There the amplitude is larger. In poses with stiff joints a smaller amplitude suffices, and
-/// the tip, which has a long lever, moves less.
+/// is soft along its links. In both cases the amplitude is larger. In poses with stiff joints a smaller amplitude
+/// suffices, and the tip, which has a long lever, moves less.
 #[derive(Clone, Debug)]
 pub(super) struct DitherScale {
     /// For each joint, 1 / the sum of the magnitudes of the torques of the four tendons at the pretension, 1/(N cm).
@@ -45,8 +45,8 @@ impl DitherScale {
         Self { inverse_torques: torques.map(f64::recip), changing: (1.0 / (CHANGING * rate)).min(1.0) }
     }
 
-    /// Returns the factor on the amplitude. `k_theta` is the stiffness of the joints, N cm/rad. `touches` tells that
-    /// the spring exerts so much torque that the finger touches something.
+    /// Returns the factor on the amplitude. `k_theta` is the stiffness of the joints, N cm/rad. `touches` tells whether
+    /// the spring exerts so much torque that the finger probably touches something.
     pub fn advance(&self, state: &mut DitherScaleState, k_theta: &Matrix3<f64>, touches: bool) -> f64 {
         state.0 += (f64::from(touches) - state.0) * self.changing;
         let softness = (FIRMNESS * self.most_per(&k_theta.diagonal()))

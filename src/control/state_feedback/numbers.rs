@@ -84,12 +84,13 @@ pub struct Numbers {
     /// Additional tension of a tendon that creeps while the reference is at rest, divided by the friction p t of its
     /// pulleys and by its speed, s/m.
     pub creep_slope: f64,
-    /// Bandwidth of the low-pass filter on this speed, rad/s. Dither and noise are above this bandwidth.
+    /// Bandwidth of the low-pass filter on the speed of a tendon that creeps, rad/s. Dither and noise are above this
+    /// bandwidth.
     pub creep_bandwidth: f64,
     /// Largest additional stiffness during a fast motion of the reference, as a share of R k R^T. 0: the stiffness does
     /// not change.
     pub stiffening: f64,
-    /// The same if the friction of the pulleys is known, and so fed forward.
+    /// Replaces [`Numbers::stiffening`] if the friction of the pulleys is known, and is therefore fed forward.
     pub identified_stiffening: f64,
 }
 
@@ -155,8 +156,8 @@ const FRICTION_SHARE: f64 = 0.5;
 /// See [`Numbers::friction_slope`].
 const FRICTION_SLOPE: f64 = 0.4;
 
-/// The numbers that the table contains for several rates. A field without a comment has the meaning of the same field
-/// in [`Numbers`].
+/// The numbers that the table contains for several rates. A field has the meaning of the field with the same name in
+/// [`Numbers`], if there is one.
 #[derive(Clone, Copy)]
 struct TunedNumbers {
     inertia_gain: f64,

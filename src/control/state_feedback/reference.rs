@@ -129,7 +129,8 @@ impl Reference {
     }
 
     /// Returns the motion of the last stage. Each derivative follows from x_n' = (x_(n-1) - x_n) / `lag`, so the rates
-    /// are the slopes of the angles from cycle to cycle. The time constant instead of `lag` would make them too small.
+    /// are the slopes of the angles from cycle to cycle. With the time constant in place of `lag`, the rates would be
+    /// too small.
     pub fn motion(&self, state: &ReferenceState) -> ReferenceMotion {
         let [first, second, third, fourth, last] = state.0;
         let [per, per_2, per_3, per_4] = self.per;

@@ -30,9 +30,9 @@ const LARGEST: f64 = 0.05;
 
 /// Time constant with which the stiffness rises, s.
 const RISING: f64 = 0.01;
-/// Time constant with which it decays after the motion, s. With wrong gauges or moment arms, the additional stiffness
-/// changes the rest position, and the finger must return while the stiffness decays. When the stiffness stayed for
-/// 0.12 s and then decayed with 0.08 s, steps of "cheap" fingers settled in 361 instead of 168 ms.
+/// Time constant with which the stiffness decays after the motion, s. With wrong gauges or moment arms, the additional
+/// stiffness changes the rest position, and the finger must return while the stiffness decays. When the stiffness
+/// stayed for 0.12 s and then decayed with 0.08 s, steps of "cheap" fingers settled in 361 instead of 168 ms.
 const DECAYING: f64 = 0.02;
 /// Part of the largest additional stiffness below which it becomes zero.
 const ENDED: f64 = 1e-3;

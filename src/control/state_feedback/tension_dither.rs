@@ -70,8 +70,8 @@ pub(crate) struct TensionDither {
     burst: DitherBurst,
     /// For a finger whose configured pulley friction requires a larger dither.
     scaling: Option<DitherScale>,
-    /// Largest b of a burst, N. The limit [`TensionDither::risen`] does not apply to it. If it grew with the tensions,
-    /// the dither of loaded fingers would make tendons slack at hard walls.
+    /// Largest b of a burst, N. The limit [`TensionDither::risen`] does not apply to it. If this b grew with the
+    /// tensions, the dither of loaded fingers would make tendons slack at hard walls.
     burst_amplitude: f64,
 }
 

@@ -3,7 +3,7 @@
 //! The first tendon that comes taut moves a free finger until another tendon opposes it. If all tendons were wound in
 //! together, unequal slack would turn the joints by more than a radian. So every motor winds in slowly until it detects
 //! tension in its tendon, and then waits until all motors have detected tension. From then on the joint angles can be
-//! measured. The joints are held there while the tensions rise.
+//! measured. The joints are held at the angles of this moment while the tensions rise.
 
 use crate::control::spring::joint_hold::JointHold;
 use crate::control::take_up::progress::Slackness;

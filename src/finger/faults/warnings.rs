@@ -16,7 +16,7 @@ pub(in crate::finger) struct RecentWarnings {
 }
 
 impl RecentWarnings {
-    /// Notes the warning of the next cycle, if there is one. Returns whether the warning is new: it was absent for more
+    /// Notes the warning of this cycle, if there is one. Returns whether the warning is new: it was absent for more
     /// than `cycles` cycles.
     fn note(&mut self, warning: Option<&Fault>, cycles: u32) -> bool {
         self.cycle += 1;

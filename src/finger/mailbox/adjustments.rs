@@ -18,8 +18,8 @@ impl Mailbox {
         Ok(())
     }
 
-    /// Replaces the last set point by `corrected`, if it is still `sent`. `replaced` is the part that differs. A
-    /// planner has not sent the correction, so the validity of the last set point neither ends nor begins again.
+    /// Replaces the last set point by `corrected`, if it is still `sent`. `replaced` is the part that differs. The
+    /// correction does not come from a planner, so the validity of the last set point neither ends nor begins again.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. Nothing is changed in that case.

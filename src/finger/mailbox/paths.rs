@@ -135,7 +135,7 @@ impl PlannersEnd {
         self.reports.read().set_point_number.wrapping_sub(self.path.set_point).cast_signed() >= 0
     }
 
-    /// Returns the stiffness with which a path begins that comes after `sent`, and the same stiffness again if the
+    /// Returns the stiffness with which a path that comes after `sent` begins, and the same stiffness again if the
     /// servo must take it from the path. The servo need not do so if the stiffness in force is changing along an
     /// earlier path. Without the stiffness in the path, a stiffness that was sent just before the path would never come
     /// into force, because the servo takes only the newest set point. The path would then begin with an older

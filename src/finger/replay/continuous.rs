@@ -25,7 +25,8 @@ pub struct ContinuousReplay {
     hand: Option<ConfiguredHand>,
     sources: BTreeMap<u32, ControllerSource>,
     ready: BTreeMap<u32, Controller>,
-    /// The state before the next cycle; none before the first keyframe and after a gap.
+    /// The state before the next cycle; none before the first keyframe, after a gap, and after a cycle with an unknown
+    /// controller.
     state: Option<State>,
     keyframe: Option<(u64, State)>,
     /// Number of the next cycle; none before the first.
@@ -48,7 +49,7 @@ pub struct Recomputed {
 pub enum Step {
     /// Nothing, because no controller ran in this cycle.
     Idle,
-    /// Nothing, because no keyframe has arrived since the beginning or since a gap.
+    /// Nothing, because no keyframe has arrived since the beginning, a gap, or a cycle with an unknown controller.
     Waiting,
     /// Nothing, because the cycle names the controller with this number, which has not arrived.
     UnknownController(u32),

@@ -1,4 +1,4 @@
-//! The state of an event queue. The thread that makes the descriptor of the queue readable has access to it too.
+//! The state of an event queue, which the queue shares with the thread that makes the queue's descriptor readable.
 
 use super::merging::{MergedEvents, Next};
 use super::source::EventSource;
@@ -93,7 +93,7 @@ mod tests {
         let period = 1_000_000;
         let source = EventSource::new(logs, Pages::new(EventCount::default()).into(), period);
         let queue = QueueState::new(Arc::new(source));
-        // The other fingers have not finished this cycle, so the event waits for theirs.
+        // The other fingers have not finished this cycle, so the event is held back.
         let began = now() + 20 * period;
         writers[0].begin_cycle(1, began);
         writers[0].write(Occurrence { kind: EventKind::Contact, part: Part::Finger, values: [0.0; 4] });

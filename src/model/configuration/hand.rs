@@ -112,7 +112,8 @@ pub struct ConfiguredHand {
     pub on_fault: OnFault,
     /// The handling of a command outside the limits.
     pub out_of_range: OutOfRange,
-    /// Whether the first refusal of each kind prints one line on standard error.
+    /// Whether the first refusal of each kind is reported in one line: to the program's log callback, or on standard
+    /// error if there is no callback.
     pub print_refusals: bool,
     /// Folder for files with the last two seconds of a finger that faults. Without a folder, no file is written.
     pub black_box: Option<String>,

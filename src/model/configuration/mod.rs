@@ -95,9 +95,9 @@ pub struct ConfiguredFinger {
     pub core: Option<usize>,
     /// SCHED_FIFO priority of the thread, 1 to 99. With 0 the thread is not real-time.
     pub priority: u8,
-    /// Position of the finger's base in the palm, cm. Without it the default of the finger with this number is used.
+    /// Position of the finger's base in the palm, cm. Without it the default for the finger's number is used.
     pub base: Option<[f64; 3]>,
-    /// Rotation of the finger's frame about the palm's z axis, degrees. Without it the default of the finger with this
+    /// Rotation of the finger's frame about the palm's z axis, degrees. Without it the default for the finger's
     /// number is used.
     pub turn_degrees: Option<f64>,
     /// `[finger.geometry]`

@@ -1,6 +1,7 @@
 //! Bounds of a polynomial over the unit interval, by its Bernstein form.
 
-/// Number of coefficients of a polynomial. A piece of a path from rest to rest with a continuous jerk has degree 7.
+/// Number of coefficients of a polynomial. The highest degree is 7: that of a path with only one piece, whose place,
+/// rate, acceleration and jerk are given at both ends.
 pub const COEFFICIENTS: usize = 8;
 
 /// The values of a polynomial lie within the range of its Bernstein coefficients.

@@ -1,4 +1,4 @@
-/* Builds the examples of the page from the values that stand beside them. */
+/* Builds the examples of docs/board-protocol.md from the values that stand beside them there. */
 
 #include "examples.h"
 #include "board.h"

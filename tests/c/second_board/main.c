@@ -2,7 +2,7 @@
    can agree only through the page.
 
        second_board ADDRESS         a board on a pseudo-terminal, whose path is the first line of the output
-       second_board --check PAGE    the hex examples of the page against the codec below
+       second_board --check PAGE    compares the hex examples of the page with the codec in frame.c
 
    For each line on its standard input the board prints the true joint angles: three, rad. It ends when its standard
    input ends, so that it does not outlive the program that started it. */

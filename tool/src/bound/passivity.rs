@@ -11,7 +11,7 @@ use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::nalgebra::{Matrix3, Vector3};
 use sun2xp::stability::{OneCycleMap, Rest};
 
-/// Number of poses.
+/// Number of poses without --samples.
 const POSES: usize = 4;
 
 /// Lowest and highest frequency, Hz, and the number of steps between them. Every step has the same ratio.

@@ -149,7 +149,7 @@ mod tests {
     use super::*;
     use std::thread;
 
-    /// Each process has its own copy of the whole file, and notes the steps of its own finger.
+    /// Each session reads and replaces the whole file, and adds only the steps of its own finger.
     #[test]
     fn sessions_for_different_fingers_keep_the_notes_of_each_other() {
         let folder = tempfile::tempdir().expect("a folder");

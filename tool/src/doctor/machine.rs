@@ -94,7 +94,7 @@ fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) 
         let advice = "The servos have the jitter of ordinary threads: set finger.priority to 80";
         return Finding::new(Rating::Warning, subject, "finger.priority is 0", advice);
     }
-    // No limit means unlimited.
+    // `None` means unlimited.
     if capable || limit.is_none_or(|limit| limit >= wanted.into()) {
         let by = match limit {
             _ if capable => "CAP_SYS_NICE".into(),
@@ -119,7 +119,7 @@ fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) 
 fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> Finding {
     let subject = "locked memory";
     let needed = LOCKED + (LOCKED_PER_HZ * configuration.hand.rate).ceil() as u64;
-    // No limit means unlimited.
+    // `None` means unlimited.
     if capable || limit.is_none_or(|limit| limit >= needed) {
         let by = if capable { "CAP_IPC_LOCK" } else { "the memlock limit" };
         return Finding::good(subject, format!("permitted by {by}"));

@@ -257,7 +257,7 @@ fn move_all(
     Ok(format!("the hand {verb}"))
 }
 
-/// Returns the joint angles that the hand uses if these are sent, rad. A hand that clamps uses the nearest angles
+/// Returns the joint angles that the hand uses if `joints` are sent, rad. A hand that clamps uses the nearest angles
 /// within the limits.
 fn admitted(configuration: &Configuration, finger: i32, joints: [f64; 3]) -> [f64; 3] {
     let index = usize::try_from(finger).ok().and_then(|number| number.checked_sub(1));

@@ -79,7 +79,7 @@ pub struct Link {
     pub inertia: [f64; 3],
 }
 
-/// The object that all fingers of a simulated hand touch.
+/// The object that all fingers of a simulated hand can touch.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Object {
     /// Its shape, with the middle at the origin.

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread::{self, Thread};
 use std::time::{Duration, Instant};
 
-/// Work that is shorter than this shows no line.
+/// Work that is shorter than this shows no line, unless every new name gets a line at once.
 const FIRST_LINE: Duration = Duration::from_secs(1);
 
 /// Time between two lines.
@@ -160,7 +160,7 @@ impl Lines {
 fn bar(what: &str, total: u64) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
     let template = "{prefix} {bar:30.cyan/dim} {percent:>3} %  {eta:>4} left  {msg:.dim}";
-    // The template is a constant that the tests check. Without it the bar has its usual form.
+    // The template is a constant and valid. If it were not valid, the bar would keep its usual form.
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style.progress_chars("━╸─"));
     }

@@ -30,7 +30,7 @@ impl<T: Into<String>> From<T> for Cell {
 }
 
 /// A table. On a terminal the header has a line below it, and cells wrap at the width of the terminal. In a file or a
-/// pipe, a row is one line of plain text with at least two spaces between its columns.
+/// pipe, a row without line feeds is one line of plain text with at least two spaces between its columns.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     header: Vec<String>,

@@ -3,7 +3,7 @@
 use sun2xp::model::FingerNumber;
 use sun2xp::telemetry::Message;
 
-/// What a recording contains, in its order.
+/// One item of a recording.
 #[derive(Clone, Debug)]
 #[expect(
     clippy::large_enum_variant,

@@ -71,7 +71,8 @@ impl<W: Write + Seek> RecordingWriter<W> {
             .profile("ros2")
             .library(concat!("sun2xp ", env!("CARGO_PKG_VERSION")))
             .chunk_size(Some(CHUNK_BYTES))
-            // The writer then writes each chunk as a whole. Even a recording that is cut off has complete chunks.
+            // Without seeking, the writer writes each chunk as a whole. Even a recording that is cut off has complete
+            // chunks.
             .disable_seeking(true)
             .compression_level(COMPRESSION)
             .compression_threads(0)

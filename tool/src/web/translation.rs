@@ -259,7 +259,7 @@ mod tests {
     use sun2xp::Stage;
     use sun2xp::model::configuration::Configuration;
 
-    /// The clock of the machine may be set between the reading of the offset and this call.
+    /// The clock of the machine may be set between the measurement of `clock_offset` and the start of the translation.
     #[test]
     fn the_time_of_the_page_begins_at_zero_whatever_the_clock_of_the_machine_shows() {
         let description = Description {

@@ -80,7 +80,7 @@ fn refused_and_superseded_adjustments_are_not_kept() {
     let _turn = turn();
     let (board, hand) = own_board(Scheme::Figure10, None);
     let kept = |finger| hand.recording(finger).expect("a recording").origin.controllers.len();
-    // An adjustment is refused if the set point is outside of its limits, or if the finger is faulted.
+    // An adjustment is refused if the set point is outside of the new limits, or if the finger is faulted.
     for _ in 0..10 {
         let error = hand.adjust(1, "joints.minimum_degrees = [30, 60, 90]").expect_err("refused");
         assert_eq!(error.errno(), libc::ERANGE, "{error}");

@@ -184,7 +184,7 @@ fn alter_at_once(lines: &mut Lines, times: usize, outcomes: &mut Outcomes) {
     let numbers: Vec<_> = places.into_iter().filter(|place| lines.at(place).is_number()).collect();
     for _ in 0..times {
         let mut below = |bound: usize| random.next_u64() as usize % bound;
-        // Most of these numbers pass the parser.
+        // The chosen entries of `INSTEAD` are numbers, most of which pass the parser.
         let chosen: Vec<_> =
             (0..2 + below(5)).map(|_| (&numbers[below(numbers.len())], INSTEAD[6 + below(8)])).collect();
         let before: Vec<_> = chosen

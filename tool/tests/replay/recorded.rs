@@ -65,7 +65,7 @@ fn reader_of_this_process() -> Reader {
 }
 
 impl Recorded {
-    /// Writes messages as a recording does.
+    /// Writes a recording that contains only the description and the messages for replay.
     pub fn write(&self, messages: &[Message]) -> NamedTempFile {
         let file = NamedTempFile::with_suffix(".mcap").expect("a file");
         let output = BufWriter::new(File::create(file.path()).expect("created"));

@@ -122,8 +122,8 @@ fn a_held_button_ends_when_another_finger_is_selected() {
 
 /// Presses a button until the page shows an answer, and returns it. `prepared` and `answer` are scripts: `prepared`
 /// returns true when the button may be pressed, and `answer` returns the text of the answer, or a false value until
-/// there is one. On a busy machine, the page may change between the calls for the press. If the press was therefore
-/// another one, releases the button, prints what happened, and presses again.
+/// there is one. On a busy machine, the page may change between the calls for the press. If the mouse has therefore
+/// pressed something else, releases the button, prints what happened, and presses again.
 fn press(browser: &Browser, button: &str, prepared: &str, answer: &str) -> String {
     browser.run("addEventListener('pointerdown', (event) => { window.pressed = event.target; }, { capture: true })");
     loop {

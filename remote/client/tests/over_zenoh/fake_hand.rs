@@ -1,4 +1,4 @@
-//! The hand behind the small server: its owner, and what its fingers do.
+//! The hand behind the small server of `server.rs`: its owner, and what its fingers do.
 
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};

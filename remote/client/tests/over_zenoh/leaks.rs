@@ -1,4 +1,5 @@
-//! What remains of a hand that was closed. The other tests of this process would disturb it, so it runs alone.
+//! What remains of a hand that was closed. The other tests of this process would disturb the counts, so this test runs
+//! alone.
 
 use crate::server::{FakeServer, configuration, free_port};
 use std::fs::{read_dir, read_to_string};

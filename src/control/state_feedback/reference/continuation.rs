@@ -114,8 +114,8 @@ mod tests {
         })
     }
 
-    /// The speed of the anchor is 5 rad/s. The adjustment comes while the reference speeds up, while it has its full
-    /// speed, and while it slows down.
+    /// The speed of the anchor is 5 rad/s. The time constant changes while the reference speeds up, while it has its
+    /// full speed, or while it slows down.
     #[test]
     fn another_time_constant_does_not_move_a_reference_on_its_way() {
         let (first, slew) = (Reference::new(0.008, RATE), Slew::new(5.0, RATE));

@@ -17,7 +17,7 @@ fn parts(order: &[usize; 4]) -> String {
     }
 }
 
-/// Lists what was seen at each part, where no exchange of cables explains it.
+/// Lists what was seen at each part, if no exchange of cables explains the order.
 fn listed(order: &[usize; 4], text: fn(usize, usize) -> String) -> String {
     (1..).zip(order).map(|(place, &found)| text(place, found)).collect::<Vec<_>>().join(", ")
 }
