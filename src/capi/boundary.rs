@@ -147,7 +147,8 @@ fn slow(
 /// Runs `call` without cancellation. `call` must not panic, and its result must need no destructor.
 ///
 /// This function is inlined into the exported function. No value in it has a destructor, because a thread with
-/// asynchronous cancellation may be unwound from this function before and after the call.
+/// asynchronous cancellation may be unwound from this function before and after the call. An exported function that
+/// needs such values does all its work in this function's call.
 #[inline(always)]
 pub(super) fn uncancelled<R, F: FnOnce() -> R>(call: F) -> R {
     let mut call = ManuallyDrop::new(call);

@@ -3,7 +3,7 @@
 // The exported names are those of the header.
 #![allow(non_camel_case_types)]
 
-use crate::capi::boundary::{MEMORY_OF_THREAD, delegated, guarded};
+use crate::capi::boundary::{MEMORY_OF_THREAD, delegated, guarded, uncancelled};
 use crate::capi::event_struct::sun2xp_event;
 use crate::capi::hand_events;
 use crate::capi::hand_table;
@@ -79,30 +79,33 @@ pub unsafe extern "C" fn sun2xp_next_event(hand: *mut sun2xp_hand, event: *mut s
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut sun2xp_event, seconds: f64) -> c_int {
     let hand = Handle::of(hand);
-    // A negative time means no limit, and so does a time that is too long for the clock. NaN means no wait.
-    let limit = if seconds.is_nan() { Some(Duration::ZERO) } else { Duration::try_from_secs_f64(seconds).ok() };
-    let deadline = limit.and_then(|limit| Instant::now().checked_add(limit));
-    loop {
-        // SAFETY: by the contract in the manual, `event` is null or points to as many bytes as its first member gives.
-        match unsafe { take("sun2xp_wait_event", hand, event) } {
-            0 => {}
-            result => return result,
+    uncancelled(|| {
+        // A negative time means no limit, and so does a time that is too long for the clock. NaN means no wait.
+        let limit = if seconds.is_nan() { Some(Duration::ZERO) } else { Duration::try_from_secs_f64(seconds).ok() };
+        let deadline = limit.and_then(|limit| Instant::now().checked_add(limit));
+        loop {
+            // SAFETY: by the contract in the manual, `event` is null or points to as many bytes as its first member
+            // gives.
+            match unsafe { take("sun2xp_wait_event", hand, event) } {
+                0 => {}
+                result => return result,
+            }
+            let left = deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
+            if left.is_some_and(|left| left.is_zero()) {
+                return 0;
+            }
+            // The thread of this call only waits. The planner's thread takes the event, so that no event is lost if a
+            // signal handler jumps out of the wait.
+            let wait = move || match hand_table::remote(hand)? {
+                Some(remote) => Ok(remote.wait_for_event(left)?),
+                None => hand_table::events(hand)?.wait(hand, left).map(|_| ()),
+            };
+            match delegated("sun2xp_wait_event", hand, MEMORY_OF_THREAD, || Ok(wait)) {
+                0 => {}
+                refused => return refused,
+            }
         }
-        let left = deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
-        if left.is_some_and(|left| left.is_zero()) {
-            return 0;
-        }
-        // The thread of this call only waits. The planner's thread takes the event, so that no event is lost if a
-        // signal handler jumps out of the wait.
-        let wait = move || match hand_table::remote(hand)? {
-            Some(remote) => Ok(remote.wait_for_event(left)?),
-            None => hand_table::events(hand)?.wait(hand, left).map(|_| ()),
-        };
-        match delegated("sun2xp_wait_event", hand, MEMORY_OF_THREAD, || Ok(wait)) {
-            0 => {}
-            refused => return refused,
-        }
-    }
+    })
 }
 
 /// sun2xp_on_event - call a function with each event
@@ -194,17 +197,19 @@ pub extern "C" fn sun2xp_on_event(
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_event_descriptor(hand: *mut sun2xp_hand) -> c_int {
     let hand = Handle::of(hand);
-    let descriptor = Arc::new(AtomicI32::new(-1));
-    let made = descriptor.clone();
-    let result = delegated("sun2xp_event_descriptor", hand, MEMORY_OF_THREAD, || {
-        Ok(move || {
-            // Refuses a hand of another machine.
-            hand_table::with(hand, |_| Ok::<_, Refusal>(()))?;
-            made.store(hand_table::events(hand)?.descriptor(hand)?, Ordering::Relaxed);
-            Ok(())
-        })
-    });
-    if result == 0 { descriptor.load(Ordering::Relaxed) } else { result }
+    uncancelled(|| {
+        let descriptor = Arc::new(AtomicI32::new(-1));
+        let made = descriptor.clone();
+        let result = delegated("sun2xp_event_descriptor", hand, MEMORY_OF_THREAD, || {
+            Ok(move || {
+                // Refuses a hand of another machine.
+                hand_table::with(hand, |_| Ok::<_, Refusal>(()))?;
+                made.store(hand_table::events(hand)?.descriptor(hand)?, Ordering::Relaxed);
+                Ok(())
+            })
+        });
+        if result == 0 { descriptor.load(Ordering::Relaxed) } else { result }
+    })
 }
 
 /// Takes the next event. Returns 1 if there was an event, 0 if there was none, or a negative number if the call is

@@ -49,6 +49,7 @@ const LONGEST_WAIT_AT_EXIT: Duration = Duration::from_millis(100);
 const CLOSING_PERIOD: Duration = Duration::from_millis(1);
 
 /// The handle of the hand of OpenHand; null if it is not open.
+#[inline(always)]
 pub(super) fn default_handle() -> Handle {
     Handle::from_value(TABLE[DEFAULT].handle.load(Ordering::Acquire))
 }

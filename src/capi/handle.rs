@@ -46,10 +46,12 @@ impl Handle {
         Self(TAG << (usize::BITS - TAG_BITS) | number << PLACE_BITS | place)
     }
 
+    #[inline(always)]
     pub fn of(pointer: *const sun2xp_hand) -> Self {
         Self(pointer.addr())
     }
 
+    #[inline(always)]
     pub fn from_value(value: usize) -> Self {
         Self(value)
     }

@@ -135,8 +135,11 @@ pub unsafe extern "C" fn sun2xp_open_named(name: *const c_char, hand: *mut *mut 
 /// Threads: any. Waits until the callback of sun2xp_on_event has returned, except in a callback.
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_close(hand: *mut sun2xp_hand) -> c_int {
-    let (hand, in_callback) = (Handle::of(hand), in_callback());
-    delegated_or_done_here("sun2xp_close", hand, move || hand_table::close(hand, in_callback))
+    let hand = Handle::of(hand);
+    uncancelled(|| {
+        let in_callback = in_callback();
+        delegated_or_done_here("sun2xp_close", hand, move || hand_table::close(hand, in_callback))
+    })
 }
 
 /// sun2xp_default_hand - the hand that OpenHand has opened
@@ -153,28 +156,31 @@ pub extern "C" fn sun2xp_default_hand() -> *mut sun2xp_hand {
 ///
 /// # Safety
 /// `out` is null or points to a handle. The pointers that `source` uses are valid.
+#[inline(always)]
 pub(super) unsafe fn open<S: Into<SourceWithIo>>(
     name: &'static str,
     out: *mut *mut sun2xp_hand,
     source: impl FnOnce() -> Result<S, Refusal>,
 ) -> c_int {
-    let opened = Arc::new(AtomicUsize::new(0));
-    let result = {
-        let opened = opened.clone();
-        delegated(name, Handle::NULL, MEMORY_OF_HAND, || {
-            non_null(out, "hand", Wanted::Handle)?;
-            let source = source()?.into();
-            Ok(move || {
-                opened.store(hand_table::open(source, loaded_hand::open)?.value(), Ordering::Relaxed);
-                Ok(())
+    uncancelled(|| {
+        let opened = Arc::new(AtomicUsize::new(0));
+        let result = {
+            let opened = opened.clone();
+            delegated(name, Handle::NULL, MEMORY_OF_HAND, || {
+                non_null(out, "hand", Wanted::Handle)?;
+                let source = source()?.into();
+                Ok(move || {
+                    opened.store(hand_table::open(source, loaded_hand::open)?.value(), Ordering::Relaxed);
+                    Ok(())
+                })
             })
-        })
-    };
-    if result == 0 {
-        // SAFETY: `out` is not null, as checked above, and by the contract of this function it points to a handle.
-        unsafe { out.write_unaligned(Handle::from_value(opened.load(Ordering::Relaxed)).to_c()) };
-    }
-    result
+        };
+        if result == 0 {
+            // SAFETY: `out` is not null, as checked above, and by the contract of this function it points to a handle.
+            unsafe { out.write_unaligned(Handle::from_value(opened.load(Ordering::Relaxed)).to_c()) };
+        }
+        result
+    })
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 // The exported names are those of the header.
 #![allow(non_camel_case_types)]
 
-use crate::capi::boundary::{MEMORY_OF_CALL, delegated, guarded};
+use crate::capi::boundary::{MEMORY_OF_CALL, delegated, guarded, uncancelled};
 use crate::capi::fingers::fingers;
 use crate::capi::hand_table;
 use crate::capi::handle::{Handle, sun2xp_hand};
@@ -44,9 +44,11 @@ use std::ffi::c_int;
 ///     signal(SIGINT, on_interrupt);
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_stop_all() -> c_int {
-    hand::stop_all();
-    loaded_hand::stop_all();
-    0
+    uncancelled(|| {
+        hand::stop_all();
+        loaded_hand::stop_all();
+        0
+    })
 }
 
 /// sun2xp_stop - stop a finger, or all fingers of a hand

@@ -22,7 +22,22 @@ struct job {
 static int zero(void) { return sun2xp_zero(HAND, 1); }
 static int identify(void) { return sun2xp_identify(HAND, 2); }
 static int write_black_box(void) { return sun2xp_write_black_box(HAND, 3, "cancelled.jsonl"); }
+static int event_descriptor(void) { return sun2xp_event_descriptor(HAND) >= 0 ? 0 : -1; }
 static int adjust(void) { return sun2xp_adjust(HAND, 3, "tendon.minimum = 6"); }
+
+static sun2xp_hand *other;
+static int open_another(void) { return sun2xp_open_named("nominal", &other); }
+static int close_another(void) { return sun2xp_close(other); }
+
+/* Events that have happened already would end the wait at once. */
+static int wait_for_event(void)
+{
+    struct sun2xp_event event;
+    event.size = sizeof event;
+    while (sun2xp_next_event(other, &event) == 1)
+        ;
+    return sun2xp_wait_event(other, &event, 0.1) < 0 ? -1 : 0;
+}
 
 /* Tries several times, because on a busy machine the board may not answer in time. */
 static int recover_finger(int finger)
@@ -114,6 +129,17 @@ int main(void)
         result = cancelled_in(write_black_box, asynchronous, 2);
         CHECK(result == 0 || (asynchronous && result == 2));
         result = cancelled_in(adjust, asynchronous, 0);
+        CHECK(result == 0 || (asynchronous && result == 2));
+        result = cancelled_in(event_descriptor, asynchronous, 0);
+        CHECK(result == 0 || (asynchronous && result == 2));
+        result = cancelled_in(sun2xp_stop_all, asynchronous, 0);
+        CHECK(result == 0 || (asynchronous && result == 2));
+        other = NULL;
+        result = cancelled_in(open_another, asynchronous, 20);
+        CHECK((result == 0 || (asynchronous && result == 2)) && other != NULL);
+        result = cancelled_in(wait_for_event, asynchronous, 20);
+        CHECK(result == 0 || (asynchronous && result == 2));
+        result = cancelled_in(close_another, asynchronous, 5);
         CHECK(result == 0 || (asynchronous && result == 2));
         result = cancelled_in(recover, asynchronous, 60);
         CHECK(result == 0 || (asynchronous && result == 2));

@@ -1,6 +1,7 @@
 //! The shared library and the static library.
 
 use crate::c::{Bench, STRICT, c_compiler, library, root, said};
+use std::collections::HashMap;
 use std::fs;
 use std::process::Command;
 
@@ -36,6 +37,36 @@ fn the_library_exports_the_calls_and_nothing_else() {
     calls.sort_unstable();
     assert!(["CloseHand", "GetPos", "OpenHand", "SendKx", "SendPos"].iter().all(|call| exported.contains(call)));
     assert_eq!(exported, calls);
+}
+
+/// A thread with asynchronous cancellation may be unwound from the frame of the call that it has made. If this frame had
+/// a landing pad, the unwinder would end the process. The FDE of a function with landing pads gives their place.
+#[test]
+fn no_frame_of_a_call_has_a_landing_pad() {
+    let run = Command::new("nm").args(["-D", "--defined-only"]).arg(library()).output().expect("nm can be started");
+    let listing = said(&run);
+    let address = |line: &'_ str| u64::from_str_radix(line.split_whitespace().next()?, 16).ok();
+    let calls: HashMap<u64, &str> =
+        listing.lines().filter_map(|line| Some((address(line)?, line.split_whitespace().nth(2)?))).collect();
+    let mut readelf = Command::new("readelf");
+    let run = readelf.args(["-W", "--debug-dump=frames"]).arg(library()).output().expect("readelf can be started");
+    let frames = String::from_utf8_lossy(&run.stdout).into_owned();
+    let (mut seen, mut with_landing_pad, mut call) = (0, Vec::new(), None);
+    for line in frames.lines() {
+        if let Some((_, range)) = line.split_once(" FDE cie=").and_then(|(_, rest)| rest.split_once("pc=")) {
+            let begin = range.split_once("..").and_then(|(begin, _)| u64::from_str_radix(begin, 16).ok());
+            call = begin.and_then(|begin| calls.get(&begin));
+            seen += usize::from(call.is_some());
+        } else if line.contains(" CIE") {
+            call = None;
+        } else if let (Some(call), Some(data)) = (call, line.trim().strip_prefix("Augmentation data:"))
+            && data.bytes().any(|digit| digit.is_ascii_hexdigit() && digit != b'0')
+        {
+            with_landing_pad.push(*call);
+        }
+    }
+    assert!(seen > 50, "{seen} calls of {}", calls.len());
+    assert!(with_landing_pad.is_empty(), "{with_landing_pad:?}");
 }
 
 #[test]
