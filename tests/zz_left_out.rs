@@ -15,10 +15,10 @@ fn main() {
     let skipped = tools::take_skipped(std::os::unix::process::parent_id());
     let package = env!("CARGO_PKG_NAME");
     if skipped.is_empty() {
-        println!("\nNo test of {package} was skipped because of a missing tool.\n");
+        println!("\nNo test of {package} was skipped.\n");
         return;
     }
-    println!("\nSkipped in {package}, because tools are missing (tests/run installs them and skips nothing):\n");
+    println!("\nSkipped in {package} (tests/run installs missing tools):\n");
     for line in skipped {
         println!("    {line}");
     }
