@@ -39,8 +39,9 @@ fn the_library_exports_the_calls_and_nothing_else() {
     assert_eq!(exported, calls);
 }
 
-/// A thread with asynchronous cancellation may be unwound from the frame of the call that it has made. If this frame had
-/// a landing pad, the unwinder would end the process. The FDE of a function with landing pads gives their place.
+/// A thread with asynchronous cancellation may be unwound from the frame of the call that it has made. If this frame
+/// had a landing pad, the unwinder would end the process. The FDE of a function gives the place of its landing pads, or
+/// 0 if it has none.
 #[test]
 fn no_frame_of_a_call_has_a_landing_pad() {
     let run = Command::new("nm").args(["-D", "--defined-only"]).arg(library()).output().expect("nm can be started");
