@@ -225,7 +225,7 @@ fn an_adjustment_checks_the_whole_path() {
     send_softening_path(&hand, (5.0, 1.0), 40.0);
     let refused = hand.adjust(1, "tendon.stiffness = [150, 150, 150, 150]");
     assert!(is_refused_damping(&refused), "{refused:?}");
-    // A bound below the Kx of the path ends the change of Kx along the path.
+    // A lower bound of Kx ends the change of Kx along the path, whatever the Kx of the path is.
     hand.adjust(1, "tendon.stiffness = [150, 150, 150, 150]\nstiffness.bound = 3").expect("adjusted");
     hand.send_damping(1, 1.5).expect("only the end of the path counts");
 }

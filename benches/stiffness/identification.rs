@@ -71,7 +71,7 @@ impl UnknownFinger {
         let controlled = Calibration::controlled(belief, self.rate);
         let controller = Controller::new(&controlled, self.rate).expect("the default controller");
         let mut state = controller.start(&self.read());
-        // A finger that does not come under tension is refused by the routine.
+        // If the finger is not under tension after 10 s, the routine refuses it.
         for cycle in 0..(10.0 * self.rate) as usize {
             let feedback = self.read();
             let report = self.advance(&controller, &mut state, &feedback, &Activity::TakeUpSlack);

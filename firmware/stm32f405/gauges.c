@@ -12,7 +12,8 @@
    4.15 us and a word 1.6 us. */
 enum { ROUNDS = 200 };
 
-/* Number of conversions in a row that may fail. The next failure is reported. Three conversions take 6 ms at 500 Hz. */
+/* Number of conversions in a row that may fail. The next failure is reported. At 500 Hz, gauges that fail are therefore
+   reported within 6 ms. */
 enum { FAILURES_MOST = 2 };
 
 static uint16_t latest[MOTORS];

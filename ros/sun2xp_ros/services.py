@@ -45,7 +45,7 @@ class Services:
             try:
                 done.set_result(self._answer(fingers, action, request, response))
             except BaseException as defect:
-                # This exception ends the node, as in any other callback. A planner must not wait for ever.
+                # The exception ends the node, as in any other callback. Without it, a planner would wait for ever.
                 done.set_exception(defect)
 
         self._waiting.submit(work)

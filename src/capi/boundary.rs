@@ -148,7 +148,7 @@ fn slow(
 ///
 /// This function is inlined into the exported function. No value in it has a destructor, because a thread with
 /// asynchronous cancellation may be unwound from this function before and after the call. An exported function that
-/// needs such values does all its work in this function's call.
+/// needs values with destructors must create them inside `call`.
 #[inline(always)]
 pub(super) fn uncancelled<R, F: FnOnce() -> R>(call: F) -> R {
     let mut call = ManuallyDrop::new(call);

@@ -217,6 +217,7 @@ pub extern "C" fn sun2xp_event_descriptor(hand: *mut sun2xp_hand) -> c_int {
 ///
 /// # Safety
 /// `event` is null, or points to as many bytes as its first member gives.
+#[inline(always)]
 unsafe fn take(name: &'static str, hand: Handle, event: *mut sun2xp_event) -> c_int {
     let mut taken = false;
     let result = guarded(name, hand, || {

@@ -19,8 +19,8 @@ pub use update::{UpdateError, update_file};
 
 use std::io::{Error, ErrorKind};
 
-/// Returns the remedy of an error in writing a file, as a sentence after its text. Returns no text for any other
-/// error, because the texts of these errors already show what to change, for example that the disk is full.
+/// Returns the remedy of an error in writing a file, as a sentence after its text. Returns no text unless permission is
+/// missing, because the texts of other errors already show what to change, for example that the disk is full.
 pub fn write_remedy(error: &Error) -> &'static str {
     match error.kind() {
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {

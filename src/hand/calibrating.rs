@@ -186,7 +186,8 @@ impl Calibrating {
 }
 
 impl Hand {
-    /// Finds the signs of motors, encoders and gauges of finger 1, 2 or 3. The finger stays limp.
+    /// Finds the signs of finger 1, 2 or 3: the directions in which its motors turn, and in which its encoders and
+    /// gauges count. The finger stays limp.
     ///
     /// `progress` is called 200 times per second.
     ///

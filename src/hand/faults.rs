@@ -10,8 +10,8 @@ use crate::model::FingerNumber;
 pub struct FingerFault {
     /// The fault that stopped the finger. It stays until the finger recovers or the hand is opened again.
     pub stopped: Option<Fault>,
-    /// The newest warning, if it was given within the last second. Otherwise, if the system has refused SCHED_FIFO, the
-    /// warning [`FaultKind::RealtimeRefused`].
+    /// The newest warning of the last second. Without such a warning, it is [`FaultKind::RealtimeRefused`] if the
+    /// system has refused SCHED_FIFO, and otherwise none. `warnings` does not count [`FaultKind::RealtimeRefused`].
     pub warning: Option<Fault>,
     /// Number of warnings since open. A warning that persists counts once.
     pub warnings: u64,

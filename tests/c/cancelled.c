@@ -12,10 +12,12 @@
 
 static double Pos[3] = {0.0, 0.5, 0.8}, Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}};
 
-/* The call that a thread makes, and its result; 2 while it has not returned. */
+/* The call that a thread makes, whether the thread has come so far, and the result; 2 while the call has not
+   returned. */
 struct job {
     int (*call)(void);
     int asynchronous;
+    volatile int begun;
     volatile int result;
 };
 
@@ -29,7 +31,7 @@ static sun2xp_hand *other;
 static int open_another(void) { return sun2xp_open_named("nominal", &other); }
 static int close_another(void) { return sun2xp_close(other); }
 
-/* Events that have happened already would end the wait at once. */
+/* First takes the events that have happened already, because they would end the wait at once. */
 static int wait_for_event(void)
 {
     struct sun2xp_event event;
@@ -65,6 +67,7 @@ static void *work(void *own)
     int unused;
     if (job->asynchronous)
         pthread_setcanceltype(PTHREAD_CANCEL_ASYNCHRONOUS, &unused);
+    job->begun = 1;
     job->result = job->call();
     for (;;)
         pthread_testcancel();
@@ -79,8 +82,11 @@ static int cancelled_in(int (*call)(void), int asynchronous, int milliseconds)
     void *end;
     job.call = call;
     job.asynchronous = asynchronous;
+    job.begun = 0;
     job.result = 2;
     CHECK(pthread_create(&thread, NULL, work, &job) == 0);
+    while (!job.begun)
+        PAUSE_MS(1);
     PAUSE_MS(milliseconds);
     CHECK(pthread_cancel(thread) == 0);
     CHECK(pthread_join(thread, &end) == 0);
@@ -119,7 +125,7 @@ static void *hammer(void *own)
 
 int main(void)
 {
-    struct job identifying = {identify, 0, 2};
+    struct job identifying = {identify, 0, 0, 2};
     int asynchronous, round;
     double Measured[3];
     pthread_t thread;
@@ -140,6 +146,7 @@ int main(void)
         CHECK(other != NULL);
         cancel_in(wait_for_event, asynchronous, 20);
         cancel_in(close_another, asynchronous, 5);
+        CHECK(sun2xp_close(other) < 0);
         cancel_in(recover, asynchronous, 60);
         for (round = 1; round <= 3; round++)
             CHECK(recover_finger(round) == 0);

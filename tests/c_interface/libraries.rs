@@ -50,7 +50,8 @@ fn no_frame_of_a_call_has_a_landing_pad() {
     let calls: HashMap<u64, &str> =
         listing.lines().filter_map(|line| Some((address(line)?, line.split_whitespace().nth(2)?))).collect();
     let mut readelf = Command::new("readelf");
-    let run = readelf.args(["-W", "--debug-dump=frames"]).arg(library()).output().expect("readelf can be started");
+    readelf.args(["-W", "--debug-dump=frames"]).arg(library()).env("LC_ALL", "C");
+    let run = readelf.output().expect("readelf can be started");
     let frames = String::from_utf8_lossy(&run.stdout).into_owned();
     let (mut seen, mut with_landing_pad, mut call) = (0, Vec::new(), None);
     for line in frames.lines() {
@@ -66,7 +67,7 @@ fn no_frame_of_a_call_has_a_landing_pad() {
             with_landing_pad.push(*call);
         }
     }
-    assert!(seen > 50, "{seen} calls of {}", calls.len());
+    assert!(seen > 50 && seen == calls.len(), "{seen} calls of {}", calls.len());
     assert!(with_landing_pad.is_empty(), "{with_landing_pad:?}");
 }
 

@@ -209,7 +209,10 @@ impl<T: Transport> Link<T> {
     }
 }
 
-/// Returns the identity in an answer to a Hello, or why the finger did not send one.
+/// Returns the identity in an answer to a Hello, or none if the answer is neither an identity nor a refusal.
+///
+/// # Errors
+/// Returns an error if the finger refuses the Hello, or has another protocol version.
 fn identity_in(answer: &Message) -> Result<Option<Identity>, LinkError> {
     match answer.frame {
         Frame::Identity(identity) if identity.version == VERSION => Ok(Some(identity)),

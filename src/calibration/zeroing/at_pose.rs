@@ -12,7 +12,7 @@ use nalgebra::{Vector3, Vector4};
 use std::ops::ControlFlow::Break;
 
 impl Zeroing {
-    /// Reads the joint angles of a limp finger before [`Grip`] pushes its joints.
+    /// Reads the joint angles of a finger that was limp at the beginning, before [`Grip`] pushes its joints.
     pub(super) fn read_held(
         &mut self,
         mut guide: JointGuide,

@@ -80,14 +80,19 @@ impl SlipDetector {
 mod tests {
     use super::*;
 
-    /// Returns the number of slips in `cycles` cycles with this force.
+    /// Returns the number of slips in `cycles` cycles with this force of the surroundings on the tip. A slip gives the
+    /// opposite force, of the tip on its surroundings.
     fn slips(state: &mut SlipState, force: [f64; 3], settled: bool, cycles: usize) -> usize {
         let events = ConfiguredEvents { slip_friction: Some(0.5), ..ConfiguredEvents::default() };
         let detector = SlipDetector::new(&events, 1000.0);
         let contact = ContactEstimate { force: force.into(), touching: force != [0.0; 3], ..Default::default() };
         let mut observations = Observations::default();
         (0..cycles).for_each(|_| detector.observe(state, &contact, settled, &mut observations));
-        observations.iter().filter(|observation| observation.kind == ObservationKind::Slip).count()
+        let [x, y, z] = force.map(|component| -component);
+        observations
+            .iter()
+            .for_each(|slip| assert_eq!((slip.kind, slip.values), (ObservationKind::Slip, [x, y, z, 0.0])));
+        observations.iter().count()
     }
 
     #[test]

@@ -61,7 +61,7 @@ impl DitherBurst {
     pub fn new(torques: &Vector3<f64>, rate: f64) -> Self {
         Self {
             held: torques * HELD,
-            // When `waits` was also true at 500 Hz, nominal fingers at walls moved by 65 um rms.
+            // When `waits` could be true at 500 Hz too, nominal fingers at walls moved by 65 um rms.
             can_wait: rate >= FULL_RATE,
             period: 1.0 / rate,
             rising: (1.0 / (RISING * rate)).min(1.0),
