@@ -100,14 +100,16 @@ extern "C" fn elsewhere(
 }
 
 /// Runs a slow call that must take place in any case. Unlike [`delegated`], it runs the call in the planner's thread if
-/// there is no memory for another thread or the system refuses to start one.
+/// there is no memory for another thread or the system refuses to start one. `prepare` makes the call in the planner's
+/// thread.
 #[inline(always)]
-pub(super) fn delegated_or_done_here(
+pub(super) fn delegated_or_done_here<C: FnOnce() -> Result<(), Refusal> + Copy + Send + 'static>(
     name: &'static str,
     handle: Handle,
-    call: impl FnOnce() -> Result<(), Refusal> + Copy + Send + 'static,
+    prepare: impl FnOnce() -> C,
 ) -> c_int {
     uncancelled(|| {
+        let call = prepare();
         let blocked = SignalsBlocked::all();
         slow(name, handle, &blocked, || {
             match is_memory_free(MEMORY_OF_THREAD)
@@ -270,7 +272,7 @@ mod tests {
             (-1, libc::EIO)
         );
         assert!(last_text().starts_with("OpenHand: the library failed (a defect)"));
-        assert_eq!(delegated_or_done_here("CloseHand", Handle::NULL, || Err(Refusal::Busy)), -1);
+        assert_eq!(delegated_or_done_here("CloseHand", Handle::NULL, || || Err(Refusal::Busy)), -1);
         assert_eq!(process::errno(), libc::EBUSY);
     }
 }

@@ -71,9 +71,8 @@ pub extern "C" fn OpenHand() -> c_int {
 /// callback of sun2xp_on_event has returned, unless the call was made in a callback.
 #[unsafe(no_mangle)]
 pub extern "C" fn CloseHand() -> c_int {
-    uncancelled(|| {
-        let close = if in_callback() { hand_table::close_default_in_callback } else { hand_table::close_default };
-        delegated_or_done_here("CloseHand", default_handle(), close)
+    delegated_or_done_here("CloseHand", default_handle(), || {
+        if in_callback() { hand_table::close_default_in_callback } else { hand_table::close_default }
     })
 }
 

@@ -93,16 +93,13 @@ pub unsafe extern "C" fn sun2xp_send_group(
 ) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_send_group", hand, || {
-        let commands = match count {
-            // There is no first set point from which a size could be read.
-            0 => Ok(([hand::FingerCommand::default(); FINGERS], 0)),
-            ..0 => {
-                non_null(set_points, "set_points", Wanted::Struct("sun2xp_set_point"))?;
-                Err(wrong_number(count))
-            }
-            // SAFETY: by the contract in the manual, `set_points` is null, or there are `count` set points with as many
-            // bytes as the first member of the first one gives.
-            _ => unsafe { load_commands(count, &SizedStruct::new(set_points, "set_points")?) },
+        let commands = if count == 0 {
+            Ok(([hand::FingerCommand::default(); FINGERS], 0))
+        } else {
+            non_null(set_points, "set_points", Wanted::Struct("sun2xp_set_point"))?;
+            // SAFETY: `set_points` is not null, as checked above. By the contract in the manual it points to `count`
+            // set points with as many bytes as the first member of the first one gives.
+            unsafe { load_commands(count, set_points) }
         };
         if let Some(remote) = hand_table::remote_to_command(hand)? {
             let (commands, count) = commands?;
@@ -178,23 +175,18 @@ fn time_limit(seconds: f64) -> Result<Duration, Refusal> {
     }
 }
 
-fn wrong_number(count: c_int) -> Refusal {
-    hand::HandError::from(SetPointError::GroupSize(count)).into()
-}
-
 /// Copies the commands of a group, and returns them with their number.
 ///
 /// # Safety
-/// `count` is positive. There are `count` commands with the size of the first one, and their pointers are null or point
-/// to their arrays.
+/// There are `count` commands with the size of the first one, and their pointers are null or point to their arrays.
 unsafe fn load_commands(
     count: c_int,
-    commands: &SizedStruct<sun2xp_set_point>,
+    commands: *const sun2xp_set_point,
 ) -> Result<([hand::FingerCommand; FINGERS], usize), Refusal> {
+    let wrong_number = || SetPointError::GroupSize(count).into();
+    // SAFETY: by the contract of this function, the first command has as many bytes as its size gives.
+    let (commands, number) = unsafe { SizedStruct::array(commands, "set_points", count, FINGERS, wrong_number) }?;
     let mut loaded = [hand::FingerCommand::default(); FINGERS];
-    commands.check()?;
-    let number = usize::try_from(count).ok().filter(|&number| number <= FINGERS);
-    let number = number.ok_or_else(|| wrong_number(count))?;
     for (place, loaded) in loaded[..number].iter_mut().enumerate() {
         // SAFETY: the size is right, as checked above, and by the contract of this function there are `number`
         // commands.

@@ -48,7 +48,7 @@ const LONGEST_WAIT_AT_EXIT: Duration = Duration::from_millis(100);
 /// Interval at which a close checks whether another thread has closed the hand.
 const CLOSING_PERIOD: Duration = Duration::from_millis(1);
 
-/// The handle of the hand of OpenHand; null if it is not open.
+/// The handle of the hand of OpenHand; null if it is not open. Inlined for the same reason as [`Handle::of`].
 #[inline(always)]
 pub(super) fn default_handle() -> Handle {
     Handle::from_value(TABLE[DEFAULT].handle.load(Ordering::Acquire))

@@ -46,11 +46,14 @@ impl Handle {
         Self(TAG << (usize::BITS - TAG_BITS) | number << PLACE_BITS | place)
     }
 
+    /// Inlined into the exported functions: a call that might unwind would give their frames a landing pad, at which
+    /// the unwinder ends the process if the thread is cancelled asynchronously.
     #[inline(always)]
     pub fn of(pointer: *const sun2xp_hand) -> Self {
         Self(pointer.addr())
     }
 
+    /// Inlined for the same reason as [`Handle::of`].
     #[inline(always)]
     pub fn from_value(value: usize) -> Self {
         Self(value)

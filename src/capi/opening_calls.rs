@@ -136,9 +136,9 @@ pub unsafe extern "C" fn sun2xp_open_named(name: *const c_char, hand: *mut *mut 
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_close(hand: *mut sun2xp_hand) -> c_int {
     let hand = Handle::of(hand);
-    uncancelled(|| {
+    delegated_or_done_here("sun2xp_close", hand, || {
         let in_callback = in_callback();
-        delegated_or_done_here("sun2xp_close", hand, move || hand_table::close(hand, in_callback))
+        move || hand_table::close(hand, in_callback)
     })
 }
 

@@ -175,18 +175,12 @@ fn valid(seconds: f64) -> Result<Option<Duration>, PathError> {
 /// # Safety
 /// There are `count` poses with the size of the first one, and the stiffness of each is null or points to nine numbers.
 unsafe fn load_poses(count: c_int, poses: *const sun2xp_path_pose) -> Result<Vec<hand::PathPose>, Refusal> {
-    let number = usize::try_from(count).unwrap_or(0);
-    let wrong_number = || HandError::from(PathError::Count { count: number, most: MOST_POSES }).into();
-    if number == 0 {
-        // There is no first pose from which a size could be read.
-        return Err(wrong_number());
-    }
-    // SAFETY: there is a first pose, and by the contract of this function it has as many bytes as its size gives.
-    let poses = unsafe { SizedStruct::new(poses, "poses") }?;
-    poses.check()?;
-    if number > MOST_POSES {
-        return Err(wrong_number());
-    }
+    let wrong_number = || {
+        let count = usize::try_from(count).unwrap_or(0);
+        PathError::Count { count, most: MOST_POSES }.into()
+    };
+    // SAFETY: by the contract of this function, the first pose has as many bytes as its size gives.
+    let (poses, number) = unsafe { SizedStruct::array(poses, "poses", count, MOST_POSES, wrong_number) }?;
     (0..number)
         .map(|place| {
             // SAFETY: the size is right, as checked above, and by the contract of this function there are `number`

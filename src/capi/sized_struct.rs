@@ -11,6 +11,7 @@ use crate::capi::refusal::{Refusal, Wanted};
 use crate::capi::remote_hand::{RemoteHand, RemoteRefusal};
 use crate::hand::{Hand, HandError};
 use std::any::type_name;
+use std::ffi::c_int;
 
 /// Upper bound of the size of a struct in any version, bytes. A larger size means that the caller has not set it.
 const LARGEST: usize = 4096;
@@ -35,6 +36,29 @@ impl<T: Copy> SizedStruct<T> {
         // SAFETY: `place` is not null, as checked above. By the contract its first member exists; the others may not.
         let size = unsafe { place.cast::<usize>().read_unaligned() };
         Ok(Self { place: place.cast_mut(), size, name })
+    }
+
+    /// Reads the first struct of an array of `count` structs. Refuses a wrong size, and then a number
+    /// that is not 1 to `most`. Returns the first struct and the number of structs.
+    ///
+    /// # Safety
+    /// As for [`Self::new`], if `count` is positive.
+    pub unsafe fn array(
+        place: *const T,
+        name: &'static str,
+        count: c_int,
+        most: usize,
+        wrong_number: impl Fn() -> HandError,
+    ) -> Result<(Self, usize), Refusal> {
+        let number = usize::try_from(count).unwrap_or(0);
+        if number == 0 {
+            // There is no first struct from which a size could be read.
+            return Err(wrong_number().into());
+        }
+        // SAFETY: the contract of this function.
+        let first = unsafe { Self::new(place, name) }?;
+        first.check()?;
+        if number > most { Err(wrong_number().into()) } else { Ok((first, number)) }
     }
 
     /// Refuses a size that is too small, or that was not set.

@@ -68,7 +68,7 @@ impl FingerTip {
             tensions: report.cycle.tensions.into(),
             // The matrix is symmetric, so its rows are its columns.
             stiffness: state.stiffness.into(),
-            contact: (-contact.force).into(),
+            contact: contact.force_on_surroundings().into(),
             touching: contact.touching,
             slide: contact.slide,
         }

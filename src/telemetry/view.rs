@@ -132,7 +132,7 @@ impl View {
             motor_torques: report.motor_torques.into(),
             torque_scale: report.torque_scale,
             stiffness_scale: report.stiffness_scale,
-            contact_force: (-contact.force).into(),
+            contact_force: contact.force_on_surroundings().into(),
             touching: contact.touching,
             slide: contact.slide,
             wake_up: microseconds(CycleStage::WakeUp),

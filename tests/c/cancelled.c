@@ -95,7 +95,7 @@ static int cancelled_in(int (*call)(void), int asynchronous, int milliseconds)
 }
 
 /* Cancels a thread some time after it has begun a call, which must complete. */
-static void cancel_in(int (*call)(void), int asynchronous, int milliseconds)
+static void complete_in_cancelled_thread(int (*call)(void), int asynchronous, int milliseconds)
 {
     int result = cancelled_in(call, asynchronous, milliseconds);
     /* An asynchronous cancellation may take effect before the thread can store the result. */
@@ -132,22 +132,22 @@ int main(void)
     void *end;
 
     for (asynchronous = 0; asynchronous < 2; asynchronous++) {
-        cancel_in(OpenHand, asynchronous, 20);
+        complete_in_cancelled_thread(OpenHand, asynchronous, 20);
         CHECK(GetPos(1, Measured) == 0);
         if (!asynchronous)
             CHECK(cancelled_in(refused, 0, 0) == 0);
-        cancel_in(zero, asynchronous, 100);
-        cancel_in(write_black_box, asynchronous, 2);
-        cancel_in(adjust, asynchronous, 0);
-        cancel_in(event_descriptor, asynchronous, 0);
-        cancel_in(sun2xp_stop_all, asynchronous, 0);
+        complete_in_cancelled_thread(zero, asynchronous, 100);
+        complete_in_cancelled_thread(write_black_box, asynchronous, 2);
+        complete_in_cancelled_thread(adjust, asynchronous, 0);
+        complete_in_cancelled_thread(event_descriptor, asynchronous, 0);
+        complete_in_cancelled_thread(sun2xp_stop_all, asynchronous, 0);
         other = NULL;
-        cancel_in(open_another, asynchronous, 20);
+        complete_in_cancelled_thread(open_another, asynchronous, 20);
         CHECK(other != NULL);
-        cancel_in(wait_for_event, asynchronous, 20);
-        cancel_in(close_another, asynchronous, 5);
+        complete_in_cancelled_thread(wait_for_event, asynchronous, 20);
+        complete_in_cancelled_thread(close_another, asynchronous, 5);
         CHECK(sun2xp_close(other) < 0);
-        cancel_in(recover, asynchronous, 60);
+        complete_in_cancelled_thread(recover, asynchronous, 60);
         for (round = 1; round <= 3; round++)
             CHECK(recover_finger(round) == 0);
         for (round = 0; round < HAMMERINGS; round++) {
@@ -160,7 +160,7 @@ int main(void)
         }
         /* The cancelled calls must have released every lock. */
         CHECK(SendPos(1, Pos) == 0 && SendKx(1, Kx) == 0 && GetPos(1, Measured) == 0);
-        cancel_in(CloseHand, asynchronous, 5);
+        complete_in_cancelled_thread(CloseHand, asynchronous, 5);
         CHECK(GetPos(1, Measured) == -1 && errno == ENODEV);
     }
     /* Identifying takes a minute: CloseHand ends it. */

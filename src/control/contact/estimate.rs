@@ -19,3 +19,10 @@ pub struct ContactEstimate {
     /// that the tip slides on the object, or moves it.
     pub slide: f64,
 }
+
+impl ContactEstimate {
+    /// Returns the force of the fingertip on its surroundings, N, in the finger's frame: what planners get.
+    pub fn force_on_surroundings(&self) -> Vector3<f64> {
+        -self.force
+    }
+}

@@ -30,7 +30,7 @@ impl ContactEdges {
 
     pub fn observe(&self, before: &mut ContactBefore, contact: &ContactEstimate, observations: &mut Observations) {
         let ContactEstimate { force, touching, .. } = *contact;
-        let [x, y, z]: [f64; 3] = (-force).into();
+        let [x, y, z]: [f64; 3] = contact.force_on_surroundings().into();
         if touching != before.touching {
             let kind = if touching { ObservationKind::Contact } else { ObservationKind::ContactLost };
             observations.add(kind, Part::Finger, [x, y, z, 0.0]);

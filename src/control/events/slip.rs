@@ -71,7 +71,8 @@ impl SlipDetector {
         let along = (force - normal * across).norm();
         if along > friction * across && state.pause == 0 {
             state.pause = self.pause;
-            observations.add(ObservationKind::Slip, Part::Finger, [-force.x, -force.y, -force.z, 0.0]);
+            let [x, y, z]: [f64; 3] = contact.force_on_surroundings().into();
+            observations.add(ObservationKind::Slip, Part::Finger, [x, y, z, 0.0]);
         }
     }
 }
