@@ -33,14 +33,15 @@ pub struct LinkCounters {
 }
 
 impl LinkCounters {
-    /// Returns the sum of these counts and those of another link.
-    pub fn saturating_add(&self, other: &Self) -> Self {
-        self.combined(other, u64::saturating_add)
+    /// Returns the sum of these counts and those of another link, modulo 2^64.
+    pub fn wrapping_add(&self, other: &Self) -> Self {
+        self.combined(other, u64::wrapping_add)
     }
 
-    /// Returns these counts minus those of another link, at least 0 each.
-    pub fn saturating_sub(&self, other: &Self) -> Self {
-        self.combined(other, u64::saturating_sub)
+    /// Returns these counts minus those of another link, modulo 2^64. A later `wrapping_add` of larger counts makes up
+    /// for a difference below 0.
+    pub fn wrapping_sub(&self, other: &Self) -> Self {
+        self.combined(other, u64::wrapping_sub)
     }
 
     fn combined(&self, other: &Self, operation: impl Fn(u64, u64) -> u64) -> Self {

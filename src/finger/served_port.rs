@@ -64,7 +64,8 @@ impl<T: Transport> ServedPort<T> {
     /// whose handshake was relayed.
     pub(super) fn exchange(&mut self) {
         let Some(handover) = &mut self.handover else { return };
-        // While the link is released, a relayed finger waits. The repair of the link then includes that finger.
+        // While the link is released, a finger whose handshake was relayed is not taken back here. The repair of the
+        // link includes that finger.
         if self.link.is_some()
             && let Some(RestoredFinger { address, board }) = handover.restored.pop()
         {
@@ -73,7 +74,7 @@ impl<T: Transport> ServedPort<T> {
         }
         let all_at_rest = self.fingers.iter().all(FingerServo::at_rest);
         if let Some(link) = self.link.take_if(|_| all_at_rest) {
-            self.earlier_counters = self.earlier_counters.saturating_add(&link.counters());
+            self.earlier_counters = self.earlier_counters.wrapping_add(&link.counters());
             // The push succeeds, because this is the only link.
             if let Err(rejected) = handover.released.push(ReleasedLink { link, failed: self.failed }) {
                 self.link = Some(rejected.link);
@@ -82,7 +83,8 @@ impl<T: Transport> ServedPort<T> {
             self.failed = false;
             // From now on, `counters` adds the counters of this link to `earlier_counters`. What this link has counted
             // until now is subtracted here, so that the sum does not jump, whether this is the same link or a new one.
-            self.earlier_counters = self.earlier_counters.saturating_sub(&link.counters());
+            // The difference may be below 0: the repair itself has received frames.
+            self.earlier_counters = self.earlier_counters.wrapping_sub(&link.counters());
             self.link = Some(link);
             // The handshakes of the repair are newer than a relayed one.
             while handover.restored.pop().is_some() {}
@@ -94,17 +96,18 @@ impl<T: Transport> ServedPort<T> {
 
     /// Returns the counters of the port since open.
     pub(super) fn counters(&self) -> LinkCounters {
-        self.link.as_ref().map_or(self.earlier_counters, |link| self.earlier_counters.saturating_add(&link.counters()))
+        self.link.as_ref().map_or(self.earlier_counters, |link| self.earlier_counters.wrapping_add(&link.counters()))
     }
 
-    /// Returns the next relayed request, if it is for a finger at rest. A request for a finger that is no longer at
-    /// rest came too late, and is discarded.
+    /// Returns the next relayed request, if its finger is still faulted (see [`FingerServo::at_rest`]). Otherwise the
+    /// request came too late, and is discarded.
     fn relayed_request(&mut self) -> Option<RelayedRequest> {
         let request = self.handover.as_mut()?.relay.requests.pop()?;
         self.fingers.iter().any(|finger| finger.address() == request.address && finger.at_rest()).then_some(request)
     }
 
-    /// Passes on the answer to a relayed request. Returns false if it is not from a finger at rest.
+    /// Passes on the answer to a relayed request. Returns false if the answer is not from a faulted finger (see
+    /// [`FingerServo::at_rest`]).
     fn relay(&mut self, answer: &Message) -> bool {
         let finger = self.fingers.iter().find(|finger| finger.address() == answer.address);
         let (true, Some(handover)) = (finger.is_some_and(FingerServo::at_rest), &mut self.handover) else {

@@ -1,16 +1,11 @@
 //! Commands that are damaged on the way to the board: none is ever executed, and each costs its own period.
 
 use crate::rig::{Bench, TARGET};
-use nalgebra::{Vector3, Vector4};
+use nalgebra::Vector3;
 use sun2xp::finger::Stage;
 use sun2xp::simulated::LineFault;
 
 impl Bench {
-    /// Torques that the motors give, N cm.
-    fn executed(&self) -> Vector4<f64> {
-        self.with_finger(|finger| finger.motor_torques())
-    }
-
     /// Runs one period and returns whether it was answered. If so, the board must execute this period's command, else
     /// the previous one. `lost` is the number of periods before this one that were not answered.
     fn exchanges(&mut self, lost: u32) -> bool {

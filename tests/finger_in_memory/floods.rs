@@ -1,8 +1,8 @@
 //! A board that sends valid frames without end: its finger faults in time, is stopped, and recovers after the flood.
 
 use crate::rig::{Bench, MILLISECOND, TARGET};
-use sun2xp::board::Transport;
 use sun2xp::board::protocol::{Configured, Frame, Reply, Status, Stopped};
+use sun2xp::board::{PortError, Transport};
 use sun2xp::finger::{FaultKind, Stage};
 
 fn ended(bench: &Bench) -> bool {
@@ -44,5 +44,23 @@ fn a_flood_does_not_keep_a_finger_from_being_closed() {
         // stopped.
         let milliseconds = (bench.world.now() - begun) / MILLISECOND;
         assert!(milliseconds <= 18 + 2 + 100, "{frame:?}: {milliseconds} ms");
+    }
+}
+
+#[test]
+fn frames_that_only_a_repair_receives_are_not_counted() {
+    let mut bench = Bench::new();
+    bench.opens();
+    for _ in 0..2 {
+        bench.fail_port(PortError::Vanished);
+        bench.faults(FaultKind::PortVanished);
+        bench.until("at rest", |bench| !bench.repair_end.released.is_empty());
+        let before = bench.report().losses;
+        bench.answer_with(Frame::Stopped(Stopped::default()));
+        bench.repair();
+        bench.opens();
+        let after = bench.report().losses;
+        assert_eq!(after.foreign_frames, before.foreign_frames);
+        assert_eq!(after.damaged_frames, before.damaged_frames);
     }
 }

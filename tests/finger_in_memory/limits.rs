@@ -151,6 +151,46 @@ fn nothing_random_leads_beyond_a_limit() {
     assert!(fired > cycles / 500 && paths > cycles / 20_000, "{fired} reactions, {paths} paths");
 }
 
+/// Torque limit of the motors whose board has a coarse torque unit, N cm. It is 100.6 units.
+const COARSE_LIMIT: f64 = 2.0125;
+
+/// The coarse torque unit, N cm: almost 1 % of the limit, which is the coarsest unit that the library accepts.
+const COARSE_UNIT: f64 = 0.02;
+
+/// The motor torque limit of the board is 30 000 torque units, far above that of the servo. The board therefore
+/// executes every Command as it is on the wire.
+#[test]
+fn no_torque_on_the_wire_exceeds_the_computed_torque_if_the_unit_of_the_board_is_coarse() {
+    let mut bench = Bench::believing(
+        |configuration| configuration.fingers[0].motor.torque_limit = [30_000.0 * COARSE_UNIT; 4],
+        |configuration| configuration.fingers[0].motor.torque_limit = [COARSE_LIMIT; 4],
+    );
+    bench.opens();
+    let mut random = Random(Pcg64::seed_from_u64(52));
+    let (mut smaller, mut at_limit) = (0, 0);
+    for cycle in 0..20_000 {
+        if cycle % 200 == 0 {
+            let joints = random.pose();
+            bench.mailbox.send(|set_point| set_point.joints = joints).expect("not faulted");
+            let force = Vector3::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0), random.between(-2.0, 2.0));
+            bench.with_finger(|finger| finger.plant().set_external_force(force));
+        }
+        let computed = bench.report().cycle.motor_torques;
+        bench.cycles(1);
+        assert_eq!(bench.fault(), None, "cycle {cycle}");
+        for (&sent, &computed) in bench.executed().iter().zip(&computed) {
+            // The product of count and unit is rounded, by far less than a torque unit.
+            let rounded_off = (computed - sent) * computed.signum();
+            let in_unit = -1e-9..COARSE_UNIT + 1e-9;
+            assert!(in_unit.contains(&rounded_off), "cycle {cycle}: {computed} N cm computed, {sent} N cm sent");
+            // Rounding to the nearest count would make this torque larger.
+            smaller += usize::from(rounded_off > 0.5 * COARSE_UNIT);
+            at_limit += usize::from(computed.abs() > COARSE_LIMIT - 1e-9);
+        }
+    }
+    assert!(smaller > 10_000 && at_limit > 10, "{smaller} of 80 000 torques, {at_limit} at the limit");
+}
+
 /// Lowers the bound of Kx of a finger that runs, N/cm. Returns its configuration.
 fn lower_bound(bench: &Bench, bound: f64) -> ConfiguredFinger {
     let mut lowered = configuration();

@@ -2,6 +2,7 @@
 //! warnings.
 
 mod black_box;
+mod busy_machine;
 mod calibrating;
 mod commands;
 mod continuous_replay;

@@ -24,6 +24,8 @@ fn refused_paths_name_the_pose_and_the_remedy() {
     for (poses, words, errno) in [
         (vec![], "0 poses", libc::EINVAL),
         (vec![joints(0.5, [0.2, 0.6, 1.1]); 2], "time of pose 1", libc::EINVAL),
+        (vec![joints(0.5, [0.2, 0.6, 1.1]); 2], "0.001 s later than 0.5 s, the time of the pose before", libc::EINVAL),
+        (vec![joints(0.0, [0.2, 0.6, 1.1])], "0.001 s later than 0 s, the beginning of the path", libc::EINVAL),
         (vec![joints(f64::NAN, [0.2, 0.6, 1.1])], "time of pose 0", libc::EINVAL),
         (vec![joints(0.5, [0.2, 0.6, 1.1]), tip(1.0, [0.0, 0.0, 9.0])], "another kind", libc::EINVAL),
         (vec![joints(0.5, [0.2, f64::NAN, 1.1])], "NaN", libc::EINVAL),
@@ -39,6 +41,14 @@ fn refused_paths_name_the_pose_and_the_remedy() {
     ] {
         let (text, number) = refused(&poses);
         assert!(text.contains(words) && number == errno, "{number}: {text}");
+    }
+}
+
+#[test]
+fn a_path_of_an_earlier_spring_phase_names_the_cause_and_the_remedy() {
+    let text = PathError::Moved(FingerNumber::ONE).to_string();
+    for words in ["recovered or calibrated", "expired", "reflex", "inhibition", ": send the path again"] {
+        assert!(text.contains(words), "{words}: {text}");
     }
 }
 

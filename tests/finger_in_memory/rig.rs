@@ -2,7 +2,7 @@
 //! fault.
 
 use crate::finger_on_a_cable::{Hooks, ServedFinger, World};
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector4};
 use std::cell::RefCell;
 use std::rc::Rc;
 use sun2xp::board::protocol::{Frame, Message, WireFrame};
@@ -90,7 +90,7 @@ pub struct Bench {
     pub black_box: BlackBox,
     pub events: EventReader,
     pub gate: GroupGate,
-    repair_end: LinkRepairEnd<World<Line>>,
+    pub repair_end: LinkRepairEnd<World<Line>>,
     /// The configuration of the board.
     configuration: Configuration,
 }
@@ -153,6 +153,11 @@ impl Bench {
 
     pub fn with_finger<R>(&self, act: impl FnOnce(&mut SimulatedFinger) -> R) -> R {
         self.with_cable(|cable| act(cable.board().finger(1).expect("the board has finger 1")))
+    }
+
+    /// Torques that the motors give, N cm.
+    pub fn executed(&self) -> Vector4<f64> {
+        self.with_finger(|finger| finger.motor_torques())
     }
 
     /// Makes the next read of the port fail with this error.

@@ -106,7 +106,7 @@ impl FingerServo {
         (self.answered, self.replied) = (true, true);
         self.last_answer = received.sequence;
         let reply = &received.reply;
-        let (counted, mut clocked) = (self.sample_age as f64, None);
+        let (mut counted, mut clocked) = (self.sample_age as f64, None);
         // This cycle's command took effect at this measurement, and was computed from the previous one. The age to note
         // is therefore the time between the two measurements.
         if let Some(before) = self.sampled_at
@@ -115,6 +115,10 @@ impl FingerServo {
             let microseconds = reply.sampled_at.wrapping_sub(before);
             self.timing.note(CycleStage::Age, 0, u64::from(microseconds) * 1000);
             clocked = Some(f64::from(microseconds) * 1e-3 / self.limits.period_ms);
+        }
+        if self.link.in_step() {
+            // The finger has moved for one period, however late the reply is.
+            (counted, clocked) = (1.0, None);
         }
         (self.sampled_at, self.sample_age) = (Some(reply.sampled_at), 0);
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
