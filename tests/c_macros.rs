@@ -156,12 +156,38 @@ fn may_be_macros<'a>(names: impl Iterator<Item = &'a str> + Clone, modes: &[&[&s
 
 #[test]
 fn a_planner_with_a_window_compiles() {
+    compiles_with_a_window("x11");
+}
+
+#[test]
+fn a_planner_with_a_window_and_handles_compiles() {
+    compiles_with_a_window("x11_handles");
+}
+
+/// Compiles a planner whose macros come before the header, and after it.
+fn compiles_with_a_window(planner: &str) {
     let bench = Bench::new();
-    let text = fs::read_to_string(root().join("tests/c/x11.c")).expect("the planner");
-    let folder = format!("-I{}", root().join("tests/c").display());
-    let sources = [bench.write("x11.c", &text), bench.write("x11.cpp", &text)];
+    let folder = root().join("tests/c");
+    let text = fs::read_to_string(folder.join(planner).with_extension("c")).expect("the planner");
+    let folder = format!("-I{}", folder.display());
+    let sources = ["c", "cpp"].map(|ending| bench.write(&format!("{planner}.{ending}"), &text));
     in_every_dialect(&bench, &[&folder], &sources);
     in_every_dialect(&bench, &[&folder, "-DWINDOW_LAST"], &sources);
+}
+
+/// Planners write the members of structs themselves, so sun2xp.h cannot hide its names from their macros, as Sun2Xp.h
+/// does. The macros of X11 have capital letters, and so have planners' macros such as Pos. Others, such as i, have one
+/// letter.
+#[test]
+fn names_of_the_header_with_handles_are_lower_case_and_longer_than_a_letter() {
+    let header = fs::read_to_string(root().join("include/sun2xp.h")).expect("the header");
+    let code: String = header.split("/*").filter_map(|part| part.rsplit("*/").next()).collect();
+    let names: BTreeSet<&str> = code.lines().filter(|line| !line.starts_with('#')).flat_map(words).collect();
+    assert!(["sun2xp_send_position", "finger", "sun2xp_tip", "slide_speed"].iter().all(|name| names.contains(name)));
+    // `extern "C"` has the name C.
+    let like_macros = |name: &&&str| **name != "C" && (name.len() < 2 || name.contains(char::is_uppercase));
+    let like_macros: Vec<_> = names.iter().filter(like_macros).collect();
+    assert!(like_macros.is_empty(), "include/sun2xp.h has names that a planner's macros may have: {like_macros:?}");
 }
 
 /// `sources` holds the same program in C and in C++.

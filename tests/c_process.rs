@@ -1,12 +1,17 @@
 //! Effects of the library on the process of a planner, and things that a planner may do to it: signals, cancellation,
 //! floating-point environments, stacks, locked memory and the end of the process.
 
+#[path = "common/attempts.rs"]
+mod attempts;
 #[allow(dead_code)]
 mod c;
 
+use attempts::attempts;
+use c::pauses::{self, Part};
 use c::{Bench, STRICT, c_compiler, said};
 use std::fs;
 use std::process::Command;
+use std::time::Duration;
 
 /// A scratch folder with a configuration in which sun2xp_zero assumes that the finger is in a known pose. This takes a
 /// second. A search for the stops takes most of a minute, and these tests are about the call, not about its result.
@@ -58,9 +63,24 @@ fn a_process_out_of_memory_keeps_its_hand_and_gets_enomem() {
     }
 }
 
+/// A recovery asks a board every 50 ms, and gives it 300 ms to answer. A shorter pause leaves enough time.
+const TOLERATED_PAUSE: Duration = Duration::from_millis(100);
+
 #[test]
 fn a_cancelled_thread_ends_after_its_call() {
-    succeed(&["cancelled.c"]);
+    let bench = bench();
+    let program = bench.build(c_compiler(), STRICT, &["cancelled.c"]);
+    attempts("threads that are cancelled in calls", TOLERATED_PAUSE, |watch| {
+        let process = bench.start(Command::new(&program));
+        watch.also(process.id(), Part::Servo);
+        let run = process.wait_with_output().expect("the program ends");
+        match run.status.code() {
+            Some(0) => Ok(()),
+            // A recovery was refused. No other failure is excused.
+            Some(2) => Err(said(&run)),
+            _ => panic!("{}\n{}", run.status, said(&run)),
+        }
+    });
 }
 
 /// Rounding mode, flushed denormals and trapping exceptions of a planner affect neither the servos, whose cycles the

@@ -2,6 +2,16 @@
 //! where the configuration says, and its ports must still be found. The tests have a process of their own, because they
 //! change the working directory.
 
+#[path = "common/attempts.rs"]
+mod attempts;
+#[allow(dead_code)]
+#[path = "common/pauses.rs"]
+mod pauses;
+#[allow(dead_code)]
+#[path = "common/recoveries.rs"]
+mod recoveries;
+
+use recoveries::recovers_despite_pauses;
 use std::env::set_current_dir;
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -44,10 +54,7 @@ fn a_relative_port_is_opened_again_from_another_working_directory() {
     board.plug_in().expect("a new port");
     fs::remove_file(folder.path().join("board")).expect("removed");
     symlink(board.path(), folder.path().join("board")).expect("a link");
-    while let Err(error) = hand.recover(1) {
-        assert!(begun.elapsed() < LIMIT, "{error}");
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    recovers_despite_pauses(&hand, 1, &[]);
     hand.close();
 }
 

@@ -5,12 +5,14 @@
 mod c;
 
 use c::{Bench, STRICT, c_compiler};
-use std::fs;
 use std::os::unix::process::CommandExt;
 use std::process::Command;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use std::{fs, io, thread};
 use sun2xp::finger::FaultKind;
-use sun2xp::hand::Hand;
-use sun2xp::model::configuration::{Configuration, RealTime};
+use sun2xp::hand::{Hand, MissingPermission};
+use sun2xp::model::configuration::{Configuration, RATES, RealTime};
 
 #[test]
 fn real_time_that_is_ignored_gives_no_warning() {
@@ -69,6 +71,61 @@ fn a_planner_without_memlock_gets_its_hand_and_a_message() {
     let (status, output, printed) = opened_without(right, "[hand]\nrate = 500\nreal_time = \"ignore\"\n");
     assert_eq!(status, Some(0), "{output}{printed}");
     assert!(!printed.contains("locked"), "{printed}");
+}
+
+/// The message names an amount. The highest rate needs the most memory.
+#[test]
+fn the_memlock_limit_of_the_message_suffices_at_every_rate() {
+    let message = MissingPermission::Memory(io::Error::from_raw_os_error(libc::ENOMEM)).to_string();
+    let amount = message.split_once("raise the memlock limit to ").and_then(|(_, rest)| rest.split_once(" MiB"));
+    let amount = amount.and_then(|(amount, _)| amount.parse::<usize>().ok());
+    let bytes = amount.unwrap_or_else(|| panic!("no amount: {message}")) << 20;
+    // No other test locks memory of this process. This one waits for its turn, because it needs the processors.
+    let _turn = Bench::new();
+    let before = locked();
+    if !may_lock(bytes) {
+        return c::not_permitted("locked memory", &format!("this process may not lock {bytes} bytes"));
+    }
+    let mut configuration = Configuration::default();
+    configuration.hand.rate = *RATES.end();
+    let most = most_locked_while(|| Hand::open(configuration)) - before;
+    assert!(most <= bytes, "{most} bytes are locked, but: {message}");
+    // An earlier message named 8 MiB. If 8 MiB sufficed, this test would prove nothing.
+    assert!(most > 8 << 20, "only {most} bytes are locked");
+}
+
+/// The locked memory of this process, bytes (VmLck). The memlock limit applies to this sum.
+fn locked() -> usize {
+    let status = fs::read_to_string("/proc/self/status").expect("the status of this process");
+    let locked = status.lines().find_map(|line| line.strip_prefix("VmLck:")?.strip_suffix("kB")?.trim().parse().ok());
+    locked.map(|kilobytes: usize| kilobytes << 10).expect("a size")
+}
+
+fn may_lock(bytes: usize) -> bool {
+    let memory = vec![0u8; bytes];
+    // SAFETY: locking does not change the contents. Nothing else in these pages is locked.
+    unsafe { libc::mlock(memory.as_ptr().cast(), bytes) == 0 && libc::munlock(memory.as_ptr().cast(), bytes) == 0 }
+}
+
+/// Returns the most memory that is locked while a hand opens, bytes. The servos lock their memory before their first
+/// cycle. A busy machine may fault a finger at the highest rate after that, so the hand need not open.
+fn most_locked_while<T>(open: impl FnOnce() -> T) -> usize {
+    let opened = AtomicBool::new(false);
+    thread::scope(|scope| {
+        let watching = scope.spawn(|| {
+            let mut most = 0;
+            while !opened.load(Ordering::Relaxed) {
+                most = most.max(locked());
+                thread::sleep(Duration::from_millis(1));
+            }
+            most
+        });
+        let hand = open();
+        let at_the_end = locked();
+        opened.store(true, Ordering::Relaxed);
+        drop(hand);
+        at_the_end.max(watching.join().expect("no panic"))
+    })
 }
 
 #[test]

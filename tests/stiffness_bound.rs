@@ -168,3 +168,19 @@ fn a_plant_of_the_set_is_unstable_although_the_nominal_plant_is_stable() {
     assert_eq!(uncovered(&Variant::NOMINAL), 0);
     assert!(uncovered(&delayed) > 0);
 }
+
+/// With these plants and state feedback, a damping of 1 is stable. The least or the most damping that a planner may
+/// request is not stable in some poses, even with the softest spring. A search with a damping of 1 only finds no such
+/// pose.
+#[test]
+fn the_least_and_the_most_damping_count_too() {
+    let few = Search { samples: 24, ..SEARCH };
+    let finger = finger(Scheme::StateFeedback);
+    for (name, rate, least) in [("amplifier lag 2 ms", 500.0, true), ("rotor inertia x0.5", 1000.0, false)] {
+        let plant = Variant::SET.into_iter().find(|variant| variant.name == name).unwrap();
+        let uncovered = few.bound(&finger, rate, &plant).unwrap().uncovered;
+        let range = AdmissibleDamping::new(&finger, rate).range(1.0);
+        let tried = if least { range.0 } else { range.1 };
+        assert!(uncovered.iter().any(|rest| rest.damping == tried), "{name}: {tried} is not in {uncovered:#?}");
+    }
+}

@@ -1,6 +1,6 @@
 //! Measurements that other work on the machine can disturb. A disturbed measurement is repeated, but not for ever.
 
-use std::fmt::Display;
+use std::fmt::{self, Display};
 
 /// A measurement that fails is repeated, until this number of measurements has failed in total. Later ones are skipped.
 pub const MOST_DISTURBED: usize = 10;
@@ -46,5 +46,12 @@ impl Attempts {
             "nothing was measured with {missing}: {disturbed} measurements were disturbed, and {skipped} were skipped. \
              Measure again when the machine has no other work"
         ))
+    }
+}
+
+impl Display for Attempts {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { disturbed, skipped } = self;
+        write!(f, "{disturbed} measurements were disturbed by faults, and {skipped} were skipped because of them")
     }
 }

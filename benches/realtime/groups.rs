@@ -2,7 +2,9 @@
 //! for each finger.
 
 use crate::Failure;
+use crate::attempts::Attempts;
 use crate::percentiles::Percentiles;
+use crate::under_control::under_control;
 use clap::Args;
 use std::thread::yield_now;
 use std::time::Instant;
@@ -28,42 +30,77 @@ impl Default for Arguments {
 /// Longest time until a group takes effect, s.
 const LONGEST: f64 = 5.0;
 
+/// The groups that took effect so far.
+#[derive(Default)]
+pub struct Measured {
+    /// For each group, the time until the planner saw it in effect in all fingers, ns.
+    pub delays: Vec<u64>,
+    /// Number of groups that took effect in the same period of all fingers.
+    same: u32,
+    /// Number of the other groups during which a servo skipped a period.
+    skipping: u32,
+}
+
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let hand = Hand::open(Configuration::default())?;
-    let (mut same, mut skipping) = (0, 0);
-    let mut delays = Vec::new();
-    for group in 0..arguments.groups {
-        let skipped = reports(&hand)?.map(|report| report.losses.skipped_periods);
+    let (mut measured, mut attempts) = (Measured::default(), Attempts::default());
+    attempts.measure("groups", || measured.send(&Hand::open(Configuration::default())?, arguments.groups));
+    measured.print(arguments.groups, &attempts);
+    Ok(attempts.check([("groups", measured.delays.len())])?)
+}
+
+impl Measured {
+    /// Sends groups to the hand until `wanted` groups have taken effect, including those of earlier hands.
+    ///
+    /// # Errors
+    /// Says why a group has not taken effect. The earlier groups stay measured.
+    pub fn send(&mut self, hand: &Hand, wanted: u32) -> Result<(), Failure> {
+        while self.delays.len() < wanted as usize {
+            self.send_next(hand)?;
+        }
+        Ok(())
+    }
+
+    fn send_next(&mut self, hand: &Hand) -> Result<(), Failure> {
+        let skipped = reports(hand)?.map(|report| report.losses.skipped_periods);
         // Every group has its own pose.
-        let pose = [0.0, 0.5, 0.8 + 1e-6 * f64::from(group)];
+        let pose = [0.0, 0.5, 0.8 + 1e-6 * self.delays.len() as f64];
         let sent = Instant::now();
         hand.send_group(&[1, 2, 3].map(|finger| FingerCommand::new(finger).joints(pose)))?;
         let taken = loop {
-            let taken = reports(&hand)?;
+            let taken = reports(hand)?;
             if taken.iter().all(|report| report.set_point.joints.as_slice() == pose) {
                 break taken;
             }
+            (1..).zip(&taken).try_for_each(|(finger, report)| under_control(finger, &report.stage))?;
             if sent.elapsed().as_secs_f64() > LONGEST {
-                return Err(format!("group {group} has not taken effect within {LONGEST} s").into());
+                return Err(format!("a group has not taken effect within {LONGEST} s").into());
             }
             yield_now();
         };
-        delays.push(sent.elapsed().as_nanos() as u64);
+        self.delays.push(sent.elapsed().as_nanos() as u64);
         let together = taken.iter().all(|report| report.set_point_period == taken[0].set_point_period);
-        same += u32::from(together);
+        self.same += u32::from(together);
         let late = taken.iter().zip(skipped).any(|(report, skipped)| report.losses.skipped_periods > skipped);
-        skipping += u32::from(!together && late);
+        self.skipping += u32::from(!together && late);
+        Ok(())
     }
-    let Percentiles { median, p99, .. } = Percentiles::of(delays);
-    println!(
-        "Groups of {FINGERS} fingers in {FINGERS} servo threads: {same} of {} took effect in the same period of all \
-         fingers (goal: all). In {skipping} of the others a late servo had skipped the period. The planner saw the \
-         group in effect in all fingers after {:.1} ms (median), {:.1} ms (99 %).\n",
-        arguments.groups,
-        median * 1e-3,
-        p99 * 1e-3
-    );
-    Ok(())
+
+    fn print(&self, wanted: u32, attempts: &Attempts) {
+        let (same, skipping, taken) = (self.same, self.skipping, self.delays.len());
+        print!("Groups of {FINGERS} fingers in {FINGERS} servo threads: ");
+        if self.delays.is_empty() {
+            println!("not measured, because faults disturbed every measurement. {attempts}.\n");
+            return;
+        }
+        let Percentiles { median, p99, .. } = Percentiles::of(self.delays.clone());
+        println!(
+            "{same} of {taken} took effect in the same period of all fingers (goal: all). In {skipping} of the others \
+             a late servo had skipped the period. The planner saw the group in effect in all fingers after {:.1} ms \
+             (median), {:.1} ms (99 %). {wanted} groups were to be measured. {attempts}.\n",
+            median * 1e-3,
+            p99 * 1e-3
+        );
+    }
 }
 
 fn reports(hand: &Hand) -> Result<[FingerReport; FINGERS], Failure> {

@@ -15,6 +15,7 @@
 mod attempts;
 mod cores;
 mod cyclictest;
+mod delays;
 mod events;
 mod explain;
 mod fingers;
@@ -26,6 +27,7 @@ mod reactions;
 mod telemetry;
 mod throughput;
 mod turns;
+mod under_control;
 mod wake_up;
 
 use clap::{Parser, Subcommand};

@@ -34,3 +34,9 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     }
     if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
 }
+
+/// Returns the text of a ratio with two decimals, or "-" if one side was not measured.
+pub fn ratio(one: f64, other: f64) -> String {
+    let ratio = one / other;
+    if ratio.is_nan() { "-".into() } else { format!("{ratio:.2}") }
+}

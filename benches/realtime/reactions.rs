@@ -7,8 +7,11 @@
 //! delay includes the periods that a late servo skips.
 
 use crate::Failure;
-use crate::explain::{Pauses, Watchers};
+use crate::attempts::Attempts;
+use crate::delays::{Delay, Delays};
+use crate::explain::Watchers;
 use crate::fingers::{Finger, reach_with};
+use crate::under_control::under_control;
 use clap::Args;
 use nalgebra::{Vector3, Vector4};
 use std::sync::Arc;
@@ -80,82 +83,78 @@ struct Member {
     _reflexes: Reflexes,
 }
 
-/// The first command that reacts to a contact.
-struct Delay {
-    periods: u64,
-    /// Beginning of the period of the contact, and end of the period of the command, ns.
-    time: [u64; 2],
-}
-
-/// The delays from contacts to reactions.
-struct Delays {
-    known: Vec<Delay>,
-    /// Longest permitted delay, periods.
-    goal: u64,
-    /// Contacts without a reaction.
-    missing: u32,
+/// The reactions so far: those of the touched finger, and those of the other fingers.
+struct Measured {
+    own: Delays,
+    others: Delays,
+    /// Number of contacts, including those whose period is unknown.
+    contacts: u32,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let configuration = configuration();
-    let ended = Arc::new(AtomicBool::new(false));
-    let (mut members, servos) = start(&configuration, &ended)?;
     let watchers = Watchers::start(WATCH_PRIORITY)?;
-    let measured = measure(&mut members, &configuration, arguments.contacts);
+    let (mut measured, mut attempts) = (Measured::default(), Attempts::default());
+    attempts.measure("reactions", || measured.with_new_fingers(arguments.contacts));
     let pauses = watchers.finish();
-    ended.store(true, Relaxed);
-    servos.into_iter().try_for_each(|servo| servo.join().map_err(|_| "a servo panicked"))?;
-    let (own, others) = measured?;
+    let Measured { own, others, contacts } = measured;
+    let made = own.contacts();
     println!(
         "| contact at a tactile element of the simulated board, until the first changed motor command | reactions | \
          within the goal | 99.9 % | worst | none | during pauses of the machine | within the goal, without pauses |\n\
          |---|---|---|---|---|---|---|---|"
     );
-    own.print("of the touched finger (goal: 99.9 % within 2 periods)", &pauses);
-    others.print("of the other two fingers, each in its own thread (goal: 99.9 % within 3 periods)", &pauses);
-    println!();
-    Ok(())
+    own.print("of the touched finger (goal: 99.9 % within 2 periods)", PAUSE, &pauses);
+    others.print("of the other two fingers, each in its own thread (goal: 99.9 % within 3 periods)", PAUSE, &pauses);
+    println!("\n{contacts} of {} contacts were made. {attempts}.\n", arguments.contacts);
+    Ok(attempts.check([("contacts", made)])?)
 }
 
-impl Delays {
-    fn new(goal: u64) -> Self {
-        Self { known: Vec::new(), goal, missing: 0 }
+impl Default for Measured {
+    fn default() -> Self {
+        Self { own: Delays::new(2), others: Delays::new(3), contacts: 0 }
+    }
+}
+
+impl Measured {
+    /// Starts three fingers and touches one of them until `wanted` contacts were made, including those of earlier
+    /// fingers.
+    fn with_new_fingers(&mut self, wanted: u32) -> Result<(), Failure> {
+        let (configuration, ended) = (configuration(), Arc::new(AtomicBool::new(false)));
+        let (mut members, servos) = start(&configuration, &ended)?;
+        let measured = opened(&mut members).and_then(|()| {
+            while self.contacts < wanted {
+                self.touch(&mut members, &configuration)?;
+            }
+            Ok(())
+        });
+        ended.store(true, Relaxed);
+        servos.into_iter().try_for_each(|servo| servo.join().map_err(|_| "a servo panicked"))?;
+        measured
     }
 
-    /// Adds the delay from period `touched` to period `reacted` of a finger.
-    fn add(&mut self, member: &Member, touched: u64, reacted: Option<u64>) {
-        let Some(reacted) = reacted else {
-            self.missing += 1;
-            return;
-        };
-        let time = [touched, reacted + 1].map(|period| member.start + period * PERIOD);
-        self.known.push(Delay { periods: reacted - touched, time });
-    }
-
-    /// Returns the share of these delays that is within the goal, %.
-    fn share<'a>(&self, delays: impl Iterator<Item = &'a Delay>) -> f64 {
-        let (mut within, mut all) = (0_u32, 0_u32);
-        for delay in delays {
-            within += u32::from(delay.periods <= self.goal);
-            all += 1;
+    /// Touches the finger once. A contact during which a finger has faulted does not count.
+    fn touch(&mut self, members: &mut [Member], configuration: &Configuration) -> Result<(), Failure> {
+        let address = configuration.address(TOUCHED);
+        for member in members.iter() {
+            member.mailbox.send(|set_point| set_point.joints = POSE).map_err(|fault| fault.to_string())?;
         }
-        100.0 * f64::from(within) / f64::from(all.max(1))
-    }
-
-    fn print(mut self, what: &str, pauses: &Pauses) {
-        self.known.sort_unstable_by_key(|delay| delay.periods);
-        let count = self.known.len();
-        let at = |place: usize| self.known.get(place).map_or("-".into(), |delay| delay.periods.to_string());
-        let undisturbed = || self.known.iter().filter(|delay| pauses.longest(delay.time) < PAUSE);
-        println!(
-            "| {what} | {count} | {:.2} % | {} | {} | {} | {} | {:.2} % |",
-            self.share(self.known.iter()),
-            at((count as f64 * 0.999) as usize),
-            at(count.saturating_sub(1)),
-            self.missing,
-            count - undisturbed().count(),
-            self.share(undisturbed()),
-        );
+        // The contacts begin at any time within a period.
+        sleep(REST + Duration::from_micros(u64::from(self.contacts) * 997 % 1000));
+        let acting = press(&members[TOUCHED.index()].board, address, PRESS)?;
+        sleep(CONTACT);
+        press(&members[TOUCHED.index()].board, address, 0.0)?;
+        members.iter_mut().for_each(|member| member.black_box.collect());
+        check(members)?;
+        self.contacts += 1;
+        let Some(touched) = members[TOUCHED.index()].period_of(&acting) else {
+            // The records of this time were lost, because this thread did not run.
+            return Ok(());
+        };
+        for (member, number) in members.iter().zip(FingerNumber::ALL) {
+            let delays = if number == TOUCHED { &mut self.own } else { &mut self.others };
+            delays.add(member.reaction(touched).map(|reacted| member.delay(touched, reacted)));
+        }
+        Ok(())
     }
 }
 
@@ -166,7 +165,7 @@ fn configuration() -> Configuration {
     configuration
 }
 
-/// Starts a servo thread for each finger, and waits until all fingers are springs.
+/// Starts a servo thread for each finger.
 fn start(
     configuration: &Configuration,
     ended: &Arc<AtomicBool>,
@@ -202,35 +201,20 @@ fn start(
     Ok((members, servos))
 }
 
-/// Touches a finger again and again. Returns the delays of this finger, and those of the others.
-fn measure(members: &mut [Member], configuration: &Configuration, contacts: u32) -> Result<(Delays, Delays), Failure> {
+/// Waits until all fingers are springs.
+fn opened(members: &mut [Member]) -> Result<(), Failure> {
     let begun = Instant::now();
     while members.iter().any(|member| member.mailbox.report().stage == Stage::Opening) && begun.elapsed() < OPENING {
         sleep(REST);
         members.iter_mut().for_each(|member| member.black_box.collect());
     }
-    let address = configuration.address(TOUCHED);
-    let (mut own, mut others) = (Delays::new(2), Delays::new(3));
-    for contact in 0..contacts {
-        for member in members.iter() {
-            member.mailbox.send(|set_point| set_point.joints = POSE).map_err(|fault| fault.to_string())?;
-        }
-        // The contacts begin at any time within a period.
-        sleep(REST + Duration::from_micros(u64::from(contact) * 997 % 1000));
-        let acting = press(&members[TOUCHED.index()].board, address, PRESS)?;
-        sleep(CONTACT);
-        press(&members[TOUCHED.index()].board, address, 0.0)?;
-        members.iter_mut().for_each(|member| member.black_box.collect());
-        let Some(touched) = members[TOUCHED.index()].period_of(&acting) else {
-            // The records of this time were lost, because this thread did not run.
-            continue;
-        };
-        for (member, number) in members.iter().zip(FingerNumber::ALL) {
-            let delays = if number == TOUCHED { &mut own } else { &mut others };
-            delays.add(member, touched, member.reaction(touched));
-        }
-    }
-    Ok((own, others))
+    check(members)
+}
+
+/// Checks that all fingers are springs.
+fn check(members: &[Member]) -> Result<(), Failure> {
+    let stages = members.iter().map(|member| member.mailbox.report().stage);
+    Ok((1..).zip(stages).try_for_each(|(finger, stage)| under_control(finger, &stage))?)
 }
 
 /// Presses the element with a force, N, and returns the torques of the motors at this moment, N cm.
@@ -270,6 +254,12 @@ impl Member {
         let newest = self.black_box.record(None).map_or(0, |kept| kept.newest);
         let length = (CONTACT.as_nanos() as u64 + REST.as_nanos() as u64) / PERIOD;
         (newest.saturating_sub(length)..=newest).filter_map(|cycle| Some(self.black_box.record(Some(cycle))?.record))
+    }
+
+    /// Returns the delay from period `touched` to period `reacted` of this finger.
+    fn delay(&self, touched: u64, reacted: u64) -> Delay {
+        let time = [touched, reacted + 1].map(|period| self.start + period * PERIOD);
+        Delay { periods: reacted - touched, time }
     }
 
     /// Returns the number of the period that contains the time `began`, ns.

@@ -1,15 +1,17 @@
 //! Measures whether processes that read telemetry delay the servos.
 
 use crate::Failure;
-use crate::percentiles::median;
+use crate::attempts::Attempts;
+use crate::percentiles::{median, ratio};
 use crate::turns::Turns;
+use crate::under_control::under_control;
 use std::fs::File;
 use std::hint::black_box;
-use std::io::{BufWriter, Read, Write};
-use std::process::{Child, Command, Stdio};
+use std::io::{self, BufWriter, Read, Write};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
-use sun2xp::hand::{Hand, HandError};
+use sun2xp::hand::Hand;
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::{CycleStage, Distribution};
 use sun2xp::telemetry::{Reader, View};
@@ -40,53 +42,75 @@ impl Side {
     fn median_of(&self, part: fn(&Distribution) -> f64) -> f64 {
         median(self.0.iter().map(part))
     }
+
+    /// Prints the row of this side.
+    fn print(&self, name: &str) {
+        if self.0.is_empty() {
+            println!("| {name} | not measured, because faults disturbed every measurement | | | |");
+            return;
+        }
+        let largest = self.0.iter().map(|wake| wake.maximum).fold(0.0, f64::max);
+        println!(
+            "| {name} | {:.1} us | {:.1} us | {:.1} us | {largest:.0} us |",
+            self.median_of(|wake| wake.median),
+            self.median_of(|wake| wake.p99),
+            self.median_of(|wake| wake.p999),
+        );
+    }
 }
 
 pub fn run(turns: &Turns) -> Result<(), Failure> {
-    let mut configuration = Configuration::default();
-    configuration.telemetry.name = format!("bench-{}", std::process::id());
-    let name = configuration.telemetry.name.clone();
-    let hand = Hand::open(configuration)?;
     let (mut without, mut with, mut ratios) = (Side::default(), Side::default(), Vec::new());
+    let mut attempts = Attempts::default();
     for _ in 0..turns.repeats {
-        let alone = measure(&hand, turns.seconds)?;
-        let readers = READERS.map(|write| Process::start(&name, write));
-        let readers = readers.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let read = measure(&hand, turns.seconds)?;
-        readers.into_iter().try_for_each(Process::end)?;
+        let measured = attempts.measure("a turn without readers and one with them", || neighbours(turns.seconds));
+        let Some([alone, read]) = measured else { continue };
         ratios.push(median(read.iter().map(|wake| wake.p999)) / median(alone.iter().map(|wake| wake.p999)));
         without.0.extend(alone);
         with.0.extend(read);
     }
     println!("| wake-up | median | 99 % | 99.9 % | largest |\n|---|---|---|---|---|");
-    for (name, side) in [("no reader", &without), ("three readers", &with)] {
-        let largest = side.0.iter().map(|wake| wake.maximum).fold(0.0, f64::max);
-        println!(
-            "| {name} | {:.1} us | {:.1} us | {:.1} us | {largest:.0} us |",
-            side.median_of(|wake| wake.median),
-            side.median_of(|wake| wake.p99),
-            side.median_of(|wake| wake.p999),
-        );
-    }
-    let of_sides = with.median_of(|wake| wake.p999) / without.median_of(|wake| wake.p999);
+    without.print("no reader");
+    with.print("three readers");
+    let made = ratios.len();
     println!(
-        "\nMedians over three fingers and {} turns of {} s for each side. The two sides alternate. Ratio of the 99.9 % \
-         latency with readers to that without (goal: 0.9 to 1.1): {of_sides:.3}; median of the ratios of \
-         neighbouring turns: {:.3}.\n",
-        turns.repeats,
+        "\nMedians over three fingers and {made} turns of {} s for each side. {attempts}. The two sides alternate. \
+         Ratio of the 99.9 % latency with readers to that without (goal: 0.9 to 1.1): {}; median of the ratios of \
+         neighbouring turns: {}.\n",
         turns.seconds,
-        median(ratios),
+        ratio(with.median_of(|wake| wake.p999), without.median_of(|wake| wake.p999)),
+        ratio(median(ratios), 1.0),
     );
-    Ok(())
+    Ok(attempts.check([("three readers", made)])?)
 }
 
-/// Returns the wake-up latency of each finger.
-fn measure(hand: &Hand, seconds: u64) -> Result<Vec<Distribution>, HandError> {
+/// Measures a hand of its own, first without readers and then with them. A turn without readers and the next one with
+/// them are repeated together, so that a ratio compares turns at nearly the same time.
+fn neighbours(seconds: u64) -> Result<[Vec<Distribution>; 2], Failure> {
+    let mut configuration = Configuration::default();
+    configuration.telemetry.name = format!("bench-{}", std::process::id());
+    let name = configuration.telemetry.name.clone();
+    let hand = Hand::open(configuration)?;
+    let alone = measure(&hand, seconds)?;
+    let readers = READERS.map(|write| Process::start(&name, write));
+    let readers = readers.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let read = measure(&hand, seconds)?;
+    readers.into_iter().try_for_each(Process::end)?;
+    Ok([alone, read])
+}
+
+/// Returns the wake-up latency of each finger. The servo of a finger that has stopped does less work, so its latency
+/// does not count.
+fn measure(hand: &Hand, seconds: u64) -> Result<Vec<Distribution>, Failure> {
     let fingers = 1..=FINGERS as i32;
     sleep(SETTLING);
     fingers.clone().try_for_each(|finger| hand.reset_timing(finger))?;
     sleep(Duration::from_secs(seconds));
-    fingers.map(|finger| hand.timing(finger, CycleStage::WakeUp)).collect()
+    let timings = fingers.clone().map(|finger| hand.timing(finger, CycleStage::WakeUp)).collect::<Result<_, _>>()?;
+    for finger in fingers {
+        under_control(finger as usize, &hand.report(finger)?.stage)?;
+    }
+    Ok(timings)
 }
 
 /// A process that reads until its standard input ends.
@@ -97,15 +121,28 @@ impl Process {
         let mut command = Command::new(std::env::current_exe()?);
         command.args(["reader", name]).args(write.then_some("--write")).stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.spawn()?;
+        let attached = child.stdout.take().ok_or("no pipe");
+        let process = Self(child);
         // The reader prints one byte when it is attached.
-        child.stdout.take().ok_or("no pipe")?.read_exact(&mut [0])?;
-        Ok(Self(child))
+        attached?.read_exact(&mut [0]).map_err(|_| "a reader did not start")?;
+        Ok(process)
     }
 
     fn end(mut self) -> Result<(), Failure> {
-        drop(self.0.stdin.take());
-        let status = self.0.wait()?;
+        let status = self.wait()?;
         if status.success() { Ok(()) } else { Err("a reader lost cycles or failed".into()) }
+    }
+
+    fn wait(&mut self) -> io::Result<ExitStatus> {
+        drop(self.0.stdin.take());
+        self.0.wait()
+    }
+}
+
+/// A measurement that fails must not leave its readers behind, because they would disturb the next one.
+impl Drop for Process {
+    fn drop(&mut self) {
+        let _ = self.wait();
     }
 }
 
@@ -117,9 +154,9 @@ pub fn read(arguments: &ReaderArguments) -> Result<(), Failure> {
         true => Some(BufWriter::new(tempfile::tempfile()?)),
         false => None,
     };
-    let ended = std::thread::spawn(|| std::io::stdin().read(&mut [0]));
-    std::io::stdout().write_all(b".")?;
-    std::io::stdout().flush()?;
+    let ended = std::thread::spawn(|| io::stdin().read(&mut [0]));
+    io::stdout().write_all(b".")?;
+    io::stdout().flush()?;
     let mut messages = Vec::new();
     while !ended.is_finished() {
         messages.clear();
@@ -132,7 +169,7 @@ pub fn read(arguments: &ReaderArguments) -> Result<(), Failure> {
     if reader.lost() == [0; FINGERS] { Ok(()) } else { Err(format!("lost: {:?}", reader.lost()).into()) }
 }
 
-fn write(file: &mut Option<BufWriter<File>>, bytes: impl FnOnce() -> std::io::Result<Vec<u8>>) -> std::io::Result<()> {
+fn write(file: &mut Option<BufWriter<File>>, bytes: impl FnOnce() -> io::Result<Vec<u8>>) -> io::Result<()> {
     match file {
         Some(file) => file.write_all(&bytes()?),
         None => Ok(()),

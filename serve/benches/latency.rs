@@ -4,7 +4,8 @@
 mod common;
 
 use clap::Parser;
-use common::{Offer, hand, percentile, pose_of};
+use common::attempts::Attempts;
+use common::{Failure, Offer, hand, percentile, pose_of};
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -38,33 +39,65 @@ struct Arguments {
     bench: bool,
 }
 
-fn main() {
+fn main() -> Result<(), Failure> {
     let arguments = Arguments::parse();
     if let Some(endpoint) = &arguments.client {
         return client(&arguments, endpoint);
     }
-    let fingers = if arguments.whole_hand { Ok(Fingers::ALL) } else { Fingers::only(1) };
-    let offer = Offer::new(!arguments.plain, hand(arguments.rate, fingers.expect("a finger")));
-    let mut command = Command::new(std::env::current_exe().expect("this program"));
-    command.args(["--client", &offer.endpoint, "--samples", &arguments.samples.to_string()]);
-    if let Some(folder) = offer.folder() {
-        command.arg("--folder").arg(folder);
+    let (mut measured, mut attempts) = (Measured::default(), Attempts::default());
+    attempts.measure("SendPos to the motor command", || measured.with_new_server(&arguments));
+    print(&arguments, &measured);
+    println!("\n{attempts}.");
+    Ok(attempts.check([("the client", measured.latencies.len())])?)
+}
+
+/// The set points so far.
+#[derive(Default)]
+struct Measured {
+    /// Number of set points that were sent.
+    sent: u32,
+    /// Times from a SendPos to its motor command, us.
+    latencies: Vec<f64>,
+}
+
+impl Measured {
+    /// Offers a hand, and lets a client send the set points that are left. If the client or the hand fails, the earlier
+    /// set points stay measured.
+    fn with_new_server(&mut self, arguments: &Arguments) -> Result<(), Failure> {
+        let fingers = if arguments.whole_hand { Fingers::ALL } else { Fingers::only(1)? };
+        let offer = Offer::new(!arguments.plain, hand(arguments.rate, fingers))?;
+        let mut command = Command::new(std::env::current_exe()?);
+        let left = arguments.samples - self.sent;
+        command.args(["--client", &offer.endpoint, "--samples", &left.to_string()]);
+        if let Some(folder) = offer.folder() {
+            command.arg("--folder").arg(folder);
+        }
+        let mut child = command.stdout(Stdio::piped()).spawn()?;
+        let output = BufReader::new(child.stdout.take().ok_or("no pipe")?);
+        let reading = std::thread::spawn(move || output.lines().map_while(Result::ok).collect::<Vec<_>>());
+        let records = records_until(&offer, || reading.is_finished());
+        let status = child.wait()?;
+        let sent = reading.join().map_err(|_| "the reading thread panicked")?;
+        let sent = sent.iter().map(|line| line.parse()).collect::<Result<Vec<u64>, _>>()?;
+        self.sent += sent.len() as u32;
+        self.latencies.extend(latencies(&sent, &records?));
+        if status.success() { Ok(()) } else { Err("the client has ended early".into()) }
     }
-    let mut child = command.stdout(Stdio::piped()).spawn().expect("a client");
-    let output = BufReader::new(child.stdout.take().expect("its output"));
-    let reading = std::thread::spawn(move || output.lines().map_while(Result::ok).collect::<Vec<_>>());
+}
+
+/// Collects the records of finger 1 until `ended` returns true.
+fn records_until(offer: &Offer, ended: impl Fn() -> bool) -> Result<Vec<CycleRecord>, Failure> {
     let mut records = Vec::new();
-    let mut last = offer.hand().report(1).expect("finger 1").losses.cycles;
-    while !reading.is_finished() {
-        offer.hand().records_after(1, last, &mut records).expect("finger 1");
+    let mut last = offer.hand().report(1)?.losses.cycles;
+    loop {
+        let finished = ended();
+        offer.hand().records_after(1, last, &mut records)?;
         last = records.last().map_or(last, |record: &CycleRecord| record.cycle);
+        if finished {
+            return Ok(records);
+        }
         std::thread::sleep(Duration::from_millis(50));
     }
-    offer.hand().records_after(1, last, &mut records).expect("finger 1");
-    child.wait().expect("the client");
-    let sent: Vec<u64> = reading.join().expect("read").iter().map(|line| line.parse().expect("a time")).collect();
-    print(&arguments, &latencies(&sent, &records));
-    offer.end();
 }
 
 /// Returns the times from each SendPos to the beginning of the exchange with its motor command, us.
@@ -87,7 +120,8 @@ fn latencies(sent: &[u64], records: &[CycleRecord]) -> Vec<f64> {
     found
 }
 
-fn print(arguments: &Arguments, latencies: &[f64]) {
+fn print(arguments: &Arguments, measured: &Measured) {
+    let Measured { sent, latencies } = measured;
     let link = if arguments.plain { "TCP" } else { "TLS" };
     let goal = 2e6 / arguments.rate + 1000.0;
     let found = latencies.len();
@@ -96,24 +130,29 @@ fn print(arguments: &Arguments, latencies: &[f64]) {
         arguments.rate
     );
     println!("|---|---|---|---|---|");
+    if latencies.is_empty() {
+        println!("| not measured, because faults disturbed every measurement | | | | {goal:.0} us |");
+        return;
+    }
     let [median, p99, p999] = [0.5, 0.99, 0.999].map(|part| percentile(latencies, part));
-    println!(
-        "| {found} of {} set points | {median:.0} us | {p99:.0} us | {p999:.0} us | {goal:.0} us |",
-        arguments.samples
-    );
+    println!("| {found} of {sent} set points | {median:.0} us | {p99:.0} us | {p999:.0} us | {goal:.0} us |");
 }
 
-/// Sends set points at intervals that fall on every phase of the servo's period, and prints when it sent them.
-fn client(arguments: &Arguments, endpoint: &str) {
-    let hand = common::remote(endpoint, arguments.folder.as_deref());
+/// Sends set points at intervals that fall on every phase of the servo's period, and prints when it sent them. If the
+/// hand refuses a set point, prints the times of the earlier ones.
+fn client(arguments: &Arguments, endpoint: &str) -> Result<(), Failure> {
+    let hand = common::remote(endpoint, arguments.folder.as_deref())?;
     let mut sent = Vec::new();
-    for number in 0..arguments.samples {
+    let all = (0..arguments.samples).try_for_each(|number| -> Result<(), Failure> {
         std::thread::sleep(Duration::from_micros(8000 + u64::from(number * 137 % 1000)));
-        sent.push(now());
-        hand.send_position(1, pose_of(number)).expect("sent");
-    }
+        let time = now();
+        hand.send_position(1, pose_of(number))?;
+        sent.push(time);
+        Ok(())
+    });
     std::thread::sleep(Duration::from_millis(100));
     for time in sent {
         println!("{time}");
     }
+    all
 }

@@ -15,7 +15,8 @@ pub enum LinkError {
     /// No byte was received.
     #[error(
         "the board does not answer: no byte was received in {milliseconds} ms. Check that it is switched on, that its \
-         cable is plugged in, that finger.port is its port and that transmit and receive are not crossed"
+         cable is plugged in, that finger.port is its port, and that the transmit output of each side is connected to \
+         the receive input of the other"
     )]
     Silent {
         /// How long the host tried, ms.
@@ -137,10 +138,11 @@ mod tests {
     fn every_port_without_a_board_has_its_cause_and_a_remedy_in_short() {
         let path = || PathBuf::from("/dev/ttyUSB0");
         let broken = || io::Error::from_raw_os_error(libc::EPROTO);
-        let errors: [(LinkError, &str); 11] = [
+        let errors: [(LinkError, &str); 12] = [
             (PortError::Missing(path()).into(), "does not exist"),
             (PortError::Forbidden(path()).into(), "no permission"),
             (PortError::Busy(path()).into(), "in use by another program"),
+            (PortError::NotReady(path()).into(), "not ready"),
             (PortError::NotASerialPort(path()).into(), "not a serial port"),
             (PortError::Baud { path: path(), wanted: 2_000_000, offered: 9600 }.into(), "cannot run at 2000000 bit/s"),
             (PortError::Opening { path: path(), source: broken() }.into(), "Protocol error"),

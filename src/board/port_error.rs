@@ -21,6 +21,13 @@ pub enum PortError {
     #[error("{path} is in use by another program: end it (fuser -v {path} names it), or configure another \
              port", path = ShownPath(.0))]
     Busy(PathBuf),
+    /// The driver does not open the port yet (EAGAIN). A UART takes up to 30 s to close if bytes cannot leave.
+    #[error(
+        "{} is not ready, because it is still being closed after its last use, or its driver is still starting: open \
+         it again after half a minute. If it is not ready then, unplug and replug the adapter",
+        ShownPath(.0)
+    )]
+    NotReady(PathBuf),
     /// The file is not a serial port (ENOTTY).
     #[error("{} is not a serial port: check finger.port", ShownPath(.0))]
     NotASerialPort(PathBuf),
@@ -50,7 +57,7 @@ pub enum PortError {
     #[error(
         "cannot set up {}: {}. Check finger.port and finger.baud, and the adapter's driver (dmesg)",
         ShownPath(path),
-        with_remedy(source)
+        setting_up(source)
     )]
     SetUp {
         /// The port.
@@ -69,8 +76,8 @@ pub enum PortError {
     Closed,
     /// Hardware that the program provides does not start or stop.
     #[error(
-        "the hardware that the program provides failed to {doing}: {source}. Follow the documentation of the program \
-         or of its hardware"
+        "the hardware that the program provides failed to {doing}: {source}. Check its power and its cables, end other \
+         programs that use it, and look up this error in the documentation of the program or of its hardware"
     )]
     Hardware {
         /// "start" or "stop".
@@ -90,6 +97,7 @@ impl PortError {
             PortError::Missing(_) => "does not exist: check the cable".into(),
             PortError::Forbidden(_) => "no permission: join the port's group (usually dialout)".into(),
             PortError::Busy(_) => "in use by another program: end it".into(),
+            PortError::NotReady(_) => "not ready: try again after half a minute".into(),
             PortError::NotASerialPort(_) => "not a serial port: name another port".into(),
             PortError::Baud { wanted, .. } => format!("cannot run at {wanted} bit/s: choose another bit rate"),
             PortError::Opening { source, .. }
@@ -106,6 +114,7 @@ impl PortError {
             PortError::Missing(_) => libc::ENOENT,
             PortError::Forbidden(_) => libc::EACCES,
             PortError::Busy(_) => libc::EBUSY,
+            PortError::NotReady(_) => libc::EAGAIN,
             PortError::NotASerialPort(_) => libc::ENOTTY,
             PortError::Baud { .. } => libc::EINVAL,
             PortError::Vanished => libc::EIO,
@@ -125,6 +134,7 @@ impl PortError {
             Some(libc::EACCES) => Self::Forbidden(path),
             // The program that has the port open has marked it for exclusive use.
             Some(libc::EBUSY) => Self::Busy(path),
+            Some(libc::EAGAIN) => Self::NotReady(path),
             Some(libc::ENOTTY | libc::EISDIR) => Self::NotASerialPort(path),
             _ => Self::Opening { path, source },
         }
@@ -153,11 +163,23 @@ fn opening(source: &io::Error) -> String {
     }
 }
 
+fn setting_up(source: &io::Error) -> String {
+    match remedy_at_open_port(source) {
+        Some(remedy) => format!("{source}: {remedy}"),
+        None => source.to_string(),
+    }
+}
+
 fn failing(source: &io::Error) -> String {
-    match remedy(source) {
+    match remedy_at_open_port(source) {
         Some(remedy) => format!("{source}: {remedy}"),
         None => format!("{source}. Unplug and replug the adapter"),
     }
+}
+
+/// [`remedy`] takes EAGAIN for a limit of threads. A call at an open port starts no thread.
+fn remedy_at_open_port(source: &io::Error) -> Option<&'static str> {
+    if source.raw_os_error() == Some(libc::EAGAIN) { None } else { remedy(source) }
 }
 
 #[cfg(test)]
@@ -166,7 +188,8 @@ mod tests {
 
     #[test]
     fn only_a_failure_of_the_adapter_is_answered_by_unplugging_it() {
-        for (errno, unplug) in [(libc::EPROTO, true), (libc::EPERM, false), (libc::ENOSYS, false)] {
+        for (errno, unplug) in [(libc::EPROTO, true), (libc::EAGAIN, true), (libc::EPERM, false), (libc::ENOSYS, false)]
+        {
             let text = PortError::from(io::Error::from_raw_os_error(errno)).to_string();
             assert_eq!((text.contains("Unplug"), text.contains("sandbox")), (unplug, !unplug), "{text}");
         }
@@ -179,6 +202,7 @@ mod tests {
             (libc::EACCES, "dialout"),
             (libc::EBUSY, "fuser"),
             (libc::ENOTTY, "finger.port"),
+            (libc::EAGAIN, "not ready"),
             (libc::EMFILE, "ulimit -n"),
             (libc::ENFILE, "fs.file-max"),
             (libc::ENXIO, "no device"),
@@ -190,6 +214,22 @@ mod tests {
             let error = PortError::at_opening(Path::new("/dev/port"), io::Error::from_raw_os_error(errno));
             assert_eq!(error.errno(), errno, "{error}");
             assert!(error.to_string().contains("/dev/port") && error.to_string().contains(word), "{error}");
+        }
+    }
+
+    /// The limits of threads belong to the calls that start one.
+    #[test]
+    fn no_port_is_explained_by_a_limit_of_threads() {
+        let refused = || io::Error::from_raw_os_error(libc::EAGAIN);
+        let path = PathBuf::from("/dev/port");
+        for error in [
+            PortError::at_opening(&path, refused()),
+            PortError::SetUp { path: path.clone(), source: refused() },
+            PortError::from(refused()),
+        ] {
+            let text = error.to_string();
+            assert!(!text.contains("thread") && !text.contains("ulimit"), "{text}");
+            assert_eq!(error.errno(), libc::EAGAIN, "{text}");
         }
     }
 }

@@ -5,11 +5,12 @@ use std::collections::hash_map::RandomState;
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::hash::{BuildHasher, Hasher};
 use std::io::{self, BufWriter, ErrorKind, Write};
+use std::iter;
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt, fchown};
 use std::path::{Path, PathBuf};
 
 /// Number of temporary names that are tried. Two names of 64 random bits are never equal by accident.
-const ATTEMPTS: u32 = 16;
+const ATTEMPTS: usize = 16;
 
 /// The bits of a mode that a new file inherits. Set-user-ID, set-group-ID and sticky are not inherited.
 const PERMISSIONS: u32 = 0o777;
@@ -149,10 +150,20 @@ impl Drop for NewFile {
 
 /// Creates a file under a name that an attacker cannot predict.
 fn create_unpredictable(folder: &Path, mode: u32) -> io::Result<(PathBuf, File)> {
+    create_under_free(folder, iter::repeat_with(unpredictable_name).take(ATTEMPTS), mode)
+}
+
+/// Returns a name with 64 random bits.
+fn unpredictable_name() -> String {
+    // The keys of a RandomState come from the system's random numbers.
+    format!(".sun2xp-{:016x}.new", RandomState::new().build_hasher().finish())
+}
+
+/// Creates a file under the first of `names` that is free in `folder`.
+fn create_under_free(folder: &Path, names: impl IntoIterator<Item = String>, mode: u32) -> io::Result<(PathBuf, File)> {
     let mut last = io::Error::from(ErrorKind::AlreadyExists);
-    for _ in 0..ATTEMPTS {
-        // The keys of a RandomState come from the system's random numbers.
-        let path = folder.join(format!(".sun2xp-{:016x}.new", RandomState::new().build_hasher().finish()));
+    for name in names {
+        let path = folder.join(name);
         // create_new sets O_EXCL, so that neither an existing file nor a link under this name is opened.
         let opened =
             OpenOptions::new().write(true).create_new(true).mode(mode).custom_flags(libc::O_NOFOLLOW).open(&path);
@@ -198,103 +209,4 @@ fn flush_folder(folder: &Path) -> io::Result<()> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::os::unix::fs::symlink;
-    use tempfile::{TempDir, tempdir};
-
-    fn write(text: &'static str) -> impl FnOnce(&mut dyn Write) -> io::Result<()> {
-        move |output| output.write_all(text.as_bytes())
-    }
-
-    fn folder() -> (TempDir, PathBuf) {
-        let folder = tempdir().expect("a folder");
-        let file = folder.path().join("file");
-        (folder, file)
-    }
-
-    fn names(folder: &TempDir) -> Vec<String> {
-        let entries = fs::read_dir(folder.path()).expect("a folder");
-        let mut names: Vec<String> =
-            entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
-        names.sort();
-        names
-    }
-
-    fn mode(file: &Path) -> u32 {
-        fs::metadata(file).expect("there").mode() & 0o7777
-    }
-
-    #[test]
-    fn a_file_is_created_or_replaced() {
-        let (folder, file) = folder();
-        for text in ["one", "another"] {
-            replace_file(&file, write(text)).expect("written");
-            assert_eq!(fs::read_to_string(&file).expect("read"), text);
-            assert_eq!(names(&folder), ["file"]);
-        }
-    }
-
-    #[test]
-    fn a_failed_write_changes_nothing_and_leaves_no_file() {
-        let (folder, file) = folder();
-        let fail = |output: &mut dyn Write| {
-            output.write_all(b"the first half")?;
-            Err(io::Error::from_raw_os_error(libc::ENOSPC))
-        };
-        assert_eq!(replace_file(&file, fail).expect_err("failed").raw_os_error(), Some(libc::ENOSPC));
-        assert!(names(&folder).is_empty());
-        fs::write(&file, "old").expect("written");
-        assert_eq!(replace_file(&file, fail).expect_err("failed").raw_os_error(), Some(libc::ENOSPC));
-        assert_eq!(fs::read_to_string(&file).expect("read"), "old");
-        assert_eq!(names(&folder), ["file"]);
-        create_file(folder.path(), ["file".into(), "other".into()], fail).expect_err("failed");
-        assert_eq!(names(&folder), ["file"]);
-    }
-
-    #[test]
-    fn links_and_devices_are_refused() {
-        let (folder, file) = folder();
-        fs::write(folder.path().join("victim"), "precious").expect("written");
-        symlink("victim", &file).expect("made");
-        assert_eq!(replace_file(&file, write("new")).expect_err("refused").kind(), ErrorKind::InvalidInput);
-        assert_eq!(fs::read_to_string(&file).expect("read"), "precious");
-        for path in [Path::new("/dev/null"), folder.path()] {
-            assert_eq!(replace_file(path, write("new")).expect_err("refused").kind(), ErrorKind::InvalidInput);
-        }
-        assert_eq!(names(&folder), ["file", "victim"]);
-    }
-
-    #[test]
-    fn permissions_are_inherited_without_special_bits() {
-        let (_folder, file) = folder();
-        fs::write(&file, "old").expect("written");
-        for (before, after) in [(0o600, 0o600), (0o664, 0o664), (0o4750, 0o750)] {
-            fs::set_permissions(&file, Permissions::from_mode(before)).expect("set");
-            replace_file(&file, write("new")).expect("written");
-            assert_eq!(mode(&file), after);
-        }
-    }
-
-    #[test]
-    fn a_file_with_the_wanted_name_is_not_overwritten() {
-        let (folder, file) = folder();
-        fs::write(&file, "old").expect("written");
-        symlink("nowhere", folder.path().join("link")).expect("made");
-        let candidates = ["file", "link", "third"].map(String::from);
-        let path = create_file(folder.path(), candidates.clone(), write("new")).expect("written");
-        assert_eq!(path, folder.path().join("third"));
-        assert_eq!(fs::read_to_string(&file).expect("read"), "old");
-        let error = create_file(folder.path(), candidates, write("new")).expect_err("every name is taken");
-        assert_eq!(error.kind(), ErrorKind::AlreadyExists);
-        assert_eq!(names(&folder), ["file", "link", "third"]);
-    }
-
-    #[test]
-    fn temporary_names_differ() {
-        let (folder, _) = folder();
-        let made: std::collections::BTreeSet<PathBuf> =
-            (0..100).map(|_| create_unpredictable(folder.path(), 0o600).expect("made").0).collect();
-        assert_eq!(made.len(), 100);
-    }
-}
+mod tests;

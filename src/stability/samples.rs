@@ -152,3 +152,31 @@ fn direction(random: &mut Pcg64) -> Vector3<f64> {
 fn uniform(random: &mut Pcg64, low: f64, high: f64) -> f64 {
     low + (high - low) * f64::from(random.next_u32()) / 4294967296.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// A bound that is found with a damping of 1 only says nothing about the other dampings that a planner may request.
+    #[test]
+    fn every_law_and_contact_is_tried_with_the_least_damping_with_one_and_with_the_most() {
+        let finger = ConfiguredFinger::default();
+        for (walls, dimensions) in [(false, &[3, 4][..]), (true, &[1, 3, 4])] {
+            let tried: BTreeSet<(bool, usize, String)> = samples(&finger, 24, 5, walls)
+                .iter()
+                .map(|sample| sample.at(3.0, &finger.links(), |_| (0.5, 1.5)))
+                .map(|rest| (matches!(rest.law, Law::Exact), rest.dimensions(), rest.damping.to_string()))
+                .collect();
+            for law in [true, false] {
+                for &dimensions in dimensions {
+                    for damping in ["0.5", "1", "1.5"] {
+                        let combination = (law, dimensions, damping.to_string());
+                        assert!(tried.contains(&combination), "{combination:?} is not among {tried:?}");
+                    }
+                }
+            }
+            assert_eq!(tried.len(), 2 * dimensions.len() * 3, "{tried:?}");
+        }
+    }
+}

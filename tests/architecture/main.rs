@@ -1,5 +1,5 @@
 //! The rules of docs/architecture.md: imports run downward only, no files import each other in a circle, not even
-//! through re-exports, and files, functions and lines are short.
+//! through re-exports, and files, functions and lines are short. tests/tools.txt lists the programs that tests start.
 
 mod c_names;
 mod circles;
@@ -7,6 +7,7 @@ mod crate_tree;
 mod imports;
 mod limits;
 mod named_files;
+mod programs;
 mod set_point;
 
 use crate_tree::CrateTree;
@@ -156,4 +157,50 @@ fn no_field_is_left_out_of_a_message() {
         .map(|path| path.display().to_string())
         .collect();
     assert!(found.is_empty(), "skip_serializing in {found:?}");
+}
+
+/// Otherwise `tests/run` does not install a program that a test needs, and the test fails on a bare machine. Benchmarks
+/// may need more programs.
+#[test]
+fn every_program_that_a_test_starts_is_listed() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let listed = programs::listed(include_str!("../tools.txt"));
+    let mut started = BTreeSet::new();
+    let mut missing = Vec::new();
+    for path in limits::source_files(root) {
+        let file = path.strip_prefix(root).expect("it is below the root").display();
+        if path.extension().is_none_or(|end| end != "rs") || path.iter().any(|folder| folder == "benches") {
+            continue;
+        }
+        let programs = programs::started(&fs::read_to_string(&path).expect("a source file"));
+        let known = |program: &str| listed.contains(program) || programs::ALWAYS_THERE.contains(&program);
+        missing.extend(programs.iter().filter(|program| !known(program)).map(|program| format!("{file}: {program}")));
+        started.extend(programs);
+    }
+    assert!(missing.is_empty(), "not in tests/tools.txt:\n{}", missing.join("\n"));
+    let useless: Vec<_> = programs::ALWAYS_THERE.iter().filter(|program| !started.contains(**program)).collect();
+    assert!(useless.is_empty(), "no test starts {useless:?}");
+    let found = ["chromedriver", "gcc", "ip", "make", "qemu-system-arm", "readelf", "spin", "tmux"];
+    assert!(found.iter().all(|program| started.contains(*program)), "{started:?}");
+}
+
+#[test]
+fn programs_are_found_wherever_a_source_names_them() {
+    for source in [
+        "fn start() { std::process::Command::new(\"prog\").spawn(); }",
+        "fn start() { assert!(Command::new(\"prog\").status().is_ok(), \"text\"); }",
+        "fn start() { let run = Program::new(\"/bin/prog\"); }",
+        "const NAME: &str = \"prog\"; fn start() { Command::new(NAME); }",
+        "fn run(name: &str) { Command::new(name); } fn start() { run(\"prog\"); }",
+        "fn start() { let run = |name: &str, more: u8| Command::new(&name); run(\"prog\", 1); }",
+        "impl X { fn run(&self, more: u8, name: &str) { Command::new(name); } \
+         fn go(&self, name: &str) { self.run(1, name); } } fn start(x: X) { x.go(\"prog\"); }",
+    ] {
+        assert_eq!(programs::started(source), BTreeSet::from(["prog".to_owned()]), "{source}");
+    }
+    let other =
+        "fn start(path: &Path) { Command::new(path).arg(\"word\"); FingerCommand::new(\"word\"); run(\"word\"); }";
+    assert_eq!(programs::started(other), BTreeSet::new());
+    let tools = "# name | packages | probe\none | package | one -V && two -V\n";
+    assert_eq!(programs::listed(tools), BTreeSet::from(["one".to_owned(), "two".to_owned()]));
 }

@@ -108,6 +108,25 @@ fn a_failed_handshake_names_its_reason() {
     assert!(matches!(error, LinkError::Terms(TermsError::TorqueLimit { motor: 1, .. })), "{error}");
 }
 
+/// docs/board-protocol.md permits a shortest watchdog time of up to 20 ms, and the configured time is 18 ms.
+#[test]
+fn a_board_with_a_longer_shortest_watchdog_gets_this_time() {
+    let shake_hands = |shortest| {
+        let answer = good_but(move |message| {
+            if let Frame::Identity(identity) = &mut message.frame {
+                identity.shortest_watchdog_ms = shortest;
+            }
+        });
+        Link::new(OtherEnd::new(answer, Vec::new())).shake_hands(1, &terms(EndState::Hold), 1000 * MS)
+    };
+    for (shortest, agreed) in [(18, 18), (19, 19), (20, 20)] {
+        let (identity, configured) = shake_hands(shortest).unwrap();
+        assert_eq!((identity.shortest_watchdog_ms, configured.terms.watchdog_ms), (shortest, agreed));
+    }
+    let error = shake_hands(21).unwrap_err();
+    assert!(matches!(error, LinkError::Terms(TermsError::Watchdog { shortest: 21, wanted: 18 })), "{error}");
+}
+
 #[test]
 fn a_finger_that_does_not_answer_does_not_hide_the_others_of_its_board() {
     let mut good = board(&[1, 2, 3]);

@@ -1,12 +1,13 @@
-/* The system refuses descriptors, threads and pseudo-terminals, one after the other. OpenHand reports the system's
-   errno and the remedy, leaves nothing behind, and succeeds once the limit is gone. This program replaces functions
-   of the system by its own, which refuse the threads and the pseudo-terminals. */
+/* The system refuses descriptors, threads, pseudo-terminals and a port, one after the other. OpenHand reports the
+   system's errno and the remedy, leaves nothing behind, and succeeds once the limit is gone. This program replaces
+   functions of the system by its own, which refuse the threads, the pseudo-terminals and the port. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <stdarg.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -15,6 +16,9 @@
 #include "check.h"
 #include "refused.h"
 
+/* A port that the system does not open yet. */
+#define PORT "/dev/sun2xp-not-ready"
+
 /* Numbers of the thread and of the pseudo-terminal that is refused, counted from 1; 0 refuses none. */
 static int refused_thread, refused_terminal, threads, terminals;
 /* The errno of the refused pseudo-terminal. */
@@ -22,6 +26,7 @@ static int terminal_error;
 
 typedef int thread_maker(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
 typedef int terminal_maker(int);
+typedef int file_opener(const char *, int, ...);
 
 int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *), void *argument)
 {
@@ -40,6 +45,25 @@ int posix_openpt(int flags)
         return next(flags);
     errno = terminal_error;
     return -1;
+}
+
+int open(const char *path, int flags, ...)
+{
+    file_opener *next;
+    mode_t mode = 0;
+    va_list rest;
+
+    if (strcmp(path, PORT) == 0) {
+        errno = EAGAIN;
+        return -1;
+    }
+    if (flags & O_CREAT) {
+        va_start(rest, flags);
+        mode = va_arg(rest, mode_t);
+        va_end(rest);
+    }
+    *(void **)&next = dlsym(RTLD_NEXT, "open");
+    return next(path, flags, mode);
 }
 
 /* The number of entries in a folder. */
@@ -114,6 +138,18 @@ static void refuse_terminals(void)
     refused_terminal = 0;
 }
 
+/* EAGAIN at a port has nothing to do with the limit of threads. */
+static void refuse_a_port(void)
+{
+    sun2xp_hand *hand = NULL;
+
+    REFUSED(sun2xp_open_text("[hand]\nfingers = [1]\n[finger.1]\nport = \"" PORT "\"\n", &hand), EAGAIN,
+            PORT " is not ready");
+    CHECK(strstr(HandError(), "ulimit") == NULL && strstr(HandError(), "thread") == NULL);
+    CHECK(hand == NULL);
+    check_that_nothing_is_left();
+}
+
 static void refuse_threads(void)
 {
     int number;
@@ -157,6 +193,7 @@ int main(void)
     tasks = entries("/proc/self/task");
     refuse_descriptors();
     refuse_terminals();
+    refuse_a_port();
     refuse_threads();
     refuse_the_thread_of_a_call();
     open_and_close();

@@ -9,17 +9,17 @@ pub mod pauses;
 #[path = "../common/tool.rs"]
 mod tool;
 #[path = "../common/tools.rs"]
-mod tools;
+pub mod tools;
 
 #[allow(unused_imports)]
 pub use tool::tool;
 #[allow(unused_imports)]
-pub use tools::{available, python, skip};
+pub use tools::{available, not_permitted, python, skip};
 
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::TempDir;
 
@@ -122,7 +122,12 @@ impl Bench {
     }
 
     /// Runs a program in the scratch folder, with the configuration `named.toml` if it exists.
-    pub fn run(&self, mut command: Command) -> Output {
+    pub fn run(&self, command: Command) -> Output {
+        self.start(command).wait_with_output().expect("the program ends")
+    }
+
+    /// Starts a program as [`Bench::run`] does.
+    pub fn start(&self, mut command: Command) -> Child {
         let nowhere = self.path().join("nowhere");
         command.current_dir(self.path()).env_remove("SUN2XP_CONFIG");
         command.env("HOME", &nowhere).env("XDG_CONFIG_HOME", &nowhere).env("XDG_CONFIG_DIRS", &nowhere);
@@ -133,7 +138,7 @@ impl Bench {
         let process =
             command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program can be started");
         pauses::name_pauses().also(process.id(), pauses::Part::Servo);
-        process.wait_with_output().expect("the program ends")
+        process
     }
 }
 

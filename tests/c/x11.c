@@ -3,13 +3,7 @@
 #include "Sun2Xp.h"
 #endif
 #include "x11_macros.h"
-#define K 3
-#define D 4
-#define Kx 5
-#define Pos (1 + 1)
-#define Tip 7
-#define Fault 8
-#define GetTip(Finger) (Tip + (Finger))
+#include "short_macros.h"
 #ifndef WINDOW_LAST
 #include "Sun2Xp.h"
 #endif

@@ -54,6 +54,23 @@ fn the_calls_that_a_forked_child_may_make_are_named() {
     assert_eq!(sorted(between(&chapter, "is refused with EPERM, except ", "; the parent")), sorted(works));
 }
 
+/// `a_forked_child_is_refused` runs tests/c/forked.c. This program checks EPERM with REFUSED, and success with WORKS.
+#[test]
+fn a_forked_child_makes_every_call() {
+    let read = |name: &str| fs::read_to_string(root().join(name)).expect("a file");
+    let (source, symbols) = (read("tests/c/forked.c"), read("docs/abi/symbols"));
+    let handles = Manual::read(HANDLES).chapter(5);
+    let of_1990 = Manual::read(OF_1990).chapter(6);
+    let mut works = between(&handles, "is refused with EPERM, except ", "; the parent");
+    works.extend(between(&of_1990, "each call but ", " is refused with EPERM"));
+    assert!(symbols.lines().count() > 50 && works.iter().all(|call| symbols.lines().any(|symbol| symbol == *call)));
+    for call in symbols.lines() {
+        let check = if works.contains(&call) { "WORKS(" } else { "REFUSED(" };
+        let checks = |line: &str| line.trim_start().starts_with(check) && line.contains(&format!("{call}("));
+        assert!(source.lines().any(checks), "tests/c/forked.c should make the call {call} with {check}...)");
+    }
+}
+
 /// tests/c/locked_memory.c shows that the member stays 1.
 #[test]
 fn the_member_for_locked_memory_says_what_munlockall_does() {

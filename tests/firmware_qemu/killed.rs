@@ -1,5 +1,8 @@
 //! SIGKILL of a planner: the watchdog of the firmware brings the motors into their end state.
 
+use std::convert::Infallible;
+use std::io::{Read, Write};
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::time::Duration;
@@ -7,26 +10,34 @@ use std::time::Duration;
 use crate::attempts::attempts;
 use crate::machine::{Asked, Emulated, LM3S6965, Machine, STM32F405};
 use crate::pauses::Part;
-use crate::{PATIENCE, alone, configuration, wait_until};
+use crate::{KEYS, PATIENCE, TOLERATED_PAUSE, alone, configuration, text, wait_until};
 use sun2xp::board::protocol::{Command, Status};
 use sun2xp::board::{Link, OutgoingCommand};
-use sun2xp::hand::Hand;
+use sun2xp::hand::{Hand, HandError};
+use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::now;
 
 /// Name of the environment variable that makes this test program a planner. Its value is the ports with commas
 /// between them, a line feed and the keys of `[hand]`.
 const PLANNER: &str = "SUN2XP_TEST_PLANNER";
 
-/// Opens a hand and holds it in its pose, until this process is killed.
+/// Opens a hand and holds it in its pose, until this process is killed. If that fails, prints the error and exits. The
+/// planner does not try again, because every failure must be counted, and be explained by a pause of the machine.
 fn plan(ports_and_keys: &str) -> ! {
     let (ports, keys) = ports_and_keys.split_once('\n').expect("ports and keys");
     let ports: Vec<PathBuf> = ports.split(',').map(PathBuf::from).collect();
+    let Err(error) = hold(configuration(&ports, keys));
+    // The output of the printing macros is captured in a test.
+    let _ = writeln!(std::io::stderr(), "{error}");
+    std::process::exit(1)
+}
+
+/// Opens a hand and holds it in its pose, until a finger faults.
+fn hold(configuration: Configuration) -> Result<Infallible, HandError> {
+    let hand = Hand::open(configuration)?;
     loop {
-        // A pause of the machine may trip the short watchdog. The planner then opens the hand again.
-        let Ok(hand) = Hand::open(configuration(&ports, keys)) else { continue };
-        while hand.fingers().numbers().all(|finger| hand.position(finger).is_ok()) {
-            std::thread::sleep(Duration::from_millis(1));
-        }
+        hand.fingers().numbers().try_for_each(|finger| hand.position(finger).map(drop))?;
+        std::thread::sleep(Duration::from_millis(1));
     }
 }
 
@@ -40,16 +51,27 @@ impl Planner {
             .args(["--exact", "killed::a_killed_planner_leaves_the_motors_in_their_end_state"])
             .env(PLANNER, format!("{}\n{keys}", ports.join(",")))
             .stdout(Stdio::null())
-            .stderr(Stdio::null())
+            .stderr(Stdio::piped())
             .spawn()
             .expect("the planner starts");
         Self(process)
     }
 
-    /// Kills the planner with SIGKILL.
-    fn kill(&mut self) {
-        self.0.kill().expect("the planner is running");
-        self.0.wait().expect("the planner is ours");
+    fn has_ended(&mut self) -> bool {
+        self.0.try_wait().expect("the planner is ours").is_some()
+    }
+
+    /// Kills the planner with SIGKILL. Returns an error with what the planner printed if it had already ended.
+    fn kill(&mut self) -> Result<(), String> {
+        self.0.kill().expect("the planner is ours");
+        let status = self.0.wait().expect("the planner is ours");
+        if status.signal() == Some(libc::SIGKILL) {
+            return Ok(());
+        }
+        let mut printed = String::new();
+        let output = self.0.stderr.as_mut().expect("the planner's output is a pipe");
+        output.read_to_string(&mut printed).expect("the planner's output is text");
+        Err(format!("the planner ended by itself, {status}: {}", printed.trim_end()))
     }
 }
 
@@ -96,14 +118,15 @@ fn kill_a_planner(
     let running = || asked().all(|asked| pulls(asked.currents));
     let begun: Vec<u32> = asked().map(|asked| asked.samples).collect();
     let moved_on = || asked().zip(&begun).all(|(asked, begun)| asked.samples > begun + 200);
-    let ran = wait_until(PATIENCE / 2, || moved_on() && running());
+    let ran = wait_until(PATIENCE / 2, || planner.has_ended() || moved_on() && running());
     // The kill may take longer than the watchdog's time, so it is not checked afterwards that the fingers were running
     // until the kill. `ended_by_watchdog` detects a finger that the planner stopped itself.
-    planner.kill();
+    let killed = planner.kill();
     // Commands in transit still arrive. 400 ms after the last of them, the slowest watchdog has had time to trip.
     let long_ago = |asked: Asked| asked.now.saturating_sub(asked.arrived_at) > 400_000;
     assert!(wait_until(PATIENCE, || asked().all(long_ago)), "commands still arrive");
     let asked: Vec<Asked> = asked().collect();
+    killed?;
     if !ran {
         return Err("the planner's fingers did not all run before it was killed".into());
     }
@@ -134,6 +157,7 @@ fn motors_reach_their_end_state(emulated: Emulated) {
     let folder = tempfile::tempdir().expect("a scratch folder");
     emulated.build(folder.path());
     let machine = Machine::start(emulated, folder.path());
+    translate_firmware(emulated, &machine);
     let none = |currents: [i32; 4]| currents == [0; 4];
     // 0.1 N cm over 2.34 N cm/A is 42 735 uA. The minimum tension of a tendon needs more.
     let held = |currents: [i32; 4]| !none(currents) && currents.iter().all(|current| current.abs() <= 42_736);
@@ -161,6 +185,18 @@ fn motors_reach_their_end_state(emulated: Emulated) {
         let over = wait_until(PATIENCE, || machine.fingers().all(|finger| none(machine.finger(finger).asked.currents)));
         assert!(over, "the hold does not end");
     }
+}
+
+/// Opens a hand with a long watchdog, and closes it. The emulator translates each part of the firmware when it first runs
+/// it, and the translation may take longer than the short watchdog tolerates.
+fn translate_firmware(emulated: Emulated, machine: &Machine) {
+    let what = format!("the first hand on the firmware, {}", emulated.board);
+    attempts(&what, TOLERATED_PAUSE, |watch| {
+        for process in machine.processes() {
+            watch.also(process, Part::Board);
+        }
+        Hand::open(configuration(&machine.ports(), KEYS)).map(Hand::close).map_err(text)
+    });
 }
 
 const WATCHDOG_MS: u32 = 18;

@@ -6,3 +6,4 @@ mod one_thread;
 mod plant_io;
 #[path = "../common/settling.rs"]
 mod settling;
+mod watchdog;

@@ -54,7 +54,7 @@ pub struct PlantIo {
     number: u64,
     time: u64,
     pub switches: Switches,
-    properties: IoProperties,
+    pub properties: IoProperties,
 }
 
 impl PlantIo {

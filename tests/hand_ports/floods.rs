@@ -1,6 +1,7 @@
 //! A board that sends valid frames without end: OpenHand refuses it, its finger faults, and no other finger is delayed.
 
 use crate::priority::run_first;
+use crate::recoveries::recovers_despite_pauses;
 use crate::rig::{TARGET, close, goes, on_ports, open, three_boards, turn, wait_until};
 use serialport::{SerialPort, TTYPort};
 use std::io::{Read, Write};
@@ -38,7 +39,9 @@ impl FloodingBoard {
         let wire = WireFrame::new(&Message { address: 9, sequence: 200, frame }).as_bytes().repeat(100);
         let thread = {
             let (flooding, ended) = (flooding.clone(), ended.clone());
-            std::thread::spawn(move || {
+            // `PauseWatch` recognises board threads by this name.
+            let thread = std::thread::Builder::new().name("sun2xp board".into());
+            thread.spawn(move || {
                 run_first();
                 // The port stays open here too, so that the host may open and close it.
                 let _port = port;
@@ -65,7 +68,7 @@ impl FloodingBoard {
                 }
             })
         };
-        Self { port: name, flooding, ended, thread: Some(thread) }
+        Self { port: name, flooding, ended, thread: Some(thread.expect("a thread")) }
     }
 
     fn flood(&self, flooding: bool) {
@@ -138,7 +141,7 @@ fn a_board_that_begins_to_flood_faults_its_finger_only() {
             goes(&hand, 1, TARGET);
 
             board.flood(false);
-            wait_until("recovered", || hand.recover(2).is_ok());
+            recovers_despite_pauses(&hand, 2, &[]);
             goes(&hand, 2, TARGET);
 
             // The hand is stopped during the flood.

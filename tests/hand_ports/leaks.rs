@@ -2,6 +2,7 @@
 //! process must hold no more resources than before.
 
 use crate::pauses::name_pauses;
+use crate::recoveries::recovers_despite_pauses;
 use crate::recovery::{fault, held};
 use crate::rig::{START, TARGET, close, goes, on_ports, open, turn, wait_until};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -137,7 +138,7 @@ fn recover_from(hand: &Hand, benches: &[Bench], troubles: &[Trouble]) {
     });
     for bench in benches {
         bench.repair();
-        wait_until("recovered", || hand.recover(bench.finger).is_ok());
+        recovers_despite_pauses(hand, bench.finger, &[]);
     }
 }
 

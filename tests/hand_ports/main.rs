@@ -18,6 +18,8 @@ mod opening;
 #[path = "../common/priority.rs"]
 mod priority;
 mod reconnection;
+#[path = "../common/recoveries.rs"]
+mod recoveries;
 mod recovery;
 mod rig;
 #[path = "../common/settling.rs"]

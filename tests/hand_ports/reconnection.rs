@@ -1,6 +1,8 @@
 //! A port that disappeared returns: a finger recovers on its own board only, and only on request.
 
-use crate::pauses::name_pauses;
+use crate::attempts::attempts;
+use crate::pauses::{Part, name_pauses};
+use crate::recoveries::{TOLERATED_PAUSE, recovers_despite_pauses, recovers_unless};
 use crate::recovery::{fault, faults, held, recovers};
 use crate::rig::{Board, TARGET, close, goes, on_boards, on_one_port, on_ports, open, three_boards, turn, wait_until};
 use std::fs;
@@ -32,32 +34,31 @@ fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
     // The same kind and the same number, but other encoders.
     fs::write(&file, "[finger]\nencoder.counts_per_revolution = [4096, 4096, 4096, 4096]\n").expect("written");
     let ([_first, mut second, _third], hand) = with_finger_2_on_a_link(folder.path());
-    let refused = |kind: FaultKind| {
-        let mut reported = None;
-        // At first the port may not exist yet.
-        wait_until("refused for a fault", || match hand.recover(2) {
-            Err(HandError::Faulted { finger: FingerNumber::TWO, fault }) => {
-                reported = Some(fault.kind);
-                true
+    let refused = |board: &Board, kind: FaultKind| {
+        let reported = attempts(&format!("a recovery refused for {kind:?}"), TOLERATED_PAUSE, |watch| {
+            watch.also(board.process(), Part::Board);
+            match hand.recover(2) {
+                Err(HandError::Faulted { finger: FingerNumber::TWO, fault }) => Ok(fault.kind),
+                // A pause of the machine may delay the answers of the board.
+                Err(error) => Err(error.to_string()),
+                Ok(()) => panic!("recovers"),
             }
-            Err(_) => false,
-            Ok(()) => panic!("recovers"),
         });
-        assert_eq!(reported, Some(kind));
+        assert!(reported.iter().all(|&reported| reported == kind), "{reported:?} instead of {kind:?}");
         assert_eq!(fault(&hand, 2), Some(FaultKind::PortVanished), "the fault must stay");
     };
     second.kill();
     assert_eq!(faults(&hand, 2), FaultKind::PortVanished);
     let mut other = Board::start_with(&["--link", &at(folder.path()), "--config", &file.to_string_lossy()], &["2"]);
-    refused(FaultKind::IdentityChanged);
+    refused(&other, FaultKind::IdentityChanged);
     assert!(!other.state(2).has(Status::CONFIGURED | Status::ENABLED) && other.state(2).limp());
     other.kill();
     let mut forgetful = Board::start_at(&at(folder.path()), &["2"]);
     forgetful.order("zero-lost 2");
-    refused(FaultKind::ZeroLost);
+    refused(&forgetful, FaultKind::ZeroLost);
     assert!(!forgetful.state(2).has(Status::ENABLED) && forgetful.state(2).limp());
     forgetful.order("mend 2");
-    wait_until("recovered", || hand.recover(2).is_ok());
+    recovers_despite_pauses(&hand, 2, &[forgetful.process()]);
     goes(&hand, 2, TARGET);
     close(hand);
 }
@@ -125,15 +126,14 @@ fn a_board_that_is_unplugged_again_and_again_recovers_and_nothing_leaks() {
     goes(&hand, 2, TARGET);
     let _rest = name_pauses().rest();
     let before = held();
-    for round in 0..rounds {
+    for _ in 0..rounds {
         second.kill();
         assert_eq!(faults(&hand, 2), FaultKind::PortVanished);
         let error = hand.recover(2).expect_err("no board is there");
         assert!([libc::ENOENT, libc::EIO, libc::ENOTTY].contains(&error.errno()), "{error}");
         // The port is a new device behind the old name.
         second = Board::start_at(&at(folder.path()), &["2"]);
-        wait_until("recovered", || hand.recover(2).is_ok());
-        assert_eq!(hand.report(2).expect("a report").recoveries, round + 1);
+        recovers_despite_pauses(&hand, 2, &[second.process()]);
         goes(&hand, 2, TARGET);
         assert_eq!((fault(&hand, 1), fault(&hand, 3)), (None, None), "the others must keep running");
     }
@@ -151,13 +151,9 @@ fn a_port_that_vanishes_while_its_finger_is_stopped_is_opened_again_by_the_recov
     hand.stop(2).expect("a finger");
     assert_eq!(faults(&hand, 2), FaultKind::FingerStopCall);
     second.kill();
-    let _second = Board::start_at(&at(folder.path()), &["2"]);
-    wait_until("recovered", || match hand.recover(2) {
-        Ok(()) => true,
-        Err(HandError::Link { source: LinkError::Port(error), .. }) => panic!("{error}"),
-        // A busy machine delays the answers of the board.
-        Err(_) => false,
-    });
+    let second = Board::start_at(&at(folder.path()), &["2"]);
+    let of_port = |error: &HandError| matches!(error, HandError::Link { source: LinkError::Port(_), .. });
+    recovers_unless(&hand, 2, &[second.process()], of_port);
     goes(&hand, 2, TARGET);
     close(hand);
 }

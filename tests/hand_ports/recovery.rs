@@ -95,7 +95,7 @@ fn fingers_that_stop_together_recover_one_by_one() {
     assert_eq!(error.errno(), libc::ETIMEDOUT, "{error}");
     boards[1].signal(libc::SIGCONT);
     // The board first answers the requests that arrived while it was stopped.
-    wait_until("recovered", || hand.recover(2).is_ok());
+    recovers(&hand, 2);
     recovers(&hand, 3);
     for finger in 1..=3 {
         goes(&hand, finger, TARGET);

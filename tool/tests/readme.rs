@@ -4,8 +4,11 @@
 #[path = "../../tests/common/pauses.rs"]
 mod pauses;
 
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::{Mutex, PoisonError};
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::{Configuration, RealTime};
 
@@ -31,8 +34,13 @@ fn tool(arguments: &[&str], folder: &Path) -> Output {
     tool.args(arguments).current_dir(folder).output().expect("the tool starts")
 }
 
+/// Held by a test that starts programs. A child that one test forks while another test writes a program inherits the
+/// open file, and a program that is open for writing cannot be started.
+static TURN: Mutex<()> = Mutex::new(());
+
 #[test]
 fn the_first_commands_of_readme_work() {
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     pauses::name_pauses();
     let name = format!("test-readme-{}", std::process::id());
     let mut configuration = Configuration::default();
@@ -45,10 +53,7 @@ fn the_first_commands_of_readme_work() {
     let mut used = Vec::new();
     for command in commands() {
         let Some(arguments) = command.strip_prefix(TOOL) else {
-            let show = command.strip_prefix("make ").unwrap_or_else(|| panic!("an unknown command: {command}"));
-            let run = Command::new("make").arg("-n").args(show.split(' ')).current_dir(root()).output().expect("make");
-            let told = String::from_utf8_lossy(&run.stdout);
-            assert!(run.status.success() && told.contains("build/Show"), "{run:?}");
+            assert!(command.starts_with("make "), "an unknown command: {command}");
             continue;
         };
         let mut arguments: Vec<&str> = arguments.split_whitespace().collect();
@@ -70,6 +75,67 @@ fn the_first_commands_of_readme_work() {
     for file in ["show.mcap", "step.png"] {
         assert!(folder.path().join(file).metadata().expect(file).len() > 1000, "{file}");
     }
+}
+
+/// In place of cargo: "builds" the packages that it is asked for, in the profile that it is asked for.
+const CARGO: &str = r#"#!/bin/sh
+profile=debug
+while [ $# -gt 0 ]; do
+    case $1 in
+        --release) profile=release ;;
+        --package) packages="$packages $2"; shift ;;
+        --target-dir) folder=$2; shift ;;
+    esac
+    shift
+done
+mkdir -p "$folder/$profile"
+for package in $packages; do
+    case $package in
+        sun2xp) : > "$folder/$profile/libsun2xp.so" ;;
+        sun2xp-tool) ln -s "$BUILT_TOOL" "$folder/$profile/sun2xp" ;;
+    esac
+done
+"#;
+
+/// In place of the compiler: the program that it makes prints its name and its arguments.
+const COMPILER: &str = r#"#!/bin/sh
+while [ "$1" != -o ]; do shift; done
+printf '#!/bin/sh\necho "runs $0 $*"\n' > "$2"
+chmod +x "$2"
+"#;
+
+/// Runs the command with the real makefile in a folder of its own. Nothing there is compiled, because a build with
+/// optimization takes minutes.
+#[test]
+fn the_first_command_of_readme_builds_the_tool_that_the_next_commands_use() {
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["bin", "c_examples", "include"] {
+        fs::create_dir(folder.path().join(name)).expect("a folder");
+    }
+    for file in ["c_examples/Makefile", "c_examples/Show.c", "include/Sun2Xp.h", "include/Sun2Xp.c", "include/sun2xp.h"]
+    {
+        fs::copy(root().join(file), folder.path().join(file)).expect("a copy");
+    }
+    for (name, script) in [("cargo", CARGO), ("cc", COMPILER)] {
+        let program = folder.path().join("bin").join(name);
+        fs::write(&program, script).expect("a program");
+        fs::set_permissions(program, fs::Permissions::from_mode(0o755)).expect("executable");
+    }
+    let path = std::env::var("PATH").unwrap_or_default();
+    let first = commands()[0].strip_prefix("make ").expect("the first command is make");
+    let mut make = Command::new("make");
+    make.args(first.split(' ')).current_dir(folder.path()).env("BUILT_TOOL", env!("CARGO_BIN_EXE_sun2xp"));
+    make.env("PATH", format!("{}:{path}", folder.path().join("bin").display()));
+    for name in ["CARGO_TARGET_DIR", "CC", "MAKEFLAGS"] {
+        make.env_remove(name);
+    }
+    let run = make.output().expect("make starts");
+    let printed = String::from_utf8_lossy(&run.stdout);
+    assert!(run.status.success() && printed.contains("runs ./build/Show 600"), "{run:?}");
+    assert!(folder.path().join("c_examples/build/lib/libsun2xp.so").exists(), "the library is linked");
+    let version = Command::new(folder.path().join(TOOL)).arg("--version").output().expect("the tool starts");
+    assert!(version.status.success() && version.stdout.starts_with(b"sun2xp "), "{version:?}");
 }
 
 #[test]

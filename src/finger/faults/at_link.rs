@@ -27,6 +27,7 @@ impl From<&PortError> for Fault {
             PortError::Busy(_) => FaultKind::PortBusy,
             PortError::Vanished => FaultKind::PortVanished,
             PortError::Closed => FaultKind::PortClosed,
+            PortError::NotReady(_) => FaultKind::PortUnusable,
             PortError::NotASerialPort(_) | PortError::Baud { .. } => FaultKind::PortUnusable,
             PortError::Opening { .. } | PortError::SetUp { .. } => FaultKind::PortUnusable,
             PortError::Failed(_) => FaultKind::PortFailed,

@@ -61,8 +61,9 @@ impl Terminal {
     }
 
     /// Returns the process number that the command has written into `$PIDFILE`.
-    pub fn process(&self) -> String {
-        std::fs::read_to_string(self.file("pid")).expect("written").trim().into()
+    pub fn process(&self) -> libc::pid_t {
+        let number = std::fs::read_to_string(self.file("pid")).expect("written");
+        number.trim().parse().expect("a process number")
     }
 
     fn wait(&self, what: &str, shows: impl Fn(&str) -> bool) {

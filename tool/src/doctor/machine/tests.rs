@@ -1,8 +1,9 @@
 //! Findings of machines whose files in /proc and /sys are made up.
 
 use super::*;
-use std::fs;
-use sun2xp::model::configuration::RealTime;
+use std::{fs, io};
+use sun2xp::hand::MissingPermission;
+use sun2xp::model::configuration::{RATES, RealTime};
 use tempfile::TempDir;
 
 /// Files of a machine that passes every check.
@@ -109,6 +110,12 @@ fn the_locked_memory_that_is_needed_depends_on_the_rate() {
         assert_eq!(verdict(locked, rate), Rating::Warning, "{locked} MiB at {rate} Hz");
         assert_eq!(verdict(locked + 2, rate), Rating::Good, "2 MiB more than {locked} MiB at {rate} Hz");
     }
+
+    // OpenHand does not know the doctor, but names an amount too.
+    let advice = MissingPermission::Memory(io::Error::from_raw_os_error(libc::ENOMEM)).to_string();
+    let named = advice.split_once("memlock limit to ").and_then(|(_, rest)| rest.split_once(" MiB")?.0.parse().ok());
+    let named = named.unwrap_or_else(|| panic!("no amount: {advice}"));
+    assert_eq!(verdict(named, *RATES.end()), Rating::Good, "{advice}");
 }
 
 #[test]

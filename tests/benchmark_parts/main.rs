@@ -1,15 +1,59 @@
-//! Tests parts of the benchmarks: how `realtime` counts measurements that other work on the machine disturbs, which
-//! cores it watches, and how `handwritten` compares torques.
+//! Tests parts of the benchmarks: how they go on when other work on the machine disturbs them, which cores `realtime`
+//! watches, and how `handwritten` compares torques.
 
-#[path = "../benches/handwritten/agreement.rs"]
+#[path = "../../benches/handwritten/agreement.rs"]
 mod agreement;
-#[path = "../benches/realtime/attempts.rs"]
+#[allow(clippy::duplicate_mod, reason = "`opening` is the root of a benchmark, and has this module too")]
+#[path = "../../benches/realtime/attempts.rs"]
 mod attempts;
-#[path = "../benches/realtime/cores.rs"]
+mod beside_other_work;
+#[path = "../../benches/realtime/cores.rs"]
 mod cores;
+#[path = "../../benches/realtime/delays.rs"]
+mod delays;
+mod disturbed;
+#[path = "../../benches/realtime/events.rs"]
+mod events;
+#[allow(dead_code, reason = "the classes of late cycles are not tested here")]
+#[path = "../../benches/realtime/explain.rs"]
+mod explain;
+#[path = "../../benches/realtime/fingers.rs"]
+mod fingers;
+#[path = "../../benches/realtime/groups.rs"]
+mod groups;
+#[allow(dead_code, clippy::duplicate_mod, reason = "the children are programs of their own")]
+#[path = "../../benches/opening/main.rs"]
+mod opening;
+#[allow(dead_code, reason = "not every percentile is tested here")]
+#[path = "../../benches/realtime/percentiles.rs"]
+mod percentiles;
+#[path = "../../benches/realtime/planner.rs"]
+mod planner;
+#[path = "../../benches/realtime/reactions.rs"]
+mod reactions;
+#[allow(dead_code, reason = "the readers are processes of their own")]
+#[path = "../../benches/realtime/telemetry.rs"]
+mod telemetry;
+#[path = "../../benches/realtime/throughput.rs"]
+mod throughput;
+#[path = "../../benches/realtime/turns.rs"]
+mod turns;
+#[path = "../../benches/realtime/under_control.rs"]
+mod under_control;
 
 use agreement::{apart, larger};
 use attempts::{Attempts, MOST_DISTURBED};
+use std::error::Error;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The benchmarks expect this name.
+type Failure = Box<dyn Error>;
+
+/// Waits for the turn of a test with servo threads. The servos without a rate limit would disturb the other tests.
+fn turn() -> MutexGuard<'static, ()> {
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// Makes measurements that always fail.
 fn fails(attempts: &mut Attempts) -> Option<u32> {
@@ -22,6 +66,8 @@ fn a_disturbed_measurement_is_repeated() {
     let mut results = [Err("a finger has faulted"), Err("a finger has faulted"), Ok(7)].into_iter();
     assert_eq!(attempts.measure("some", || results.next().expect("a result")), Some(7));
     assert_eq!((attempts.disturbed, attempts.skipped), (2, 0));
+    let said = "2 measurements were disturbed by faults, and 0 were skipped because of them";
+    assert_eq!(attempts.to_string(), said);
     assert_eq!(attempts.check([("some", 1)]), Ok(()));
 }
 

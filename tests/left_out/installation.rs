@@ -1,63 +1,14 @@
-//! Machines without the tools that tests need: what `cargo test` skips and lists, and what `tests/run` installs.
+//! `tests/run`: what it installs, and what it says if it cannot.
 
-#[allow(dead_code)]
-#[path = "common/tools.rs"]
-mod tools;
-
+use crate::{said, turn, write_program};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
-use std::process::{Command, Output};
-use std::sync::{Mutex, PoisonError};
-
-/// Environment variable of a process that runs this test program as if on a machine without tools.
-const BARE: &str = "SUN2XP_TEST_BARE";
+use std::process::Command;
 
 /// The user `nobody`.
 const NOBODY: u32 = 65534;
-
-#[test]
-fn a_test_that_needs_clang() {
-    if std::env::var_os(BARE).is_some() {
-        assert!(!tools::available("clang", "under clang"));
-    }
-}
-
-/// Held by one test at a time. A child that one test forks while another test writes a program inherits the open file,
-/// and a program that is open for writing cannot be started.
-static TURN: Mutex<()> = Mutex::new(());
-
-/// Runs `a_test_that_needs_clang` in an environment without any program.
-fn run_without_tools(ci: &str) -> Output {
-    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
-    let mut test = Command::new(std::env::current_exe().expect("the test's own program"));
-    test.args(["--exact", "a_test_that_needs_clang"]).env(BARE, "1").env("PATH", "/nowhere").env("CI", ci);
-    test.output().expect("the test starts")
-}
-
-fn said(run: &Output) -> String {
-    [&run.stdout, &run.stderr].map(|text| String::from_utf8_lossy(text)).concat()
-}
-
-#[test]
-fn without_a_tool_a_test_passes_and_is_listed_and_with_ci_it_fails() {
-    let run = run_without_tools("");
-    let expected = "left_out, a_test_that_needs_clang, under clang: clang is missing";
-    assert!(run.status.success() && said(&run).contains(expected), "{}", said(&run));
-    run_without_tools("false");
-
-    // This process is the parent of both runs. It lists the skipped test only once.
-    let listed = tools::take_skipped(std::process::id());
-    assert!(listed.len() == 1 && listed[0].starts_with(expected), "{listed:?}");
-    assert!(listed[0].contains("apt-get install --no-install-recommends clang"), "{listed:?}");
-    assert_eq!(tools::take_skipped(std::process::id()), Vec::<String>::new(), "lines of an earlier run");
-
-    let run = run_without_tools("true");
-    let output = said(&run);
-    assert!(!run.status.success() && output.contains("apt-get install --no-install-recommends clang"), "{output}");
-    assert_eq!(tools::take_skipped(std::process::id()), Vec::<String>::new());
-}
 
 /// The list of Python packages of the copies of `tests/run`.
 const PYTHON_PACKAGES: &str = "mcap==1\n";
@@ -70,7 +21,7 @@ fn run_script(programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
 /// Runs `tests/run` in a copy of its own. Only these programs and a few of the system's are available. The Python
 /// packages of the list `installed` are installed.
 fn run_script_beside(installed: &str, programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
-    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    let _turn = turn();
     let folder = tempfile::tempdir().expect("a scratch folder");
     let (tests, bin) = (folder.path().join("tests"), folder.path().join("bin"));
     fs::create_dir(&tests).expect("a folder");
@@ -83,13 +34,8 @@ fn run_script_beside(installed: &str, programs: &[(&str, &str)], user: Option<u3
     fs::write(tests.join("requirements.txt"), PYTHON_PACKAGES).expect("written");
     fs::create_dir_all(folder.path().join("target/python")).expect("a folder");
     fs::write(folder.path().join("target/python/requirements.txt"), installed).expect("written");
-    let write = |name: &str, text: &str| {
-        let file = bin.join(name);
-        fs::write(&file, format!("#!/bin/sh\n{text}\n")).expect("written");
-        fs::set_permissions(file, fs::Permissions::from_mode(0o755)).expect("executable");
-    };
     for (name, text) in programs {
-        write(name, text);
+        write_program(&bin, name, text);
     }
     for name in ["dirname", "env", "sh", "bash", "cat", "cp", "mkdir", "chmod"] {
         std::os::unix::fs::symlink(Path::new("/usr/bin").join(name), bin.join(name)).expect("a link");
