@@ -3,10 +3,13 @@
 
        CanDrives INTERFACE | FOLDER
 
+   INTERFACE is a CAN interface. Where the machine has none, FOLDER is an empty folder, given with a slash in its path.
+   The frames then go through Unix datagram sockets in this folder.
+
    When a frame starts or stops a drive, the program answers with encoder counts and tensions. When a frame of torques
    reaches a started drive, the program answers in the same way, and then advances that finger by 1 ms. Each drive has a
    watchdog. The frame that starts the drive sets the watchdog's time. If no torques arrive for this time, the drive
-   releases its motors. The program ends after 10 s without a frame. */
+   releases its motors and sends an emergency frame. The program ends after 10 s without a frame. */
 
 #define _GNU_SOURCE
 #include <errno.h>
@@ -47,6 +50,7 @@ static void obey(const struct can_bus *bus, unsigned kind, int finger, const int
     if (kind == CAN_CONTROL) {
         drive->running = numbers[0] == 1;
         drive->watchdog = 0.001 * numbers[1];
+        drive->commanded = can_seconds();
         memset(drive->torques, 0, sizeof drive->torques);
         report(bus, finger);
     } else if (kind == CAN_TORQUES && drive->running) {
@@ -56,8 +60,8 @@ static void obey(const struct can_bus *bus, unsigned kind, int finger, const int
             drive->torques[i] = TORQUE_UNIT * numbers[i];
         for (i = 0; i < STEPS; i++)
             step_physics(&drive->physics, drive->torques);
+        drive->commanded = can_seconds();
     }
-    drive->commanded = can_seconds();
 }
 
 static void watch(const struct can_bus *bus)
@@ -87,7 +91,8 @@ int main(int count, char **arguments)
             fprintf(stderr, "%s: %s: name a CAN interface (ip link shows them), or an empty folder with a slash in its "
                 "path\n", arguments[1], strerror(errno));
         else
-            fprintf(stderr, "usage: CanDrives INTERFACE | FOLDER\n");
+            fprintf(stderr, "usage: CanDrives INTERFACE | FOLDER (a CAN interface, or an empty folder with a slash in "
+                "its path)\n");
         return 1;
     }
     for (finger = 0; finger < 3; finger++)

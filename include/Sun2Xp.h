@@ -194,8 +194,8 @@
    wait for the network. GetPos is refused with ETIMEDOUT if its data are too old.
 
 
-   8. THE CALLS: each call has an entry below. The examples are statements of a function that has opened
-   the hand, in a file that includes stdio.h and stdlib.h. */
+   8. THE CALLS: each call has an entry below. The examples are statements of a function in a file that
+   includes stdio.h and stdlib.h. Except in the example of OpenHand, this function has opened the hand. */
 
 #ifndef SUN2XP_H
 #define SUN2XP_H
@@ -300,11 +300,12 @@ int OpenHand(void);
 
  Returns 0, or -1 with
    EPERM    forked child
-   EBUSY    the call was made in a callback of sun2xp_on_event while another thread was opening or
-            closing the hand
+   EBUSY    the call was made in a callback of sun2xp_on_event, of this hand or of another one, while
+            another thread was opening or closing this hand
 
  Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes. Waits until the
- callback of sun2xp_on_event has returned, unless the call was made in a callback.
+ callback of this hand has returned, unless the call was made in a callback of sun2xp_on_event, of this
+ hand or of another one.
  */
 int CloseHand(void);
 

@@ -270,7 +270,9 @@ typedef struct sun2xp_hand sun2xp_hand;
                                                fast, too stiff. */
 #define SUN2XP_ERROR_FAULTED 9              /* The finger has stopped because of a fault. */
 #define SUN2XP_ERROR_CONFIGURATION 10       /* The configuration cannot be read, used, changed or stored. */
-#define SUN2XP_ERROR_PORT 11                /* A port or board does not work. */
+#define SUN2XP_ERROR_PORT 11                /* A port, a board or the connection to another machine does not work. A
+                                               refusal of sun2xp_recover has this number too if the servo gets no
+                                               processor time and therefore does not release its port. */
 #define SUN2XP_ERROR_SYSTEM 12              /* The system refuses a thread, a file or another resource. */
 #define SUN2XP_ERROR_NO_MEMORY 13           /* There is not enough memory. */
 #define SUN2XP_ERROR_TIMED_OUT 14           /* The time limit has expired. */
@@ -286,7 +288,8 @@ typedef struct sun2xp_hand sun2xp_hand;
 /*
  A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread.
 
- The member remedy names calls only, and is empty if no call helps. The member text always contains the whole remedy.
+ The member remedy names only calls that open, close, recover, zero or stop, and sun2xp_status. It may be empty
+ although a call helps. The member text always contains the whole remedy.
  */
 struct sun2xp_error {
     size_t size;                            /* sizeof (struct sun2xp_error), set before the call. */
@@ -503,9 +506,11 @@ int sun2xp_open_named(const char *name, sun2xp_hand **hand);
  Returns 0, or a negative number with
    EPERM    forked child
    ENODEV   no such hand
-   EBUSY    in a callback of sun2xp_on_event: another thread is closing the hand
+   EBUSY    the call was made in a callback of sun2xp_on_event, of this hand or of another one, while
+            another thread was closing this hand
 
- Threads: any. Waits until the callback of sun2xp_on_event has returned, except in a callback.
+ Threads: any. Waits until the callback of this hand has returned, unless the call was made in a callback
+ of sun2xp_on_event, of this hand or of another one.
  */
 int sun2xp_close(sun2xp_hand *hand);
 
@@ -955,7 +960,7 @@ int sun2xp_send_damping(sun2xp_hand *hand, int finger, double ratio);
 
  The largest eigenvalue may be at most the bound of Kx times l2 l2, where l2 is the length of the
  last link: by default 96 N cm/rad at 1000 Hz and above, and 80 N cm/rad below. This is the stiffness
- that a Kx at its bound gives joint 2 in every pose.
+ that a Kx with all eigenvalues at its bound gives joint 2 in every pose.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1166,16 +1171,16 @@ struct sun2xp_path_pose {
    ENOMEM   there is not enough memory for the computation
    ENODEV   no such hand
    EINVAL   size is too small; count is not 1 to 128; seconds is NaN, negative or more than 3600; no such
-            finger; a time is more than 3600 s, or less than 1 ms later than the one before; joint angles and
-            tip positions are mixed; an entry is NaN or infinite
+            finger; a time is more than 3600 s, or less than 1 ms later than the time before it, which is 0
+            for the first pose; joint angles and tip positions are mixed; an entry is NaN or infinite
    EDOM     a Kx is not symmetric, or has a negative eigenvalue
    ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is too
             stiff, or the path is too fast; sun2xp_error_text names the pose. If the path is too
             fast, the text also gives the factor by which it must be slower
    EIO      the finger is faulted
    EBUSY    the finger is being recovered or calibrated, or is limp
-   EAGAIN   during the call the finger has left its pose, because it was recovered or calibrated, its set
-            point expired, or a reflex reacted
+   EAGAIN   during the call the finger was recovered or calibrated, its set point expired, a reflex reacted,
+            or the inhibition after a reaction ended. Send the path again
    ERANGE   a Kx is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio instead)
 
  Threads: any. Never waits for a servo. Takes about 1 ms, depending on the number of poses.
@@ -2174,15 +2179,17 @@ int sun2xp_wait_event(sun2xp_hand *hand, struct sun2xp_event *event, double seco
  The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 
  When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
- called again. If a callback makes one of these calls, the call does not wait. The previous callback may
- then still be running or be called once more, so its context must stay valid for some time.
+ called again. There is one exception: a call that is made in a callback, of this hand or of another one,
+ does not wait for the previous callback. This callback may then still be running or be called once more,
+ so its context must stay valid for some time.
 
  Returns 0, or a negative number with
    EPERM    forked child
    ENODEV   no such hand
    EAGAIN   the system refuses to start a thread
 
- Threads: any. Waits until the previous callback has returned, except in a callback.
+ Threads: any. Waits until the previous callback has returned, unless the call was made in a callback, of
+ this hand or of another one.
 
  Example:
 
@@ -2248,9 +2255,10 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
 #define SUN2XP_THEN_HOLD 2                  /* The finger stays where it is. */
 #define SUN2XP_THEN_SOFTEN 3                /* The tip gets the Kx in the member stiffness, and the damping ratio 1. */
 #define SUN2XP_THEN_RETRACT 4               /* The finger goes to the joint angles in the member position. */
-#define SUN2XP_THEN_GRIP 5                  /* The tip presses harder. Its force rises by the amount in the member
-                                               value, but to at most the amount in the member largest, both in N.
-                                               This needs a Kx without an eigenvalue of 0. */
+#define SUN2XP_THEN_GRIP 5                  /* The tip presses harder in one direction. The force of its spring in
+                                               this direction rises by the amount in the member value, but to at most
+                                               the amount in the member largest, both in N. This needs a Kx without
+                                               an eigenvalue of 0. */
 #define SUN2XP_THEN_DAMP 6                  /* The tip gets the damping ratio in the member value, or the nearest
                                                admitted ratio. */
 
@@ -2261,8 +2269,9 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
  member refractory is above 0, the rule also fires again after this time while its condition stays true.
  After a reaction, the finger ignores set points of the planner for the time in the member inhibition. For
  SUN2XP_THEN_GRIP, the member position is the direction in the finger's frame in which the tip presses
- harder; 0, 0, 0 is the direction in which its spring presses. If the spring presses with less than 0.05 N
- in this direction, the reaction changes no set point, but a path still ends.
+ harder; 0, 0, 0 is the direction in which its spring presses. If the component of the spring's force in the
+ given direction, or else the spring's force, is below 0.05 N, the reaction changes no set point, but a path
+ still ends.
  */
 struct sun2xp_reflex {
     size_t size;                            /* sizeof (struct sun2xp_reflex), set before the call. */
@@ -2295,7 +2304,8 @@ struct sun2xp_reflex {
  becomes true, the command changes within two cycles, or within three cycles for
  SUN2XP_WHEN_OTHER_FINGER. At most one rule reacts in a cycle; the others wait. Each reaction is an event
  SUN2XP_EVENT_REFLEX_FIRED with the number of the rule. The servo of a built-in simulated finger, or of
- hardware with in_step, waits for every reply, so SUN2XP_WHEN_LINK_LOST never becomes true for it.
+ other hardware whose member in_step of struct sun2xp_io is set, waits for every reply, so
+ SUN2XP_WHEN_LINK_LOST never becomes true for it.
 
  A reaction replaces the set point and ends a path. Set points that were sent before are discarded, and
  later calls that change a part of a set point start from the set point of the reaction. The next

@@ -57,7 +57,8 @@ public:
     int system_errno() const noexcept { return system_errno_; }
     /// Name of the C call.
     const std::string &call() const noexcept { return call_; }
-    /// C calls that help, separated by commas; empty if no call helps. what() always has the whole remedy.
+    /// C calls that help, separated by commas: only calls that open, close, recover, zero or stop, and sun2xp_status.
+    /// It may be empty although a call helps. what() always has the whole remedy.
     const std::string &remedy() const noexcept { return remedy_; }
 
 private:
@@ -105,7 +106,7 @@ class __attribute__((visibility("default"))) callbacks {
 class callbacks {
 #endif
 public:
-    /// The callbacks of the process. They are never destroyed, because the library may call until the process ends.
+    /// The table of the process. It is never destroyed, because the library may call callbacks until the process ends.
     static callbacks &all()
     {
         static callbacks *const all = new callbacks;

@@ -62,6 +62,16 @@ fn the_page_has_the_table_of_the_library() {
     assert!(written == generated, "the table is stale: run SUN2XP_WRITE_FAULTS=1 cargo test --test faults_page");
 }
 
+/// sun2xp_fault_text promises a cause and a remedy. A reader who has only this text cannot follow another one.
+#[test]
+fn causes_and_remedies_are_not_only_references_to_another_text() {
+    for kind in FaultKind::ALL {
+        let row = kind.description();
+        assert!(!row.cause.starts_with("the cause that"), "{kind:?}: {}", row.cause);
+        assert!(!row.remedy.starts_with("Follow "), "{kind:?}: {}", row.remedy);
+    }
+}
+
 #[test]
 fn numbers_of_faults_never_change() {
     assert!(FaultKind::ALL.len() >= 49);

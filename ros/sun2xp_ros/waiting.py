@@ -1,4 +1,4 @@
-"""Trajectories that wait for their stamps. Needs no hand, so that every rule can be tested without one."""
+"""Trajectories that wait for their stamps. This module needs no hand, so tests need none to check all of it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,11 @@ class WaitingTrajectories:
         self._waiting: List[_Waiting] = []
 
     def add(self, delay: float, fingers: Sequence[int], begin: Callable[[Set[int]], None]) -> None:
-        """Calls `begin` after `delay`, s, with the fingers that have got no other command until then."""
+        """Calls `begin` after `delay`, s, with the fingers that have got no other command until then.
+
+        If no such finger is left, `begin` is not called. For the trajectories that already wait, this one is another
+        command.
+        """
         self.forget(fingers)
         one = _Waiting(fingers)
 

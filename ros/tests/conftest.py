@@ -135,15 +135,15 @@ class Planner:
         assert client.wait_for_service(LONGEST), f"no service {service}"
         return client.call_async(Trigger.Request())
 
-    def finish(self, future):
-        """Waits for a response."""
+    def finish(self, future, service):
+        """Waits for the response of a service."""
         done = threading.Event()
         future.add_done_callback(lambda _: done.set())
-        assert done.wait(LONGEST), "no response"
+        assert done.wait(LONGEST), f"no response of {service}"
         return future.result()
 
     def call(self, service):
-        return self.finish(self.begin(service))
+        return self.finish(self.begin(service), service)
 
     def ready(self):
         """Waits until the node has subscribed to the publishers of this planner, and a message of the node arrives."""

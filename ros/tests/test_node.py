@@ -1,4 +1,4 @@
-"""The node against rclpy: what it publishes, what it does with messages, and how it starts and ends."""
+"""Tests the node with the real rclpy: what it publishes, what it does with messages, and how it starts and ends."""
 
 import math
 import os

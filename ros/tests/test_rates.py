@@ -1,4 +1,4 @@
-"""What the node publishes at low and at high rates, with a hand that a test sets."""
+"""What the node publishes at low and at high rates. The hand is a stand-in whose fault a test sets."""
 
 import pathlib
 import time
@@ -18,7 +18,7 @@ ZERO = numpy.zeros(3)
 
 
 class Hand:
-    """A hand at rest, of which a finger may be stopped."""
+    """A hand at rest. If `stopped` is set, every finger reports this fault."""
 
     def __init__(self):
         self.stopped = None
@@ -133,6 +133,6 @@ def test_the_rates_are_means_since_the_previous_measurement():
 
     assert (mean(0, 0.0) == noise).all()
     assert mean(10, 0.02) == pytest.approx(2.0 * numpy.ones(3))
-    # This message has the measurement of the one before.
+    # No cycle has passed since the previous call, so the measurement and the mean rate are the same.
     assert mean(10, 0.02) == pytest.approx(2.0 * numpy.ones(3))
     assert mean(20, 0.03) == pytest.approx(1.0 * numpy.ones(3))

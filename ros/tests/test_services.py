@@ -1,4 +1,4 @@
-"""The services of the node against rclpy, and the diagnostics that follow them."""
+"""Tests the services of the node with the real rclpy, and the diagnostics after each call of a service."""
 
 from conftest import JOINTS, PREFIX, near, refused, trajectory
 
@@ -48,7 +48,7 @@ def test_a_zeroing_does_not_delay_the_node_and_stop_ends_it(planner):
     planner.trajectories.publish(trajectory(2, (1.0, [0.1, 0.6, 1.0])))
     planner.wait("joint_states", near(2, [0.1, 0.6, 1.0]))
     assert not zeroing.done() and planner.call("stop").success
-    response = planner.finish(zeroing)
+    response = planner.finish(zeroing, "finger3/zero")
     assert not response.success and "finger 3" in response.message
     assert planner.call("recover").success
     planner.wait("/diagnostics", in_stage(3, "running"))

@@ -5,7 +5,7 @@ use crate::certificates::{self, Wanted};
 use crate::output::say;
 use crate::router::Router;
 use crate::server::{Server, prepare};
-use crate::settings::{Overrides, Permission, Settings, client_name};
+use crate::settings::{Overrides, Permission, Settings, check_client, client_name};
 use clap::Parser;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
@@ -14,7 +14,7 @@ use sun2xp::hand::find_configuration;
 use sun2xp::model::Shown;
 use sun2xp::realtime::is_ignored;
 use sun2xp::{Configured, Hand};
-use sun2xp_remote_protocol::ClientName;
+use sun2xp_remote_protocol::{ClientName, NameError};
 
 /// Offers the hand to planners on other machines. The table [serve] of the configuration file says where the server
 /// listens and who may command the hand. The server ends at SIGINT, SIGTERM or SIGHUP: the fingers go to their
@@ -63,7 +63,8 @@ pub struct Arguments {
 /// Returns the first error.
 pub fn run(arguments: Arguments) -> Result<(), ServeError> {
     if let Some(folder) = arguments.make_certificates {
-        let (servers, clients) = (names("--server", &arguments.server)?, names("--client", &arguments.client)?);
+        let servers = names("--server", &arguments.server, server_name)?;
+        let clients = names("--client", &arguments.client, client_name)?;
         for file in certificates::make(&folder, &Wanted { servers, addresses: arguments.address, clients })? {
             say(&file.display().to_string());
         }
@@ -102,11 +103,32 @@ fn ending() -> Vec<i32> {
 
 /// Reads the names that were given with an option. clap does not read them itself, because its messages would show
 /// control characters unescaped.
-fn names(option: &'static str, texts: &[String]) -> Result<Vec<ClientName>, ServeError> {
+fn names(
+    option: &'static str,
+    texts: &[String],
+    read: impl Fn(&str) -> Result<ClientName, String>,
+) -> Result<Vec<ClientName>, ServeError> {
     let name = |text: &String| {
-        client_name(text).map_err(|reason| ServeError::Argument { option, text: Shown(text).to_string(), reason })
+        read(text).map_err(|reason| ServeError::Argument { option, text: Shown(text).to_string(), reason })
     };
     texts.iter().map(name).collect()
+}
+
+/// Returns the server with this name. The names of servers have the characters of the names of clients.
+///
+/// # Errors
+/// Returns the reason if this is not a name, or if [`check_client`] refuses it.
+fn server_name(text: &str) -> Result<ClientName, String> {
+    let name = text.parse::<ClientName>().map_err(|error| {
+        let error = match error {
+            NameError::Length { length, most, .. } => NameError::Length { what: "server", length, most },
+            NameError::Character { character, allowed, .. } => {
+                NameError::Character { what: "server", character, allowed }
+            }
+        };
+        format!("{error}. Give other names and addresses of the server with --address")
+    })?;
+    check_client(&name).map(|()| name)
 }
 
 fn wait(mut signals: Signals) {
@@ -127,6 +149,8 @@ fn announce(settings: &Settings) {
         say("nobody may command the hand: list clients in [serve.clients], such as planner = \"command\"");
     }
     if settings.tls.is_none() {
-        say("without TLS: every program on this machine can read the hand, and can take the name of any client");
+        say("without TLS: every program on this machine can read the hand, and can take the name of any client: make \
+             certificates with `sun2xp serve --make-certificates FOLDER --server NAME --client NAME`, name them in \
+             [serve.tls], and use tls/HOST:PORT");
     }
 }

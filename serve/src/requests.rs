@@ -24,6 +24,9 @@ use sun2xp_remote_protocol::{Action, Answer, ClientName, Code, DecodeError, Fing
 /// The text of an Answer to a client that does not own the hand.
 const NOT_OWNED: &str = "you do not own the hand, or the epoch of the request is old: acquire the hand first";
 
+/// The remedy for a Request that the protocol does not allow. Only a defective client sends such a Request.
+const DEFECTIVE: &str = "Correct the client that sent the Request (docs/remote-protocol.md)";
+
 /// Answers a Request. `reply` sends the Answer, at once or later. `client` is the client that the Zenoh key of the
 /// Request names.
 pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload: &[u8], reply: impl Reply) {
@@ -32,14 +35,16 @@ pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload:
         Ok(request) => request,
         Err(error) => {
             shared.desk.lock().count_malformed();
-            let other = matches!(error, DecodeError::Version { .. });
-            let code = if other { Code::OtherVersion } else { Code::Malformed };
-            return reply.send(&refuse(code, error.to_string()));
+            return reply.send(&match error {
+                DecodeError::Version { .. } => refuse(Code::OtherVersion, error.to_string()),
+                _ => refuse(Code::Malformed, format!("{error}. {DEFECTIVE}")),
+            });
         }
     };
     if request.action != action {
         shared.desk.lock().count_malformed();
-        let text = format!("the key is for {}, but the Request is for {}", action.name(), request.action.name());
+        let (key, named) = (action.name(), request.action.name());
+        let text = format!("the key is for {key}, but the Request is for {named}. {DEFECTIVE}");
         return reply.send(&refuse(Code::Malformed, text));
     }
     match permission(&shared.settings.clients, &client) {

@@ -5,6 +5,7 @@ use crate::endpoint::Endpoint;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use sun2xp::ConfigurationError;
 use sun2xp::files::read_regular_file;
 use sun2xp::hand::{Wrong, deserialize};
 use sun2xp_remote_protocol::{ClientName, HandName};
@@ -119,11 +120,8 @@ impl Settings {
     /// if an endpoint can be reached from other machines and there is no TLS.
     pub fn read(file: Option<&Path>, overrides: &Overrides) -> Result<Self, ServeError> {
         let Some(path) = file else { return Self::from_text("", Path::new("command line"), overrides) };
-        let text = read_regular_file(path, LARGEST).map_err(|source| ServeError::Settings {
-            file: path.into(),
-            line: None,
-            reason: format!("cannot be read: {source}"),
-        })?;
+        let text = read_regular_file(path, LARGEST)
+            .map_err(|source| ConfigurationError::Unreadable { path: path.into(), source })?;
         Self::from_text(&text, path, overrides)
     }
 

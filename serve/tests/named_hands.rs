@@ -1,4 +1,4 @@
-//! The hands whose tendons rub and which differ from their configuration, commanded over the network.
+//! The named hands that differ from their configuration, commanded over the network.
 
 mod common;
 
@@ -72,8 +72,8 @@ fn a_sheathed_hand() {
     is_caught(NamedHand::Sheathed, 0.03);
 }
 
-/// The errors of the gauges and the moment arms of this hand act like a force of 0.3 N at the tip. This force moves the
-/// tip by 1 mm with the default Kx of 3 N/cm, and by 3 mm with the soft Kx of 1 N/cm of a catch.
+/// The errors of the gauges of this hand act like a force of 0.3 N at the tip. This force moves the tip by 1 mm with
+/// the default Kx of 3 N/cm, and by 3 mm with the soft Kx of 1 N/cm of a catch.
 #[test]
 fn a_cheap_hand() {
     follows(NamedHand::Cheap, 0.12);

@@ -70,7 +70,12 @@ fn malformed_requests_are_refused_and_counted() {
     let good = request(Action::Acquire).encode().expect("a Request");
     let mut other_version = good.clone();
     other_version[1] = 9;
-    let code = |payload: &[u8]| alice.ask(&key, payload.to_vec()).map(|answer: Answer| answer.code);
+    let code = |payload: &[u8]| {
+        let Answer { code, text, .. } = alice.ask(&key, payload.to_vec())?;
+        let remedy = if code == Code::Malformed { "Correct the client" } else { "of the same version" };
+        assert!(text.contains(remedy), "{text}");
+        Some(code)
+    };
     assert_eq!(code(&other_version), Some(Code::OtherVersion));
     assert_eq!(code(&good[..15]), Some(Code::Malformed));
     assert_eq!(code(&[]), Some(Code::Malformed));

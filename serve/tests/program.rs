@@ -80,7 +80,7 @@ fn a_hand_is_offered_until_a_signal_comes() {
     let text = table(port) + &remote;
     let (mut running, said) = start(folder.path(), &text, || Ok(()));
     assert!(said[0].contains("`cell` at tcp/127.0.0.1:"), "{said:?}");
-    assert!(said[1].starts_with("without TLS"), "{said:?}");
+    assert!(said[1].starts_with("without TLS") && said[1].contains("--make-certificates"), "{said:?}");
     let configuration = RemoteConfiguration::from_text(&text, folder.path()).expect("usable").expect("a table");
     let hand = RemoteHand::open(&configuration).unwrap_or_else(|error| panic!("{error}"));
     hand.send_position(1, [0.1, 0.5, 0.9]).expect("sent");
@@ -182,6 +182,9 @@ fn what_is_wrong_is_said_with_its_remedy() {
         assert_eq!(output.status.code(), Some(1), "{output:?}");
         assert!(error.starts_with("sun2xp-serve: ") && error.contains(words), "{error}");
     }
+    let output = run(&["--make-certificates", &format!("{name}.d"), "--server", "fe80::1"]);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(error.contains("the name of a server") && error.contains("with --address"), "{error}");
     assert_eq!(run(&["--rooter"]).status.code(), Some(2));
     assert_eq!(run(&["--client", "alice"]).status.code(), Some(2), "only with --make-certificates");
     let busy = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");

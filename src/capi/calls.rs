@@ -64,11 +64,12 @@ pub extern "C" fn OpenHand() -> c_int {
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
-///   EBUSY    the call was made in a callback of sun2xp_on_event while another thread was opening or
-///            closing the hand
+///   EBUSY    the call was made in a callback of sun2xp_on_event, of this hand or of another one, while
+///            another thread was opening or closing this hand
 ///
 /// Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes. Waits until the
-/// callback of sun2xp_on_event has returned, unless the call was made in a callback.
+/// callback of this hand has returned, unless the call was made in a callback of sun2xp_on_event, of this
+/// hand or of another one.
 #[unsafe(no_mangle)]
 pub extern "C" fn CloseHand() -> c_int {
     delegated_or_done_here("CloseHand", default_handle(), || {

@@ -38,7 +38,8 @@ pub const SUN2XP_ERROR_FAULTED: c_int = 9;
 /// The configuration cannot be read, used, changed or stored.
 pub const SUN2XP_ERROR_CONFIGURATION: c_int = 10;
 
-/// A port or board does not work.
+/// A port, a board or the connection to another machine does not work. A refusal of sun2xp_recover has this number too
+/// if the servo gets no processor time and therefore does not release its port.
 pub const SUN2XP_ERROR_PORT: c_int = 11;
 
 /// The system refuses a thread, a file or another resource.
@@ -127,14 +128,24 @@ fn by_errno(errno: c_int) -> c_int {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hand::SetPointError;
+    use crate::hand::{RecoveryError, SetPointError};
+    use crate::model::FingerNumber;
 
     #[test]
     fn set_points_are_told_apart_by_their_errnos() {
         let of = |error: SetPointError| number(&Refusal::Hand(error.into()));
         assert_eq!(of(SetPointError::NoSuchContact(2)), SUN2XP_ERROR_ARGUMENT);
-        let negative = SetPointError::Negative { finger: crate::model::FingerNumber::ONE, smallest: -1.0 };
+        let negative = SetPointError::Negative { finger: FingerNumber::ONE, smallest: -1.0 };
         assert_eq!(of(negative), SUN2XP_ERROR_LIMIT);
         assert_eq!(number(&Refusal::NoHand), SUN2XP_ERROR_NO_HAND);
+    }
+
+    /// The comment of SUN2XP_ERROR_PORT describes the stalled servo.
+    #[test]
+    fn a_recovery_has_the_number_of_ports_unless_the_servo_has_failed() {
+        let of = |error: RecoveryError| number(&Refusal::Hand(error.into()));
+        assert_eq!(of(RecoveryError::ServoStalled(FingerNumber::ONE)), SUN2XP_ERROR_PORT);
+        assert_eq!(of(RecoveryError::NotReconnected(FingerNumber::ONE)), SUN2XP_ERROR_PORT);
+        assert_eq!(of(RecoveryError::ServoEnded(FingerNumber::ONE)), SUN2XP_ERROR_FAULTED);
     }
 }

@@ -118,15 +118,17 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
 /// The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 ///
 /// When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
-/// called again. If a callback makes one of these calls, the call does not wait. The previous callback may
-/// then still be running or be called once more, so its context must stay valid for some time.
+/// called again. There is one exception: a call that is made in a callback, of this hand or of another one,
+/// does not wait for the previous callback. This callback may then still be running or be called once more,
+/// so its context must stay valid for some time.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
 ///   ENODEV   no such hand
 ///   EAGAIN   the system refuses to start a thread
 ///
-/// Threads: any. Waits until the previous callback has returned, except in a callback.
+/// Threads: any. Waits until the previous callback has returned, unless the call was made in a callback, of
+/// this hand or of another one.
 ///
 /// Example:
 ///

@@ -130,9 +130,11 @@ pub unsafe extern "C" fn sun2xp_open_named(name: *const c_char, hand: *mut *mut 
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
 ///   ENODEV   no such hand
-///   EBUSY    in a callback of sun2xp_on_event: another thread is closing the hand
+///   EBUSY    the call was made in a callback of sun2xp_on_event, of this hand or of another one, while
+///            another thread was closing this hand
 ///
-/// Threads: any. Waits until the callback of sun2xp_on_event has returned, except in a callback.
+/// Threads: any. Waits until the callback of this hand has returned, unless the call was made in a callback
+/// of sun2xp_on_event, of this hand or of another one.
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_close(hand: *mut sun2xp_hand) -> c_int {
     let hand = Handle::of(hand);

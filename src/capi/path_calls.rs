@@ -72,16 +72,16 @@ pub struct sun2xp_path_pose {
 ///   ENOMEM   there is not enough memory for the computation
 ///   ENODEV   no such hand
 ///   EINVAL   size is too small; count is not 1 to 128; seconds is NaN, negative or more than 3600; no such
-///            finger; a time is more than 3600 s, or less than 1 ms later than the one before; joint angles and
-///            tip positions are mixed; an entry is NaN or infinite
+///            finger; a time is more than 3600 s, or less than 1 ms later than the time before it, which is 0
+///            for the first pose; joint angles and tip positions are mixed; an entry is NaN or infinite
 ///   EDOM     a Kx is not symmetric, or has a negative eigenvalue
 ///   ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is too
 ///            stiff, or the path is too fast; sun2xp_error_text names the pose. If the path is too
 ///            fast, the text also gives the factor by which it must be slower
 ///   EIO      the finger is faulted
 ///   EBUSY    the finger is being recovered or calibrated, or is limp
-///   EAGAIN   during the call the finger has left its pose, because it was recovered or calibrated, its set
-///            point expired, or a reflex reacted
+///   EAGAIN   during the call the finger was recovered or calibrated, its set point expired, a reflex reacted,
+///            or the inhibition after a reaction ended. Send the path again
 ///   ERANGE   a Kx is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio instead)
 ///
 /// Threads: any. Never waits for a servo. Takes about 1 ms, depending on the number of poses.
@@ -175,10 +175,7 @@ fn valid(seconds: f64) -> Result<Option<Duration>, PathError> {
 /// # Safety
 /// There are `count` poses with the size of the first one, and the stiffness of each is null or points to nine numbers.
 unsafe fn load_poses(count: c_int, poses: *const sun2xp_path_pose) -> Result<Vec<hand::PathPose>, Refusal> {
-    let wrong_number = || {
-        let count = usize::try_from(count).unwrap_or(0);
-        PathError::Count { count, most: MOST_POSES }.into()
-    };
+    let wrong_number = || PathError::Count { count: count.into(), most: MOST_POSES }.into();
     // SAFETY: by the contract of this function, the first pose has as many bytes as its size gives.
     let (poses, number) = unsafe { SizedStruct::array(poses, "poses", count, MOST_POSES, wrong_number) }?;
     (0..number)

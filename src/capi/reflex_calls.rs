@@ -56,8 +56,9 @@ pub const SUN2XP_THEN_SOFTEN: c_int = 3;
 /// The finger goes to the joint angles in the member position.
 pub const SUN2XP_THEN_RETRACT: c_int = 4;
 
-/// The tip presses harder. Its force rises by the amount in the member value, but to at most the amount in the
-/// member largest, both in N. This needs a Kx without an eigenvalue of 0.
+/// The tip presses harder in one direction. The force of its spring in this direction rises by the amount in the
+/// member value, but to at most the amount in the member largest, both in N. This needs a Kx without an
+/// eigenvalue of 0.
 pub const SUN2XP_THEN_GRIP: c_int = 5;
 
 /// The tip gets the damping ratio in the member value, or the nearest admitted ratio.
@@ -69,8 +70,9 @@ pub const SUN2XP_THEN_DAMP: c_int = 6;
 /// member refractory is above 0, the rule also fires again after this time while its condition stays true.
 /// After a reaction, the finger ignores set points of the planner for the time in the member inhibition. For
 /// SUN2XP_THEN_GRIP, the member position is the direction in the finger's frame in which the tip presses
-/// harder; 0, 0, 0 is the direction in which its spring presses. If the spring presses with less than 0.05 N
-/// in this direction, the reaction changes no set point, but a path still ends.
+/// harder; 0, 0, 0 is the direction in which its spring presses. If the component of the spring's force in the
+/// given direction, or else the spring's force, is below 0.05 N, the reaction changes no set point, but a path
+/// still ends.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_reflex {
@@ -113,7 +115,8 @@ pub struct sun2xp_reflex {
 /// becomes true, the command changes within two cycles, or within three cycles for
 /// SUN2XP_WHEN_OTHER_FINGER. At most one rule reacts in a cycle; the others wait. Each reaction is an event
 /// SUN2XP_EVENT_REFLEX_FIRED with the number of the rule. The servo of a built-in simulated finger, or of
-/// hardware with in_step, waits for every reply, so SUN2XP_WHEN_LINK_LOST never becomes true for it.
+/// other hardware whose member in_step of struct sun2xp_io is set, waits for every reply, so
+/// SUN2XP_WHEN_LINK_LOST never becomes true for it.
 ///
 /// A reaction replaces the set point and ends a path. Set points that were sent before are discarded, and
 /// later calls that change a part of a set point start from the set point of the reaction. The next

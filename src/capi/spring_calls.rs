@@ -25,7 +25,7 @@ use std::ffi::c_int;
 ///
 /// The largest eigenvalue may be at most the bound of Kx times l2 l2, where l2 is the length of the
 /// last link: by default 96 N cm/rad at 1000 Hz and above, and 80 N cm/rad below. This is the stiffness
-/// that a Kx at its bound gives joint 2 in every pose.
+/// that a Kx with all eigenvalues at its bound gives joint 2 in every pose.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -173,17 +173,7 @@ impl Configured {
             if self.said.ports == [true; FINGERS] {
                 return None;
             }
-            return Some(match raised_privileges() {
-                false => {
-                    "no configuration file: the hand is simulated (to use a real hand, describe it in sun2xp.toml)"
-                        .into()
-                }
-                true => format!(
-                    "no {}: the hand is simulated (a program that is setuid or setgid, or has capabilities, reads no \
-                     other configuration file)",
-                    place::SYSTEM_FILE
-                ),
-            });
+            return Some(without_file(raised_privileges()));
         };
         let unnamed: Vec<String> = fingers
             .members()
@@ -201,9 +191,29 @@ impl Configured {
     }
 }
 
+/// The announcement of a hand that is simulated because there is no configuration file.
+fn without_file(raised_privileges: bool) -> String {
+    if raised_privileges {
+        let file = place::SYSTEM_FILE;
+        return format!(
+            "no {file}: the hand is simulated (to use a real hand, describe it in this file: a program that is setuid \
+             or setgid, or has capabilities, reads no other configuration file)"
+        );
+    }
+    "no configuration file: the hand is simulated (to use a real hand, describe it in sun2xp.toml)".into()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_announcement_of_a_missing_file_says_where_to_describe_a_real_hand() {
+        for (raised, file) in [(false, "sun2xp.toml"), (true, place::SYSTEM_FILE)] {
+            let said = without_file(raised);
+            assert!(said.contains("to use a real hand, describe it in") && said.contains(file), "{said}");
+        }
+    }
 
     #[test]
     fn fingers_without_a_port_are_announced_by_their_numbers() {

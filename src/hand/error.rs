@@ -209,7 +209,10 @@ pub enum HandError {
     )]
     NoAnswer(FingerNumber),
     /// A calibration is in force, but it could not be stored.
-    #[error("the calibration of finger {finger} is in force until the hand is closed, but it is not stored: {source}")]
+    #[error(
+        "the calibration of finger {finger} is in force until the hand is closed, but it is not stored: {source}{}",
+        storing_remedy(source)
+    )]
     NotStored {
         /// The finger.
         finger: FingerNumber,
@@ -239,10 +242,10 @@ pub enum HandError {
         /// The requested cycle. 0 means the newest cycle.
         cycle: u64,
     },
-    /// The force is too large for a simulated finger.
+    /// A component of the force is too large for a simulated finger.
     #[error(
-        "a force of {force:.3e} N on finger {finger} is above {strongest} N, the largest permitted force on a \
-         simulated finger: use a smaller force"
+        "a component of the force on finger {finger} has a magnitude of {force:.3e} N, above {strongest} N, the \
+         largest permitted magnitude on a simulated finger: use a force whose components are smaller"
     )]
     TooMuchForce {
         /// The finger.
@@ -260,6 +263,14 @@ pub enum HandError {
         "the hand has no simulated object: configure [hand.simulated_object] and a finger with `port = \"simulated\"`"
     )]
     NoObject,
+}
+
+/// The remedy of a calibration that is not stored, as a sentence after the reason. One reason already ends with it.
+fn storing_remedy(reason: &ConfigurationError) -> &'static str {
+    match reason {
+        ConfigurationError::Mismatch { .. } => "",
+        _ => ". Remove the cause and calibrate the finger again",
+    }
 }
 
 impl From<UnusableConfiguration> for HandError {

@@ -17,7 +17,7 @@ pub struct FingerLimits {
     pub tension_maximum: f64,
     /// Largest torques of the motors, N cm.
     pub motor_torque: [f64; 4],
-    /// Largest eigenvalue of Kx, N/cm.
+    /// Largest eigenvalue of Kx that the finger admits, N/cm.
     pub stiffness: f64,
 }
 

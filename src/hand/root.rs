@@ -209,8 +209,8 @@ impl Hand {
     /// Pushes the fingertip of a simulated finger with a force in the finger's frame, N, until the next call.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger, if a number is NaN, infinite or above 1000 N, or if the finger is
-    /// not simulated.
+    /// Returns an error if there is no such finger, if a component is NaN, infinite or beyond 1000 N, or if the finger
+    /// is not simulated.
     pub fn push_simulated(&self, finger: i32, force: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.member(finger)?.admission.read().finite("Force", &force)?;

@@ -8,8 +8,8 @@ use std::path::PathBuf;
 
 impl Hand {
     /// Uses `store_findings` to write calibration results of finger 1, 2 or 3 into the configuration file with which
-    /// the hand was opened. It writes the results that no earlier call has written. Returns false if there is no such
-    /// file, or nothing to write.
+    /// the hand was opened. It writes the results that no earlier call has written. Returns false if the hand was
+    /// opened without a configuration file, or if there is nothing to write.
     ///
     /// # Errors
     /// Returns an error if there is no such finger. Returns [`HandError::NotStored`] with the reason if the file cannot

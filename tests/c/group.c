@@ -46,7 +46,7 @@ int main(void)
     REFUSED(sun2xp_send_group(HAND, 1, NULL), EFAULT, "set_points");
     CHECK(GetPos(3, Before) == 0);
     REFUSED(sun2xp_send_group(HAND, 3, One), ERANGE, "limits");
-    REFUSED(sun2xp_send_group(HAND, 4, One), EINVAL, "0 to 3");
+    REFUSED(sun2xp_send_group(HAND, 4, One), EINVAL, "0 to 3 commands, and not 4: send at most one command");
     REFUSED(sun2xp_send_group(HAND, -1, One), EINVAL, "-1");
     PAUSE_MS(300);
     CHECK(GetPos(3, After) == 0);

@@ -167,7 +167,8 @@ static void wrong_values_on_a_faulted_finger(void)
     REFUSED("sun2xp_adjust", sun2xp_adjust(HAND, 1, "tendon.minimum = 6"), "stop");
     REFUSED("sun2xp_push", sun2xp_push(HAND, 1, NanForce), "NaN");
     REFUSED("sun2xp_push", sun2xp_push(HAND, 1, StrongForce), "not simulated");
-    REFUSED("sun2xp_push", sun2xp_push(HAND, 2, StrongForce), "1000");
+    REFUSED("sun2xp_push", sun2xp_push(HAND, 2, StrongForce),
+            "component of the force on finger 2 has a magnitude of 1.000e4 N, above 1000 N");
     REFUSED("sun2xp_record", sun2xp_record(HAND, 1, 99999999, &Record), "99999999");
     REFUSED("sun2xp_write_black_box", sun2xp_write_black_box(HAND, 1, "no/such/folder"), "no/such/folder");
     REFUSED("sun2xp_zero", sun2xp_zero(HAND, 1), "stop");

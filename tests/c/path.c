@@ -49,7 +49,7 @@ int main(void)
     memcpy(Second->place, Target, sizeof Target);
     REFUSED(sun2xp_send_path(HAND, 1, 2, First, 0), ERANGE, "multiply all times by");
     REFUSED(sun2xp_send_path(HAND, 1, 0, First, 0), EINVAL, "0 poses");
-    REFUSED(sun2xp_send_path(HAND, 1, -1, First, 0), EINVAL, "1 to 128");
+    REFUSED(sun2xp_send_path(HAND, 1, -1, First, 0), EINVAL, "has -1 poses: send 1 to 128");
     PAUSE_MS(300);
     CHECK(away(1, Before) < 0.02);
     First->time = 0.5;

@@ -292,7 +292,7 @@ int main(void)
         else if (used > most)
             most = used;
     }
-    printf("the other calls: at most %lu bytes\n", (unsigned long)most);
+    printf("all calls but sun2xp_send_path and sun2xp_send_group: at most %lu bytes\n", (unsigned long)most);
     CHECK(most <= PROMISED_BYTES);
     return 0;
 }

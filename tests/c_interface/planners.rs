@@ -132,6 +132,12 @@ fn late_frames_of_a_can_bus_make_no_sample() {
 }
 
 #[test]
+fn only_torques_renew_the_watchdog_of_a_drive_at_a_can_bus() {
+    let examples = c::root().join("c_examples");
+    succeed(&strict(&["-std=gnu99", "-I", examples.to_str().expect("the path is text")]), &["drive_watchdog.c"]);
+}
+
+#[test]
 fn a_finger_with_a_drive_at_a_can_bus_that_does_not_arrive_is_reported() {
     let examples = c::root().join("c_examples");
     succeed(&strict(&["-std=gnu99", "-I", examples.to_str().expect("the path is text")]), &["off_target.c"]);

@@ -1,5 +1,5 @@
-//! The tool `sun2xp` is a package of its own. Tests of the library build it once, as cargo builds it for the tool's own
-//! tests.
+//! The tool `sun2xp` is a package of its own. Each test program of the library builds it at most once, in the same way
+//! as cargo builds it for the tool's own tests.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -16,7 +16,7 @@ pub fn tool() -> &'static Path {
         cargo.args(["build", "--quiet", "--locked", "--manifest-path"]);
         cargo.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"));
         match std::env::var_os("CI") {
-            // tests/run has built the whole workspace. With an example, Cargo selects the same features as for
+            // tests/run has built the whole workspace. `--example spring` makes Cargo select the same features as for
             // `cargo test --workspace`, so the tool is up to date.
             Some(_) => cargo.args(["--workspace", "--bin", "sun2xp", "--example", "spring"]),
             None => cargo.args(["--package", "sun2xp-tool"]),

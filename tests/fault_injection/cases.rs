@@ -96,7 +96,7 @@ fn of_the_tendons() -> Vec<Case> {
             inject(bench, Defect::CutTendon(tendon));
             at(tendon)
         }),
-        case("slack tendon (grip 1 N)", SlackTendon, |bench| {
+        case("slack tendon (its clamp slips above 1 N)", SlackTendon, |bench| {
             let tendon = bench.part();
             inject(bench, Defect::SlackTendon { tendon, grip: 1.0 });
             at(tendon)
@@ -120,7 +120,7 @@ fn of_the_tendons() -> Vec<Case> {
             at(gauge)
         }),
         case("drifting gauge (20 N/s)", GaugeDisagrees, drift).later(3000.0).from(10.0, disagrees),
-        case("drifting gauge (20 N/s), identified", GaugeDisagrees, drift)
+        case("drifting gauge (20 N/s), smaller tolerances", GaugeDisagrees, drift)
             .with(|configuration| {
                 let finger = &mut configuration.fingers[0];
                 finger.tendon.stiffness_tolerance = 0.03;
@@ -249,7 +249,7 @@ fn disagrees(truth: &Truth, injected: &Injected, finger: &ConfiguredFinger) -> b
     shares.dot(&(injected.drift * truth.time)).abs() > finger.monitors.disagreement + 0.1
 }
 
-/// Whether the command exceeds what the motor's friction may hold.
+/// Whether pull and tension differ by more than the monitor of stalled motors always tolerates.
 fn stands(truth: &Truth, injected: &Injected, finger: &ConfiguredFinger) -> bool {
     let motor = usize::from(injected.part.expect("a motor")) - 1;
     let (pull, tension) = (truth.pulls[motor], truth.tensions[motor]);

@@ -187,8 +187,8 @@ fn motors_reach_their_end_state(emulated: Emulated) {
     }
 }
 
-/// Opens a hand with a long watchdog, and closes it. The emulator translates each part of the firmware when it first runs
-/// it, and the translation may take longer than the short watchdog tolerates.
+/// Opens a hand with a long watchdog, and closes it. The emulator translates each part of the firmware before it first
+/// runs this part, and the translation may take longer than the short watchdog tolerates.
 fn translate_firmware(emulated: Emulated, machine: &Machine) {
     let what = format!("the first hand on the firmware, {}", emulated.board);
     attempts(&what, TOLERATED_PAUSE, |watch| {

@@ -113,6 +113,7 @@ fn lost_exchanges_fault_the_finger_and_it_recovers() {
     switches.lock().start_fails = Some(libc::ENXIO);
     let refused = hand.recover(2).expect_err("the hardware does not start");
     assert!(refused.errno() == libc::ENXIO && refused.to_string().contains("failed to start"), "{refused}");
+    assert!(refused.to_string().contains("Check its power and its cables"), "{refused}");
     switches.lock().start_fails = None;
     switches.lock().exchange_fails = None;
     hand.recover(2).unwrap_or_else(|error| panic!("{error}"));

@@ -85,8 +85,8 @@ pub struct Arguments {
 
 /// Reads the number of a finger.
 pub fn finger(text: &str) -> Result<FingerNumber, String> {
-    let number: i32 = text.parse().map_err(|_| "not a number")?;
-    FingerNumber::try_from(number).map_err(|_| "not 1, 2 or 3".into())
+    let number = text.parse().ok().and_then(|number: i32| FingerNumber::try_from(number).ok());
+    number.ok_or_else(|| "not 1, 2 or 3".into())
 }
 
 fn mass(text: &str) -> Result<f64, String> {

@@ -50,6 +50,17 @@ pub fn unwritable(path: &Path, error: &io::Error) -> Failure {
     format!("cannot write {}: {error}{}", ShownPath(path), write_remedy(error)).into()
 }
 
+/// The failure of a file that cannot be read. Other errors than these two need no remedy, because their texts already
+/// show what to change.
+pub fn unreadable(path: &Path, error: &io::Error) -> Failure {
+    let remedy = match error.kind() {
+        ErrorKind::NotFound => ". Name an existing file",
+        ErrorKind::PermissionDenied => ". This user needs permission to read the file and to enter its folder",
+        _ => "",
+    };
+    format!("cannot read {}: {error}{remedy}", ShownPath(path)).into()
+}
+
 /// Prints a failure, and returns the exit status. A reader that closes the pipe of standard output, such as `head`,
 /// needs no message.
 pub fn report(failure: &Failure) -> ExitStatus {
@@ -79,5 +90,13 @@ mod tests {
             "{denied}"
         );
         assert_eq!(full, "cannot write hand.toml: no storage space");
+    }
+
+    #[test]
+    fn a_file_that_is_missing_or_forbidden_has_a_remedy() {
+        let text = |kind: ErrorKind| unreadable(Path::new("hand.mcap"), &io::Error::from(kind)).to_string();
+        assert_eq!(text(ErrorKind::NotFound), "cannot read hand.mcap: entity not found. Name an existing file");
+        let denied = text(ErrorKind::PermissionDenied);
+        assert!(denied.starts_with("cannot read hand.mcap: permission denied. This user needs permission"), "{denied}");
     }
 }

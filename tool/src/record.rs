@@ -120,7 +120,10 @@ fn note_losses(lost: [u64; 3], files: &mut Files, counts: &mut Counts, display: 
         counts.lost += lost;
         files.write_lost(finger, lost)?;
         let lost = Counted(lost, "cycle is", "cycles are");
-        display.line(&format!("finger {finger}: {lost} lost, and marked in the topic /lost"));
+        display.line(&format!(
+            "finger {finger}: {lost} lost, and marked in the topic /lost, because this recorder or a thread of the \
+             hand was too slow: reduce the load of the machine, or record to a faster disk"
+        ));
     }
     Ok(())
 }

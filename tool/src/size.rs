@@ -15,8 +15,9 @@ use sun2xp::model::FingerNumber;
 /// Computes what the motors, encoders, gauges, drivers and tendons of a hand must be able to do, and whether those of
 /// the configuration can.
 ///
-/// The results are the worst over a grid of poses within the joint limits and over 26 directions of the force. They
-/// need no hand. docs/building-a-hand.md derives every line.
+/// The forces of the tip, and the tension at the required force, are the worst over a grid of poses within the joint
+/// limits and over 26 directions of the force. The displacements and the stiffness are the worst over these poses. The
+/// command needs no hand. docs/building-a-hand.md derives every line.
 ///
 /// Exit status: 0 if every part suffices, 1 if one does not, 2 for wrong usage.
 #[derive(clap::Args)]

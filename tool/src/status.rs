@@ -8,7 +8,7 @@ use crate::print::{self, Cell, Look, Screen, Table, painted};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
-use sun2xp::telemetry::{self, AttachError, Reader};
+use sun2xp::telemetry::{self, AttachError, Ended, Reader};
 
 /// Time over which the rate is measured.
 const MEASURING: Duration = Duration::from_millis(500);
@@ -88,7 +88,9 @@ fn state(name: Option<&str>) -> Result<HandState, Failure> {
         let received = reader.read(MEASURING / 5, &mut messages);
         tracker.apply(&messages, received.as_ref().map(|received| received.lost).unwrap_or_default());
         if let Err(end) = received {
-            return Err(format!("the hand \"{}\" ended while it was read: {end}", tracker.state.name).into());
+            // The text of a damaged memory names its own remedy.
+            let remedy = if end == Ended::Closed { ". Open it again, and repeat the command" } else { "" };
+            return Err(format!("the hand \"{}\" ended while it was read: {end}{remedy}", tracker.state.name).into());
         }
     }
     Ok(tracker.state)

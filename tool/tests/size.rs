@@ -78,6 +78,8 @@ fn wrong_usage_is_refused() {
         let run = size(Path::new("none.toml"), &arguments);
         assert_eq!(run.status.code(), Some(2), "{run:?}");
     }
+    let run = size(Path::new("none.toml"), &["--finger", "x"]);
+    assert!(String::from_utf8_lossy(&run.stderr).contains("not 1, 2 or 3"), "{run:?}");
     assert_eq!(size(Path::new("none.toml"), &[]).status.code(), Some(1));
 }
 

@@ -102,11 +102,12 @@ pub enum AdmissionError {
         /// Number of poses.
         count: usize,
     },
-    /// A time is NaN, above the longest permitted time, or less than 1 ms later than the one before.
+    /// A time is NaN, above the longest permitted time, or less than 1 ms later than the time before it, which is 0 for
+    /// the first pose.
     #[error(
-        "the time of pose {pose} of the path of finger {finger} is {time} s, and the time before it is {before} s: \
-         times count from the beginning of the path. Each must be at least {LEAST_STEP} s later than the one before, \
-         and no time may exceed {LONGEST} s"
+        "the time of pose {pose} of the path of finger {finger} is {time} s after the beginning of the path: send a \
+         time that is at least {LEAST_STEP} s later than {before} s, {}, and at most {LONGEST} s",
+        if *pose == 0 { "the beginning of the path" } else { "the time of the pose before it" }
     )]
     Time {
         /// The finger.
@@ -115,7 +116,7 @@ pub enum AdmissionError {
         pose: usize,
         /// Its time, s.
         time: f64,
-        /// The time of the pose before, or 0, s.
+        /// The time of the pose before it, or 0 for the first pose, s.
         before: f64,
     },
 }

@@ -57,7 +57,9 @@ impl Answer {
             return Err(FieldError::new("text", Reason::TooLong(usize::from(u16::MAX))));
         }
         match self.code {
-            Code::Done if !self.text.is_empty() => Err(FieldError::new("text", Reason::Contradicts("the code"))),
+            Code::Done if !self.text.is_empty() => {
+                Err(FieldError::new("text", Reason::Contradicts("the code, which is 0 (done)")))
+            }
             _ => Ok(()),
         }
     }

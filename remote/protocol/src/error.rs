@@ -64,7 +64,7 @@ pub struct FieldError {
 #[non_exhaustive]
 pub enum Reason {
     /// A number is NaN or infinite.
-    #[error("contains {0}: every number must be finite")]
+    #[error("must be finite, and not {0}")]
     NotFinite(f64),
     /// A number is zero or negative.
     #[error("is {0}: it must be positive")]
@@ -72,6 +72,9 @@ pub enum Reason {
     /// A number is negative.
     #[error("is {0}: it must not be negative")]
     Negative(f64),
+    /// A fraction is outside 0 to 1.
+    #[error("is {0}: it must be 0 to 1")]
+    NotAFraction(f64),
     /// A whole number is outside its range.
     #[error("is {value}: it must be {least} to {most}")]
     Outside {
@@ -85,9 +88,33 @@ pub enum Reason {
     /// A value is not higher than the one before.
     #[error("must be higher than the one before")]
     NotRising,
+    /// The time of a pose of a path is not above 0, or not higher than the time of the pose before.
+    #[error("must be above 0 and higher than that of the pose before, but pose {pose} has the time {time} s")]
+    PoseTime {
+        /// The index of the pose in the path, from 0.
+        pose: usize,
+        /// Its time, s.
+        time: f64,
+    },
+    /// The largest angle of a joint is below its smallest angle.
+    #[error(
+        "must not be below the smallest, but joint {joint} has the largest angle {largest} rad and the smallest angle \
+         {smallest} rad"
+    )]
+    BelowSmallest {
+        /// The joint, 0 to 2.
+        joint: usize,
+        /// Its largest angle, rad.
+        largest: f64,
+        /// Its smallest angle, rad.
+        smallest: f64,
+    },
     /// The bytes of a value that is not given are not zero.
-    #[error("is not given, so its bytes must be zero")]
+    #[error("must have only zero bytes, because no value is given")]
     NotZero,
+    /// The bytes after a text, up to the end of its field, are not zero.
+    #[error("must be zero")]
+    NotPadding,
     /// Bits are set that have no meaning, or that this message must not have.
     #[error("has the value {0:#x}, with bits that have no meaning or that this message must not have")]
     Bits(u8),

@@ -1,4 +1,4 @@
-//! The data of one finger that change rarely.
+//! The status of one finger, a part of the Status that the server publishes once a second.
 
 use crate::bytes::{Bytes, Written};
 use crate::error::{FieldError, Reason, finite, within};
@@ -41,7 +41,7 @@ impl FingerStatus {
         let text = std::str::from_utf8(bytes.from(105, length).0)
             .map_err(|_| FieldError::new("text of the fault", Reason::NotText))?;
         if bytes.from(105 + length, FaultText::LONGEST - length).0.iter().any(|&byte| byte != 0) {
-            return Err(FieldError::new("text of the fault beyond its length", Reason::NotZero));
+            return Err(FieldError::new("bytes after the text of the fault", Reason::NotPadding));
         }
         let status = Self {
             stage: Stage::decode(bytes.u8(0), bytes.u16(2))?,
@@ -64,9 +64,11 @@ impl FingerStatus {
         self.stage.check()?;
         finite("smallest joint angles", &self.low)?;
         finite("largest joint angles", &self.high)?;
-        if self.low.iter().zip(self.high).any(|(&low, high)| low > high) {
-            let reason = Reason::Contradicts("the smallest joint angles");
-            return Err(FieldError::new("largest joint angles", reason));
+        for (joint, (&smallest, &largest)) in self.low.iter().zip(&self.high).enumerate() {
+            if smallest > largest {
+                let reason = Reason::BelowSmallest { joint, largest, smallest };
+                return Err(FieldError::new("largest joint angles", reason));
+            }
         }
         finite("largest eigenvalue", &[self.stiffness_bound])?;
         if self.stiffness_bound < 0.0 {
@@ -74,12 +76,13 @@ impl FingerStatus {
         }
         finite("completed part of a calibration", &[self.calibration])?;
         if !(0.0..=1.0).contains(&self.calibration) {
-            return Err(FieldError::new("completed part of a calibration", Reason::Contradicts("the range 0 to 1")));
+            let reason = Reason::NotAFraction(self.calibration);
+            return Err(FieldError::new("completed part of a calibration", reason));
         }
         match self.stage {
             Stage::Faulted(_) => Ok(()),
             _ if self.fault_text.as_str().is_empty() => Ok(()),
-            _ => Err(FieldError::new("text of the fault", Reason::Contradicts("the stage"))),
+            _ => Err(FieldError::new("text of the fault", Reason::Contradicts("the stage, which is not faulted"))),
         }
     }
 

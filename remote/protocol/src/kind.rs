@@ -12,7 +12,7 @@ pub enum MessageKind {
     State = 2,
     /// Something that happened to a finger.
     Event = 3,
-    /// What changes rarely.
+    /// The status of a hand and of its server.
     Status = 4,
     /// A request of a client.
     Request = 5,

@@ -1,5 +1,5 @@
-//! The names of hands and clients. A name is part of keys, so it must not contain a character that has a meaning in
-//! keys.
+//! The names of hands and clients. A name is a part of Zenoh keys, so it must not contain a character that has a
+//! meaning in them.
 
 use std::fmt;
 use std::str::FromStr;
@@ -11,7 +11,7 @@ pub enum NameError {
     /// The name is empty or too long.
     #[error("the name has {length} characters: the name of a {what} has 1 to {most}")]
     Length {
-        /// `hand` or `client`.
+        /// What has the name, such as `hand` or `client`.
         what: &'static str,
         /// The length of the text, in characters.
         length: usize,
@@ -21,7 +21,7 @@ pub enum NameError {
     /// The name has a character that names do not have.
     #[error("the name has the character {character:?}: the name of a {what} has only {allowed}")]
     Character {
-        /// `hand` or `client`.
+        /// What has the name, such as `hand` or `client`.
         what: &'static str,
         /// The first such character.
         character: char,

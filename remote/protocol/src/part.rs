@@ -9,7 +9,8 @@ use crate::{Finger, PathPose, path};
 pub struct Part {
     /// The finger.
     pub finger: Finger,
-    /// The command number, not 0. The server applies the part if the number differs from the last one that it took.
+    /// The command number, not 0. The server applies the part if this number differs from the last one that it applied
+    /// to the finger in this epoch.
     pub command: u32,
     /// Where the finger is to be.
     pub place: Place,

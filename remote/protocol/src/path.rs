@@ -23,11 +23,11 @@ impl PathPose {
 pub(crate) fn check(poses: &[PathPose]) -> Result<(), FieldError> {
     within("number of poses", poses.len() as u64, 1, MOST_POSES as u64)?;
     let mut before = 0.0;
-    for pose in poses {
+    for (index, pose) in poses.iter().enumerate() {
         finite("time of a pose", &[pose.time])?;
         finite("joint angles of a pose", &pose.joints)?;
         if pose.time <= before {
-            return Err(FieldError::new("time of a pose", Reason::NotRising));
+            return Err(FieldError::new("time of a pose", Reason::PoseTime { pose: index, time: pose.time }));
         }
         before = pose.time;
     }

@@ -63,13 +63,17 @@ impl Stage {
         };
         match decoded.numbers() == (stage, fault) {
             true => decoded.check().map(|()| decoded),
-            false => Err(FieldError::new("number of the fault", Reason::Contradicts("the stage"))),
+            false => {
+                Err(FieldError::new("number of the fault", Reason::Contradicts("the stage, which is not faulted")))
+            }
         }
     }
 
     pub(crate) fn check(self) -> Result<(), FieldError> {
         match self {
-            Self::Faulted(0) => Err(FieldError::new("number of the fault", Reason::Contradicts("the stage"))),
+            Self::Faulted(0) => {
+                Err(FieldError::new("number of the fault", Reason::Contradicts("the stage, which is faulted")))
+            }
             _ => Ok(()),
         }
     }

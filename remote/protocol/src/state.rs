@@ -1,4 +1,4 @@
-//! State, type 2: the cycles of all fingers since the last State.
+//! State, type 2: the cycles of the fingers since the State before.
 
 use crate::bytes::{Bytes, Written};
 use crate::error::{FieldError, Reason, within};
@@ -10,7 +10,8 @@ pub const MOST_RECORDS: usize = 300;
 const FIXED: usize = 32;
 const KIND: MessageKind = MessageKind::State;
 
-/// The cycles of all fingers since the last State.
+/// The cycles of the fingers since the State before. A finger that has stopped has one record in each State, with its
+/// newest cycle. Cycles can be absent: `missing` is their number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Number of cycles that are missing before this State, because the server was late.

@@ -1,4 +1,4 @@
-//! Status, type 4: what changes rarely.
+//! Status, type 4: the status of a hand and of its server.
 
 use crate::bytes::{Bytes, Written};
 use crate::error::{FieldError, Reason, finite, within};
@@ -29,7 +29,7 @@ pub struct Counts {
     pub ended: u64,
 }
 
-/// What changes rarely.
+/// The status of a hand and of its server. The server publishes it once a second.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Status {
     /// `catch_ms` of the server, ms: at least 1.

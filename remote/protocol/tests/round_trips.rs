@@ -195,10 +195,7 @@ fn what_cannot_be_decoded_is_not_encoded() {
     };
     let target = |parts| Target { validity_ms: 100, epoch: 1, sequence: 1, sent: 0, seen: 0, parts };
     let refused = |target: Target| target.encode().expect_err("refused").to_string();
-    assert_eq!(
-        refused(target(vec![part(Finger::ALL[1])])),
-        "part 0, joint angles contains NaN: every number must be finite"
-    );
+    assert_eq!(refused(target(vec![part(Finger::ALL[1])])), "part 0, joint angles must be finite, and not NaN");
     let good = |finger| Part { place: Place::Kept, ..part(finger) };
     let falling = target(vec![good(Finger::ALL[1]), good(Finger::ALL[0])]);
     assert_eq!(refused(falling), "part 1, finger must be higher than the one before");

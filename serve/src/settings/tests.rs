@@ -39,6 +39,13 @@ fn unknown_keys_and_wrong_values_are_named_with_their_line() {
 }
 
 #[test]
+fn a_missing_file_is_refused_with_its_remedy() {
+    let refused = Settings::read(Some(Path::new("/missing/sun2xp.toml")), &Overrides::default());
+    let refused = refused.expect_err("refused").to_string();
+    assert!(refused.contains("/missing/sun2xp.toml: ") && refused.contains("The file must exist"), "{refused}");
+}
+
+#[test]
 fn what_other_machines_can_reach_needs_tls() {
     for endpoint in ["tcp/0.0.0.0:7447", "tcp/192.168.1.5:7447", "tcp/[::]:7447", "tcp/cell:7447", "tls/0.0.0.0:7447"] {
         let refused = refusal(&format!("[serve]\nlisten = ['{endpoint}']\n"));

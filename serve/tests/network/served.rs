@@ -12,7 +12,7 @@ use tempfile::TempDir;
 /// The program.
 pub const PROGRAM: &str = env!("CARGO_BIN_EXE_sun2xp-serve");
 
-/// Kx with which the server catches a finger, N/cm.
+/// `soft_stiffness` of the server: the Kx with which it holds a caught finger, N/cm.
 pub const SOFT: f64 = 1.0;
 
 /// A hand on one machine. Dropping it ends the server.
@@ -23,8 +23,8 @@ pub struct Served {
 }
 
 impl Served {
-    /// Starts the server in the left namespace, and waits until it listens there. It catches the fingers after
-    /// `catch_ms`.
+    /// Starts the server in the left namespace, and waits until it listens there. `catch_ms` is the longest validity of
+    /// a Target, ms: when it ends without a new Target, the server catches the fingers (holds them softly).
     pub fn start(line: &Line, name: &str, catch_ms: u32) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let mut make = Command::new(PROGRAM);

@@ -16,9 +16,9 @@ use crate::board::transport::Transport;
 const PATIENCE: u64 = 50_000_000;
 
 impl<T: Transport> Link<T> {
-    /// Finds the finger with this address, 1 to 15, and agrees on `terms` with it. The motors stay off. Retries until
-    /// `deadline` (ns on the transport's clock), because a board may still be starting. Returns at once if waiting
-    /// cannot help.
+    /// Finds the finger with this address, 1 to 15, and agrees on `terms` with it. This starts no motor. If the finger
+    /// is in the end state *hold*, the hold ends and the motors go off. Retries until `deadline` (ns on the transport's
+    /// clock), because a board may still be starting. Returns at once if waiting cannot help.
     ///
     /// Do not call this in the servo's cycle, because it discards Replies of other fingers on the port.
     pub fn shake_hands(
@@ -42,8 +42,8 @@ impl<T: Transport> Link<T> {
         self.identify(address, deadline)
     }
 
-    /// Agrees on `terms` with the finger with this address and identity. The motors stay off. A hold in progress ends.
-    /// Retries until `deadline` (ns on the transport's clock).
+    /// Agrees on `terms` with the finger with this address and identity. This starts no motor. If the finger is in the
+    /// end state *hold*, the hold ends and the motors go off. Retries until `deadline` (ns on the transport's clock).
     ///
     /// Do not call this in the servo's cycle, because it discards Replies of other fingers on the port.
     pub fn agree(
@@ -156,7 +156,7 @@ impl<T: Transport> Link<T> {
 
     /// Sends one Stop, which makes the finger enter its end state. Returns whether the finger confirmed the Stop by
     /// `deadline` (ns on the transport's clock) and within 50 ms. If the Stop was lost, the finger's watchdog makes the
-    /// finger enter its end state a little later. Replies that arrive meanwhile are discarded.
+    /// finger enter its end state a little later. Replies that arrive while this call waits are discarded.
     pub fn stop(&mut self, address: u8, deadline: u64) -> Result<bool, LinkError> {
         let answer = self.exchange(address, Frame::Stop(Stop), deadline)?;
         Ok(matches!(answer, Some(Message { frame: Frame::Stopped(_), .. })))

@@ -1,4 +1,5 @@
-//! Detects that a contact is about to slip: the force at the fingertip leaves the friction cone.
+//! Detects that a contact is about to slip: the force at the fingertip leaves the cone of `events.slip_friction`, which
+//! is narrower than the friction cone.
 //!
 //! Without touch sensors, the normal of a contact is not measured. The detector uses the direction that the force has
 //! when the finger first comes to rest during the contact. This direction is the normal if the finger has pressed
@@ -12,8 +13,8 @@ use crate::model::configuration::ConfiguredEvents;
 use crate::model::{Part, direction};
 use nalgebra::Vector3;
 
-/// Time between two observations of the same contact, s. If the first observation makes the finger press harder, the
-/// finger reaches its new force in this time.
+/// Shortest time between two reported slips of the same contact, s. If a reflex makes the finger press harder at the
+/// first slip, the finger reaches its new force in this time.
 const PAUSE: f64 = 0.05;
 
 /// Detects slip.
@@ -23,7 +24,7 @@ pub(super) struct SlipDetector {
     friction: Option<f64>,
     /// Number of cycles for which a contact must exist before its normal is taken.
     settling: u32,
-    /// Number of cycles between two observations.
+    /// Smallest number of cycles between two reported slips.
     pause: u32,
 }
 
@@ -34,7 +35,7 @@ pub(super) struct SlipState {
     cycles: u32,
     /// Direction of the force of the surroundings on the tip at the first rest, in the finger's frame.
     normal: Option<Vector3<f64>>,
-    /// Number of cycles until the next observation.
+    /// Number of cycles for which no further slip is reported.
     pause: u32,
 }
 
@@ -81,8 +82,8 @@ impl SlipDetector {
 mod tests {
     use super::*;
 
-    /// Returns the number of slips in `cycles` cycles with this force of the surroundings on the tip. A slip gives the
-    /// opposite force, of the tip on its surroundings.
+    /// Returns the number of slips in `cycles` cycles with this force of the surroundings on the tip. Checks that each
+    /// slip is reported with the opposite force, which is the force of the tip on its surroundings.
     fn slips(state: &mut SlipState, force: [f64; 3], settled: bool, cycles: usize) -> usize {
         let events = ConfiguredEvents { slip_friction: Some(0.5), ..ConfiguredEvents::default() };
         let detector = SlipDetector::new(&events, 1000.0);

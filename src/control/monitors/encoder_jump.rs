@@ -15,7 +15,7 @@ const MARGIN: f64 = 1.25;
 const FLICKER: f64 = 4.0;
 
 /// Shortest interval over which a speed is measured, as a fraction of a period. A late cycle is followed immediately by
-/// the next one, and the motor does not turn between them. Over such a short interval, a change of the last bit alone
+/// the next one, and the motor hardly turns between them. Over such a short interval, a change of the last bit alone
 /// would appear as a high speed.
 const SHORTEST: f64 = 0.75;
 

@@ -7,9 +7,9 @@ use crate::model::configuration::ConfiguredFinger;
 use crate::model::{Part, Tendons};
 use nalgebra::Vector4;
 
-/// Smallest tolerated imbalance as a multiple of the configured friction. It matters only if the configured friction is
-/// larger than the thresholds `monitors.stall_torque` and `monitors.stall_fraction` allow for. Otherwise these
-/// thresholds apply, so a low configured friction does not make the monitor more sensitive.
+/// Lower bound of the tolerated imbalance, as a multiple of the configured friction. This bound matters only if it is
+/// above the imbalance that `monitors.stall_torque` and `monitors.stall_fraction` together tolerate. Otherwise these
+/// two keys decide, so a low configured friction does not make the monitor more sensitive.
 const FRICTION: f64 = 1.5;
 
 /// Total time for which the imbalance must exceed the tolerated one, s. In this time a free motor would turn by dozens
@@ -30,7 +30,8 @@ pub(super) struct StalledMotor {
     /// `monitors.stall_fraction`.
     fraction: f64,
     friction: MotorFriction,
-    /// Longest time between two parts of the duration, s: a period of the dither. It is 0 without dither.
+    /// Longest time without an excessive imbalance that does not restart the duration, s: a period of the dither. It is
+    /// 0 without dither.
     longest_gap: f64,
 }
 

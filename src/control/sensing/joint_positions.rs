@@ -6,9 +6,9 @@ use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 
-/// theta is the upper three rows of R^-T (r m - (t - t_home) / k). R is the 4 x 4 matrix of the moment arms with the
-/// ghost row, r are the motor radii, m the motor angles, t the tensions, t_home the tensions at homing, and k the
-/// stiffnesses of the tendons.
+/// theta is the upper three rows of R^-T (r m - (t - t_home) / k). R is the 4 x 4 matrix of the moment arms. Its fourth
+/// row, the ghost row, is for a joint that does not exist, and makes R invertible (see [`Tendons`]). r are the motor
+/// radii, m the motor angles, t the tensions, t_home the tensions at homing, and k the stiffnesses of the tendons.
 ///
 /// Without the second term this is eq. 27. The encoders are on the motors and do not measure the stretch of the
 /// tendons. Without the correction the fingertip would be 28 % too soft at 3 N/cm.

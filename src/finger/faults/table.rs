@@ -145,11 +145,14 @@ faults! {
         "Add the user to the group (usually dialout) and log in again", [];
     30 PortUnusable "PORT_UNUSABLE" Refusal Finger Nothing "port unusable",
         "the port cannot be used as configured",
-        "finger.port is not a serial port, the port cannot run at finger.baud, or a system limit has been reached",
-        "Follow the text of the refused call", [];
+        "finger.port is not a serial port, the port cannot run at finger.baud, its adapter or driver has failed, or a \
+         system limit has been reached",
+        "Set finger.port to a serial port and finger.baud to a rate that it supports; check the adapter and its driver \
+         (dmesg); or raise the system limit that the text of the refused call names", [];
     31 BoardSilent "BOARD_SILENT" Refusal Finger Time "board silent",
         "no byte came from the board",
-        "the board is off, the cable is unplugged, transmit and receive are crossed, or another device is at the port",
+        "the board is off, the cable is unplugged, the transmit output of one side is not connected to the receive \
+         input of the other, or another device is at the port",
         "Check the power, the cable and finger.port", [];
     32 Unintelligible "UNINTELLIGIBLE" Refusal Finger Nothing "no protocol",
         "bytes came, but no frame of the board protocol",
@@ -168,9 +171,9 @@ faults! {
         "ports are swapped, or finger.address is wrong",
         "Check finger.port and finger.address", [];
     36 UnsuitableBoard "UNSUITABLE_BOARD" Refusal Finger Nothing "wrong board",
-        "the board does not support the configuration, or confirms a different one",
-        "the configuration was made for another board",
-        "Connect the right board, or change the setting that the text of the refused call names", [];
+        "the board does not support the configuration, or confirms other values than those that were sent to it",
+        "the configuration was made for another board, or the firmware of the board is faulty",
+        "Connect the right board, change the setting that the refused call's text names, or update the firmware", [];
     37 IdentityChanged "IDENTITY_CHANGED" Fault Finger Nothing "identity changed",
         "the board at the port is not the one that was there when the hand was opened",
         "boards or cables were exchanged while the hand was open",
@@ -195,16 +198,16 @@ faults! {
         "Close the hand and open it again, and please report the defect", [Close, Open];
     42 CurrentLimit "CURRENT_LIMIT" Warning Finger Nothing "current limit",
         "the board clips torques to its own limits",
-        "the limits of the board are lower than finger.motor.torque_limit",
-        "Lower finger.motor.torque_limit", [];
+        "finger.motor.torque_limit needs more current than the board permits, or finger.motor.torque_constant is wrong",
+        "Correct finger.motor.torque_constant, or lower finger.motor.torque_limit", [];
     43 TorqueNotAdmitted "TORQUE_NOT_ADMITTED" Warning Finger Share "torque not admitted",
         "the tension limits permit only a part of the desired joint torque; the value is this part",
         "the set point is far away, or the stiffness or the load is more than the tendons can carry",
         "Send set points that are nearer, or a softer Kx", [];
     44 CalibrationFailed "CALIBRATION_FAILED" Warning Finger Nothing "calibration failed",
         "the last calibration failed; the finger is limp, and its previous calibration is in force",
-        "the cause that the error text of the calibration call names",
-        "Follow the remedy in that error text, then calibrate again", [];
+        "a tendon is slack, a gauge or encoder is dead, a joint is blocked or meets no stop, or the finger was moved",
+        "Check the part that the calibration call's text names, let nothing push the finger, and calibrate again", [];
     45 WarmMotor "WARM_MOTOR" Warning Motor Share "warm motor",
         "a motor is near its thermal limit, and its torque is being limited",
         "the finger presses or holds more than the motor can carry continuously",
@@ -245,12 +248,13 @@ faults! {
     53 HardwareFailed "HARDWARE_FAILED" Refusal Finger Errno "hardware failed",
         "the hardware that the program provides for this finger does not start or stop",
         "the program's own function \"start\" or \"stop\" for this hardware has returned this errno",
-        "Follow the documentation of the program or of its hardware", [];
+        "Check the power and the cables of the hardware, end other programs that use it, and look up the errno in the \
+         documentation of the program or of its hardware", [];
     54 WrongWiring "WRONG_WIRING" Refusal Finger Nothing "wrong wiring",
         "the self-test at open has found a part that is wired wrongly or dead; the error names it",
         "motors, encoders, gauges or tendons are swapped, a motor or sensor is connected backwards or not at all, or \
          the scale of a gauge has changed",
-        "Follow the remedy in the error, then open the hand again", [Open];
+        "Correct the cable, the tendon, the sign or the scale that the error names, then open the hand again", [Open];
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The checks of joints, stiffnesses, contacts and damping.
+//! The checks of joints, stiffnesses, contacts, damping, joint springs and joint torques.
 
 use super::*;
 use crate::control::Controller;
@@ -244,7 +244,7 @@ fn joint_springs_are_admitted_up_to_the_bound_and_torques_up_to_the_tensions() {
     assert!(refuse.k_theta(diagonal(96.0, 96.0, 96.0)).is_ok());
     assert!(matches!(refuse.k_theta(diagonal(0.0, 1e300, 0.0)), Err(SetPointError::TooStiffJoints { .. })));
     for stiff in [96.1, 1e6] {
-        let error = refuse.k_theta(diagonal(0.0, stiff, 0.0)).expect_err("stiff");
+        let error = refuse.k_theta(diagonal(0.0, stiff, 0.0)).expect_err("too stiff, but admitted");
         assert!(matches!(error, SetPointError::TooStiffJoints { bound: 96.0, .. }), "{error}");
         let clamped = clamp.k_theta(diagonal(50.0, stiff, 0.0)).expect("clamped");
         assert!((clamped - Matrix3::from_diagonal(&Vector3::new(50.0, 96.0, 0.0))).amax() < 1e-6, "{clamped}");
@@ -252,7 +252,7 @@ fn joint_springs_are_admitted_up_to_the_bound_and_torques_up_to_the_tensions() {
     assert!(matches!(refuse.k_theta(diagonal(1.0, -0.1, 0.0)), Err(SetPointError::JointStiffness { .. })));
     assert!(matches!(refuse.k_theta(diagonal(f64::NAN, 0.0, 0.0)), Err(SetPointError::NotFinite { .. })));
 
-    let error = refuse.torque([0.0, 1e6, 0.0]).expect_err("much");
+    let error = refuse.torque([0.0, 1e6, 0.0]).expect_err("too much torque, but admitted");
     let SetPointError::TooMuchTorque { least, most, .. } = error else { panic!("{error}") };
     for joint in 0..3 {
         for limit in [least[joint], most[joint]] {

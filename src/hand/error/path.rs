@@ -11,19 +11,20 @@ pub enum PathError {
     /// The path has no pose, or too many.
     #[error("the path has {count} poses: send 1 to {most} poses, and further ones as another path")]
     Count {
-        /// Number of poses.
-        count: usize,
+        /// Number of poses. A C program can pass a negative number.
+        count: i64,
         /// The largest number of poses.
         most: usize,
     },
     /// The time for which a set point is valid is not usable.
     #[error("a set point cannot be valid for {0} s: send 0 for the configured time, or up to 3600")]
     Valid(f64),
-    /// A time is NaN, above the longest permitted time, or less than 1 ms later than the one before.
+    /// A time is NaN, above the longest permitted time, or less than 1 ms later than the time before it, which is 0 for
+    /// the first pose.
     #[error(
-        "the time of pose {pose} of the path of finger {finger} is {time} s, and the time before it is {before} s: \
-         times count from the beginning of the path. Each must be at least {least} s later than the one before, and no \
-         time may exceed {most} s"
+        "the time of pose {pose} of the path of finger {finger} is {time} s after the beginning of the path: send a \
+         time that is at least {least} s later than {before} s, {}, and at most {most} s",
+        if *pose == 0 { "the beginning of the path" } else { "the time of the pose before it" }
     )]
     Time {
         /// The finger.
@@ -32,7 +33,7 @@ pub enum PathError {
         pose: usize,
         /// Its time, s.
         time: f64,
-        /// The time of the pose before, or 0, s.
+        /// The time of the pose before it, or 0 for the first pose, s.
         before: f64,
         /// Smallest distance of two times, s.
         least: f64,
@@ -119,8 +120,12 @@ pub enum PathError {
         /// The largest number of pieces of a path.
         pieces: usize,
     },
-    /// A fault, a calibration, an expiry or a reflex has replaced the finger's set point while the path was computed.
-    #[error("finger {0} has left its pose while the path was computed, and holds another one: send the path again")]
+    /// While the path was computed, the finger was recovered or calibrated, its set point expired, a reflex reacted, or
+    /// the inhibition after a reaction ended.
+    #[error(
+        "the path of finger {0} was not sent, because while it was computed, the finger was recovered or calibrated, \
+         its set point expired, a reflex reacted, or the inhibition after a reaction ended: send the path again"
+    )]
     Moved(FingerNumber),
 }
 

@@ -155,7 +155,7 @@ pub enum SetPointError {
     )]
     NoSuchContact(i32),
     /// The number of commands of a group is not possible.
-    #[error("a group has 0 to 3 commands, and not {0}")]
+    #[error("a group has 0 to 3 commands, and not {0}: send at most one command for each finger")]
     GroupSize(i32),
     /// The condition to wait for does not exist.
     #[error("there is no condition {0} to wait for: pass SUN2XP_WAIT_ARRIVED or SUN2XP_WAIT_SETTLED")]

@@ -133,7 +133,8 @@ impl Admission {
     /// Computes and checks a path that continues the motion of `reference`.
     fn direct_path(&self, reference: &Reference, poses: &[PathPose]) -> Result<Plan, PathError> {
         if !(1..=MOST_POSES).contains(&poses.len()) {
-            return Err(PathError::Count { count: poses.len(), most: MOST_POSES });
+            let count = i64::try_from(poses.len()).unwrap_or(i64::MAX);
+            return Err(PathError::Count { count, most: MOST_POSES });
         }
         let times = self.times(poses)?;
         self.check_kinds(poses)?;

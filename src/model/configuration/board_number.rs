@@ -1,10 +1,11 @@
-//! The unique number of a finger on its board, by which a configuration names a board without its port.
+//! The unique number of a finger, which differs for every finger of every board. A configuration can give it instead of
+//! a port: the hand then opens the port at which a board reports this number.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// The unique number in a board's Identity. The text has two hexadecimal digits for each byte; spaces, colons and
+/// The unique number in the Identity of a finger. The text has two hexadecimal digits for each byte; spaces, colons and
 /// hyphens between them are permitted.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(try_from = "String", into = "String")]

@@ -1,7 +1,9 @@
 //! The spline through timed places. It is continuous up to its fourth derivative between its ends, and ends at rest.
 //!
-//! A spline of degree 5 through given places has the smallest mean square jerk. The first piece also begins with a
-//! given jerk, and the last one ends without jerk, so they have a degree of 6, and a single piece has degree 7.
+//! Its pieces have degree 5, except at its ends. Of all curves through given places, with given rates and accelerations
+//! at both ends, the one with the smallest mean square jerk consists of such pieces. The spline here also begins with a
+//! given jerk, and ends without jerk. So its first and its last piece have degree 6, a single piece has degree 7, and
+//! its mean square jerk is larger.
 
 use crate::model::path::hermite::{AtKnot, coefficients};
 use crate::model::path::piece::Piece;
@@ -90,7 +92,10 @@ fn motions_at_inner_knots(start: &Start, knots: &[Knot]) -> Vec<AtKnot> {
             near -= arriving.far * factor;
             constant -= arriving.far * offset;
         }
-        // The matrix is invertible, because the spline with the smallest jerk is unique.
+        // The matrix is invertible: with the rows (-snap, jerk), the matrix of the whole system has a positive definite
+        // symmetric part. Each piece of degree 5 adds to it the second derivative of half the integral of its squared
+        // jerk, which is symmetric and not negative. The first and the last piece, of degree 6, add matrices with
+        // positive definite symmetric parts.
         let inverse = near.try_inverse().unwrap_or_else(Matrix2::zeros);
         offsets.push(inverse * constant);
         factors.push(inverse * -leaving.far);

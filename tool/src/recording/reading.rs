@@ -4,7 +4,7 @@ use super::altered::{or_by, unusable};
 use super::black_box;
 use super::channels::{DESCRIPTION, EVENTS, FORMAT, LOST, OBJECT, POSTCARD, STATUS, VERSION};
 use super::entry::{Entry, Item};
-use crate::failure::Failure;
+use crate::failure::{Failure, unreadable};
 use mcap::records::{Record, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use serde::Deserialize;
@@ -65,13 +65,13 @@ impl Recording {
     /// # Errors
     /// Returns an error if the file cannot be read, or if it is neither a recording nor a black box.
     pub fn open(path: &Path) -> Result<Self, Failure> {
-        let unreadable = |error| format!("cannot read {}: {error}", ShownPath(path));
-        if black_box::is_one(path).map_err(unreadable)? {
+        let failed = |error: io::Error| unreadable(path, &error);
+        if black_box::is_one(path).map_err(failed)? {
             let (description, entries) = black_box::read(path)?;
             return Ok(Self::new(path, Source::BlackBox(entries.into_iter()), description));
         }
-        let file = open_regular_file(path, u64::MAX).map_err(unreadable)?.into_inner();
-        let bytes = (file.metadata().map_err(unreadable)?.len(), 0);
+        let file = open_regular_file(path, u64::MAX).map_err(failed)?.into_inner();
+        let bytes = (file.metadata().map_err(failed)?.len(), 0);
         let options =
             LinearReaderOptions::default().with_prevalidate_chunk_crcs(true).with_record_length_limit(LARGEST_RECORD);
         let reader = LinearReader::new_with_options(options);
@@ -85,8 +85,8 @@ impl Recording {
         };
         loop {
             let next = mcap.next().map_err(|error| match error.downcast_ref::<io::Error>() {
-                Some(error) => format!("cannot read {}: {error}", ShownPath(path)),
-                None => foreign(&error.to_string()),
+                Some(error) => unreadable(path, error),
+                None => foreign(&error.to_string()).into(),
             });
             match next? {
                 Some(Found::Format { version, .. }) if version == VERSION => {}
@@ -170,7 +170,7 @@ impl Iterator for Recording {
                 }
                 Err(error) => {
                     self.ended = true;
-                    return Some(Err(unreadable(&self.path, &self.description.library, &error)));
+                    return Some(Err(interrupted(&self.path, &self.description.library, &error)));
                 }
             }
         }
@@ -178,11 +178,10 @@ impl Iterator for Recording {
 }
 
 /// The failure of a file that cannot be read further.
-fn unreadable(path: &Path, library: &str, error: &Failure) -> Failure {
-    let path = ShownPath(path);
+fn interrupted(path: &Path, library: &str, error: &Failure) -> Failure {
     match error.downcast_ref::<io::Error>() {
-        Some(error) => format!("cannot read {path}: {error}").into(),
-        None => format!("{path}: {error}. {ALTERED}{}", or_by(library)).into(),
+        Some(error) => unreadable(path, error),
+        None => format!("{}: {error}. {ALTERED}{}", ShownPath(path), or_by(library)).into(),
     }
 }
 

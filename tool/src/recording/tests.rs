@@ -231,5 +231,5 @@ fn other_files_are_refused_with_a_reason() {
         assert!(error.contains(words), "{content:?}: {error}");
     }
     let error = Recording::open(&folder.path().join("missing")).err().expect("refused").to_string();
-    assert!(error.starts_with("cannot read"), "{error}");
+    assert!(error.starts_with("cannot read") && error.ends_with(". Name an existing file"), "{error}");
 }

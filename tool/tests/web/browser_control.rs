@@ -154,7 +154,7 @@ fn press(browser: &Browser, button: &str, prepared: &str, answer: &str) -> Strin
 fn a_button_whose_push_was_refused_does_not_stay_pressed() {
     let Some((_alone, _program, _folder, browser)) = page() else { return };
     let refused = "const message = document.querySelector('#control .message');
-        return message.className === 'message refused' && message.textContent.includes('use a smaller force')";
+        return message.className === 'message refused' && message.textContent.includes('components are smaller')";
     let strong = "const force = document.querySelector('#control input[aria-label^=\"force of the push\"]');
         if (!force || document.getElementById('link').dataset.state !== 'live') return false;
         force.max = 2000;

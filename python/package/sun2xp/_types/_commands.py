@@ -36,7 +36,7 @@ class Limits:
     tension: Tuple[float, float]
     #: Largest torques of motors 1 to 4, N cm: shape (4,).
     motor_torque: Array
-    #: Largest eigenvalue of Kx, N/cm.
+    #: Largest eigenvalue of Kx that the finger admits, N/cm.
     stiffness: float
     #: Largest joint speed on a path, rad/s.
     speed: float

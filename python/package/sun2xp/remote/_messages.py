@@ -1,6 +1,6 @@
 """The messages of docs/remote-protocol.md, as bytes and as objects. This module does no input or output.
 
-Each function read_... returns None if the bytes are not a whole message of its type and of version 1.
+Each function read_... returns None for bytes that are not one whole and valid message of its type, of version 1.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ class Target:
 
 @dataclasses.dataclass
 class State:
-    """The cycles since the State before."""
+    """The cycles since the State before. A finger that has stopped has one record, with its newest cycle."""
 
     missing: int
     number: int
@@ -138,7 +138,7 @@ class FingerRecord:
     corrupt: int
     #: Smallest (row 0) and largest (row 1) joint angles, rad.
     limits: Array
-    #: Largest eigenvalue of Kx, N/cm.
+    #: Largest eigenvalue of Kx that the finger admits, N/cm.
     stiffness: float
     calibration: float
     text: str
@@ -164,8 +164,8 @@ class StatusMessage:
 @dataclasses.dataclass
 class Answer:
     """The answer to a Request, or the reason why a Target was refused. For a refused Target, `number` is its sequence
-    number. For acquire, it is the public number of the new epoch; `epoch` is the epoch itself, a random number that
-    only its owner knows."""
+    number. For an acquire with code 0, it is the public number of the new epoch, and `epoch` is the epoch itself: a
+    random number that only its owner and the server know."""
 
     code: int
     catch_ms: int

@@ -164,7 +164,7 @@ fn paths_are_checked() {
     let pose = |time, angle| PathPose { time, joints: [angle; 3] };
     let cases = [
         (vec![], RemoteErrorKind::Argument, "the path has 0 poses: send 1 to 32 poses"),
-        (vec![pose(0.0, 0.5)], RemoteErrorKind::Argument, "the time of pose 0 of the path of finger 1 is 0 s"),
+        (vec![pose(0.0, 0.5)], RemoteErrorKind::Argument, "the time of pose 0 of the path of finger 1 is 0 s after"),
         (vec![pose(1.0, 0.5), pose(1.0, 0.5)], RemoteErrorKind::Argument, "the time of pose 1"),
         (vec![pose(f64::NAN, 0.5)], RemoteErrorKind::Argument, "the time of pose 0"),
         (vec![pose(3601.0, 0.5)], RemoteErrorKind::Argument, "the time of pose 0"),

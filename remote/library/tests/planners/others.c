@@ -19,7 +19,7 @@ static void is_refused(const char *name, int result)
     if (result == -SUN2XP_ERROR_NOT_SUPPORTED && code == ENOTSUP && strcmp(error.call, name) == 0 &&
         strstr(error.text, "on another machine"))
         return;
-    printf("%s: %d %d %s\n", name, result, code, error.text);
+    printf("%s: returned %d, errno %d, %s\n", name, result, code, error.text);
     other++;
 }
 

@@ -115,7 +115,7 @@ fn refusals_have_the_text_of_the_hand_and_change_nothing() {
         (Command::MoveTip { finger: 1, by: [0.0, 0.0, 20.0] }, "the tip of finger 1 cannot be at"),
         (Command::ScaleStiffness { finger: 1, factor: 100.0 }, "above the bound"),
         (Command::Joints { finger: 1, joints: [f64::NAN, 0.0, 0.0] }, "finite"),
-        (Command::Push { finger: 1, force: [0.0, 2000.0, 0.0] }, "use a smaller force"),
+        (Command::Push { finger: 1, force: [0.0, 2000.0, 0.0] }, "use a force whose components are smaller"),
         (Command::Joints { finger: 4, joints: before }, "there is no finger 4"),
     ] {
         let refusal = refused(execute(command));
