@@ -110,11 +110,14 @@ fn print(arguments: &Arguments, measured: &[[WakeUp; 3]], attempts: &Attempts) {
         let [median, p999] = [0, 1].map(|which| middle(measured.iter().map(|turn| turn[side][which])));
         println!("| {name} | {median:.1} us | {p999:.1} us |");
     }
-    let [alone, elsewhere] = [0, 1].map(|side| middle(measured.iter().map(|turn| turn[2][1] / turn[side][1])));
-    println!(
-        "\n{attempts}. The median ratio of neighbouring turns, 99.9 %, with the clients is {alone:.2} of the server"
-    );
-    println!("alone (goal: at most {GOAL}), and {elsewhere:.2} of the same clients at another server");
+    println!("\n{attempts}.");
+    if !measured.is_empty() {
+        let [alone, elsewhere] = [0, 1].map(|side| middle(measured.iter().map(|turn| turn[2][1] / turn[side][1])));
+        println!(
+            "Median ratio of neighbouring turns, 99.9 %, with the clients: {alone:.2} of the server alone (goal: at"
+        );
+        println!("most {GOAL}), {elsewhere:.2} of the same clients at another server");
+    }
 }
 
 fn middle(values: impl Iterator<Item = f64>) -> f64 {
