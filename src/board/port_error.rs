@@ -1,7 +1,7 @@
 //! The errors of a serial port.
 
 use crate::model::ShownPath;
-use crate::realtime::{remedy, with_remedy};
+use crate::realtime::remedy;
 use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -57,7 +57,7 @@ pub enum PortError {
     #[error(
         "cannot set up {}: {}. Check finger.port and finger.baud, and the adapter's driver (dmesg)",
         ShownPath(path),
-        setting_up(source)
+        with_remedy_at_port(source)
     )]
     SetUp {
         /// The port.
@@ -103,7 +103,7 @@ impl PortError {
             PortError::Opening { source, .. }
             | PortError::SetUp { source, .. }
             | PortError::Hardware { source, .. }
-            | PortError::Failed(source) => format!("{source}: check the adapter"),
+            | PortError::Failed(source) => format!("{source}: {}", short_remedy(source)),
             PortError::Vanished | PortError::Closed => "disappeared: check the cable".into(),
         }
     }
@@ -159,27 +159,39 @@ fn opening(source: &io::Error) -> String {
             format!("{source}: no device belongs to it. Check the cable, the adapter's driver (dmesg) and finger.port")
         }
         Some(libc::EIO) => format!("{source}: the adapter does not respond. Unplug and replug it"),
-        _ => with_remedy(source),
+        _ => with_remedy_at_port(source),
     }
 }
 
-fn setting_up(source: &io::Error) -> String {
-    match remedy_at_open_port(source) {
+fn with_remedy_at_port(source: &io::Error) -> String {
+    match remedy_at_port(source) {
         Some(remedy) => format!("{source}: {remedy}"),
         None => source.to_string(),
     }
 }
 
 fn failing(source: &io::Error) -> String {
-    match remedy_at_open_port(source) {
+    match remedy_at_port(source) {
         Some(remedy) => format!("{source}: {remedy}"),
         None => format!("{source}. Unplug and replug the adapter"),
     }
 }
 
-/// [`remedy`] takes EAGAIN for a limit of threads. A call at an open port starts no thread.
-fn remedy_at_open_port(source: &io::Error) -> Option<&'static str> {
-    if source.raw_os_error() == Some(libc::EAGAIN) { None } else { remedy(source) }
+/// [`remedy`] takes EAGAIN for a limit of threads, and ENOSPC for a limit of pseudo-terminals. A call at a port creates
+/// neither.
+fn remedy_at_port(source: &io::Error) -> Option<&'static str> {
+    if matches!(source.raw_os_error(), Some(libc::EAGAIN | libc::ENOSPC)) { None } else { remedy(source) }
+}
+
+/// The remedy in few words.
+fn short_remedy(source: &io::Error) -> &'static str {
+    match source.raw_os_error() {
+        Some(libc::EMFILE) => "close files of this process",
+        Some(libc::ENFILE) => "end other programs",
+        Some(libc::ENOMEM) => "free memory",
+        Some(libc::EPERM | libc::ENOSYS) => "permit it in the sandbox",
+        _ => "check the adapter",
+    }
 }
 
 #[cfg(test)]
@@ -217,19 +229,30 @@ mod tests {
         }
     }
 
-    /// The limits of threads belong to the calls that start one.
+    /// The limits of threads belong to the calls that start one, and those of pseudo-terminals to the calls that open
+    /// one.
     #[test]
-    fn no_port_is_explained_by_a_limit_of_threads() {
-        let refused = || io::Error::from_raw_os_error(libc::EAGAIN);
+    fn no_port_is_explained_by_a_limit_of_threads_or_of_pseudo_terminals() {
         let path = PathBuf::from("/dev/port");
-        for error in [
-            PortError::at_opening(&path, refused()),
-            PortError::SetUp { path: path.clone(), source: refused() },
-            PortError::from(refused()),
-        ] {
-            let text = error.to_string();
-            assert!(!text.contains("thread") && !text.contains("ulimit"), "{text}");
-            assert_eq!(error.errno(), libc::EAGAIN, "{text}");
+        for errno in [libc::EAGAIN, libc::ENOSPC] {
+            let refused = || io::Error::from_raw_os_error(errno);
+            for error in [
+                PortError::at_opening(&path, refused()),
+                PortError::SetUp { path: path.clone(), source: refused() },
+                PortError::from(refused()),
+            ] {
+                let text = error.to_string();
+                assert!(!["thread", "ulimit", "pseudo-terminal"].iter().any(|word| text.contains(word)), "{text}");
+                assert_eq!(error.errno(), errno, "{text}");
+            }
         }
+    }
+
+    #[test]
+    fn a_limit_of_the_process_is_not_answered_by_checking_the_adapter() {
+        let short =
+            |errno| PortError::at_opening(Path::new("/dev/port"), io::Error::from_raw_os_error(errno)).in_short();
+        assert!(short(libc::EMFILE).ends_with(": close files of this process"), "{}", short(libc::EMFILE));
+        assert!(short(libc::EPROTO).ends_with(": check the adapter"), "{}", short(libc::EPROTO));
     }
 }

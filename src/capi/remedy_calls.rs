@@ -41,8 +41,7 @@ impl Display for Appendix<'_> {
     }
 }
 
-const ACTIONS: [Action; 6] =
-    [Action::Open, Action::Close, Action::Recover, Action::Zero, Action::Stop, Action::QueryStatus];
+const ACTIONS: [Action; 5] = [Action::Open, Action::Close, Action::Recover, Action::Zero, Action::QueryStatus];
 
 fn call(action: Action, interface: Interface) -> &'static str {
     match (action, interface) {
@@ -52,7 +51,6 @@ fn call(action: Action, interface: Interface) -> &'static str {
         (Action::Close, Interface::Handles) => "sun2xp_close",
         (Action::Recover, _) => "sun2xp_recover",
         (Action::Zero, _) => "sun2xp_zero",
-        (Action::Stop, _) => "sun2xp_stop",
         (Action::QueryStatus, _) => "sun2xp_status",
     }
 }

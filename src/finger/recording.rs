@@ -72,7 +72,7 @@ struct Header {
 #[non_exhaustive]
 pub enum RecordingError {
     /// The file cannot be read, it is not a regular file of an acceptable size, or a line is too long.
-    #[error("cannot read {0}: {1}")]
+    #[error("cannot read {0}: {1}. Name a readable file that a hand has written as its black box")]
     Unreadable(String, io::Error),
     /// The file is not a black box.
     #[error("{0} is not a black box of sun2xp: {1}. Use a file that a hand has written as its black box")]

@@ -53,14 +53,15 @@ fn every_file_that_is_read_is_a_regular_file_of_a_sensible_size() {
         (text("large"), "it is larger than"),
     ] {
         let costs = text("costs");
-        for (arguments, configuration) in [
-            (vec!["schedule", "--costs", &costs], Some(Path::new(&unsuitable))),
-            (vec!["schedule", "--costs", &costs, "--config", &unsuitable], None),
-            (vec!["schedule", "--costs", &unsuitable], Some(&*path("good"))),
-            (vec!["replay", &unsuitable], None),
+        for (arguments, configuration, remedy) in [
+            (vec!["schedule", "--costs", &costs], Some(Path::new(&unsuitable)), "It must be a text file"),
+            (vec!["schedule", "--costs", &costs, "--config", &unsuitable], None, "It must be a text file"),
+            (vec!["schedule", "--costs", &unsuitable], Some(&*path("good")), "Name a readable file with --costs"),
+            (vec!["replay", &unsuitable], None, "Name a readable file that a hand has written"),
         ] {
             let said = refusal(&arguments, configuration);
-            assert!(said.contains(reason) && said.contains(&unsuitable), "{arguments:?}: {said}");
+            let expected = [reason, &unsuitable, remedy];
+            assert!(expected.iter().all(|&part| said.contains(part)), "{arguments:?}: {said}");
         }
     }
 }

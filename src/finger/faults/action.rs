@@ -12,8 +12,6 @@ pub enum Action {
     Recover,
     /// Zero the sensors of a finger.
     Zero,
-    /// Stop every finger.
-    Stop,
     /// Query the status of a finger.
     QueryStatus,
 }
