@@ -19,7 +19,8 @@
 /* The watchdog of the simulated drives has a long time limit, because a busy machine may delay the drives. */
 #define CONFIGURATION "[hand]\nend_state = \"release\"\nwatchdog_ms = 200\n"
 
-/* Longest wait for the simulated drives in an exchange, s. With real drives, wait until the deadline in the command. */
+/* Longest wait for the simulated drives in an exchange, s. With real drives, stop waiting before the deadline of the
+   command. */
 #define PATIENCE 0.08
 
 /* Largest sum of the differences between the joint angles of a finger at rest and its target, rad. */

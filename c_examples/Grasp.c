@@ -5,8 +5,9 @@
    that the ball is about to slip when they lift it. Reflexes then tighten the grasp: each finger presses harder when
    its contact or that of another finger is about to slip. A call that moves the anchors removes the force that the
    reflexes have added, and the reflexes must add it again. The exit status is 0 if the grasp tightens, and if the ball
-   is lifted, does not creep while it is held, and is back on the table at the end. The program works with a simulated
-   hand only, because sun2xp_object reads the pose of a simulated ball. It is C99 with functions of POSIX. */
+   is lifted, does not creep while it is held, and is back on the table at the end. Otherwise the program says on
+   standard error which of these conditions is not met. The program works with a simulated hand only, because
+   sun2xp_object reads the pose of a simulated ball. It is C99 with functions of POSIX. */
 
 #include <math.h>
 #include <stdio.h>
@@ -164,12 +165,21 @@ static double hold(double seconds)
     return sqrt(pow(After[0] - Before[0], 2) + pow(After[1] - Before[1], 2) + pow(After[2] - Before[2], 2));
 }
 
+/* Returns whether a condition is met. If it is not, says so. */
+static int expect(int met, const char *condition)
+{
+    if (!met)
+        fprintf(stderr, "Grasp: this condition is not met: %s\n", condition);
+    return met;
+}
+
 int main(void)
 {
     double grasped, tightened, lifted, crept, back;
+    int success;
 
     check(sun2xp_open(NULL, &hand));
-    show("opened");
+    show("started");
     anchor(0.0, RADIUS + CLEAR);
     pass(1.0);
     show("open");
@@ -186,5 +196,9 @@ int main(void)
     show("released");
     back = fabs(object().position[2] - Start[2]);
     sun2xp_close(hand);
-    return tightened > 1.05 * grasped && lifted > LIFT - 0.3 && crept < 0.01 && back < 0.1 ? 0 : 1;
+    success = expect(tightened > 1.05 * grasped, "the grasp tightens by more than 5 %");
+    success &= expect(lifted > LIFT - 0.3, "the ball is lifted to less than 0.3 cm below its height LIFT");
+    success &= expect(crept < 0.01, "the ball moves by less than 0.01 cm while it is held");
+    success &= expect(back < 0.1, "the ball is less than 0.1 cm from the table at the end");
+    return success ? 0 : 1;
 }

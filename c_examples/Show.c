@@ -126,7 +126,8 @@ static struct Grip circle(struct Grip At, double seconds)
 
 int main(int argc, char **argv)
 {
-    const double seconds = argc > 1 ? atof(argv[1]) : 10.0;
+    char *rest = NULL;
+    const double seconds = argc > 1 ? strtod(argv[1], &rest) : 10.0;
     const struct Grip Open = {0.0, 0.0, 0.0, RADIUS + CLEAR, SOFT};
     const struct Grip Closed = {0.0, 0.0, 0.0, RADIUS - SQUEEZE, SOFT};
     const struct Grip Lifted = {0.0, 0.0, LIFT, RADIUS - SQUEEZE, SOFT};
@@ -134,6 +135,10 @@ int main(int argc, char **argv)
     struct Grip At;
     double off;
 
+    if (argc > 1 && *rest != '\0') {
+        fprintf(stderr, "Show: %s is not a time in s: give a number, for example 10\n", argv[1]);
+        return 1;
+    }
     check(sun2xp_open(NULL, &hand));
     printf("The hand is open. It moves the ball for %g s. To watch it, run sun2xp monitor or sun2xp monitor --web.\n",
            seconds);
@@ -145,7 +150,7 @@ int main(int argc, char **argv)
     Ball = object();
     off = hypot(Ball.position[0] - Start[0] - At.X, Ball.position[1] - Start[1] - At.Y);
     off = hypot(off, Ball.position[2] - Start[2] + At.Up);
-    printf("the ball is %.2f cm from where the fingers carry it\n", off);
+    printf("the ball is %.2f cm from where the fingers carry it (the limit is 0.5 cm)\n", off);
     At = glide(At, Closed, 1.5);
     glide(At, Open, 1.0);
     check(sun2xp_close(hand));

@@ -1,4 +1,5 @@
-//! The bound of Kx: the search finds it, the search can fail, and the default is correct for every controller and rate.
+//! The bound of Kx: the search finds it, and detects controllers and plants that are unstable. The default bound is
+//! correct for every controller and rate.
 
 use nalgebra::{Matrix3, Vector3};
 use rand_pcg::Pcg64;
@@ -22,7 +23,7 @@ fn nominal(finger: &ConfiguredFinger, rate: f64) -> StiffnessBound {
 }
 
 #[test]
-fn the_default_finger_carries_its_documented_stiffness() {
+fn the_default_finger_supports_its_documented_stiffness() {
     for scheme in SCHEMES {
         for (rate, least) in [(500.0, 5.0), (1000.0, 6.0)] {
             let found = nominal(&finger(scheme), rate);
@@ -32,7 +33,8 @@ fn the_default_finger_carries_its_documented_stiffness() {
     }
 }
 
-/// Rates from 500 to 5000 Hz. Most do not divide 10 kHz and are far from the rates for which gains were determined.
+/// Number of rates, which are from 500 to 5000 Hz. Most do not divide 10 kHz, the rate of the plant's steps, and are
+/// far from the rates for which gains were determined.
 const RATES: usize = 40;
 
 /// Number of random poses at each rate. The pose that supports the least stiffness is tested in addition. The tips are
@@ -104,7 +106,7 @@ fn the_map_is_that_of_the_requested_rate() {
 }
 
 #[test]
-fn a_loop_with_too_much_gain_or_no_damper_is_detected() {
+fn a_loop_with_too_little_damping_or_no_damper_is_detected() {
     let whole = nominal(&finger(Scheme::Figure10), 1000.0).stiffness;
     let mut less_damped = finger(Scheme::Figure10);
     less_damped.controller.rate_time = Some(0.002);
@@ -117,7 +119,8 @@ fn a_loop_with_too_much_gain_or_no_damper_is_detected() {
     assert!(!nominal(&undamped, 1000.0).uncovered.is_empty());
 }
 
-/// Fingers of another build: masses, motors, tendons and lengths are those of the default finger times these factors.
+/// Fingers of another build. Their masses, motor inertias, tendon stiffnesses and lengths are those of the default
+/// finger times the factors below.
 fn other_fingers(scheme: Scheme) -> Vec<(&'static str, ConfiguredFinger)> {
     let scaled = |masses: f64, inertia: f64, tendons: f64, lengths: f64| {
         let mut finger = finger(scheme);
@@ -130,8 +133,8 @@ fn other_fingers(scheme: Scheme) -> Vec<(&'static str, ConfiguredFinger)> {
     vec![
         ("half the masses", scaled(0.5, 1.0, 1.0, 1.0)),
         ("twice the masses", scaled(2.0, 1.0, 1.0, 1.0)),
-        ("half the motors", scaled(1.0, 0.5, 1.0, 1.0)),
-        ("twice the motors", scaled(1.0, 2.0, 1.0, 1.0)),
+        ("half the motor inertia", scaled(1.0, 0.5, 1.0, 1.0)),
+        ("twice the motor inertia", scaled(1.0, 2.0, 1.0, 1.0)),
         ("softer tendons", scaled(1.0, 1.0, 0.5, 1.0)),
         ("stiffer tendons", scaled(1.0, 1.0, 1.5, 1.0)),
         ("shorter", scaled(0.7, 1.0, 1.0, 0.7)),
@@ -152,7 +155,7 @@ fn state_feedback_is_made_for_the_finger_that_is_configured() {
 }
 
 #[test]
-fn state_feedback_carries_its_stiffness_against_walls() {
+fn state_feedback_is_stable_at_its_bound_against_walls() {
     let against_walls = Search { samples: 30, walls: true, ..SEARCH };
     let found = against_walls.bound(&finger(Scheme::StateFeedback), 1000.0, &Variant::NOMINAL).unwrap();
     assert!(found.stiffness >= 6.0 && found.uncovered.is_empty(), "{found:?}");
@@ -170,8 +173,8 @@ fn a_plant_of_the_set_is_unstable_although_the_nominal_plant_is_stable() {
 }
 
 /// With these plants and state feedback, a damping of 1 is stable. The least or the most damping that a planner may
-/// request is not stable in some poses, even with the softest spring. A search with a damping of 1 only finds no such
-/// pose.
+/// request is not stable in some poses, even with the softest spring. A search that tries only a damping of 1 finds no
+/// such pose.
 #[test]
 fn the_least_and_the_most_damping_count_too() {
     let few = Search { samples: 24, ..SEARCH };

@@ -81,10 +81,13 @@ fn decay(modes: &[(f64, f64)], count: usize) -> Vec<DVector<f64>> {
 fn a_known_decay_shows_its_slowest_mode() {
     for (modes, slowest) in [
         (&[(0.98, 0.4), (0.7, 1.0), (0.5, 2.0)][..], 0.98),
-        // Two close modes, a real one, one that grows, and one that hardly decays.
+        // Two close modes and a real one.
         (&[(0.96, 0.2), (0.95, 0.5), (0.3, 0.0)], 0.96),
+        // A real mode is the slowest.
         (&[(0.99, 0.0), (0.9, 0.3)], 0.99),
+        // A mode grows.
         (&[(1.01, 0.3), (0.99, 0.1)], 1.01),
+        // A mode hardly decays.
         (&[(0.9999, 0.05), (0.8, 1.0)], 0.9999),
         // Modes that have decayed long before the end.
         (&[(0.5, 0.3), (0.4, 0.0)], 0.5),
@@ -146,7 +149,7 @@ fn a_controller_that_ignores_tendon_stretch_is_detected() {
 
 /// A servo that gives less than the commanded stiffness reports it. This must not count as a stiffness error.
 #[test]
-fn a_pose_that_carries_less_shows_its_scale_and_no_error() {
+fn a_pose_that_supports_less_stiffness_shows_its_scale_and_no_error() {
     let case = case(Scheme::StateFeedback);
     let pose = Vector3::new(0.02, -0.03, 0.76);
     let finger = case.finger(&pose, Friction::None);
@@ -157,7 +160,7 @@ fn a_pose_that_carries_less_shows_its_scale_and_no_error() {
 }
 
 /// A motor constant that is wrong by 20 % is harmless in the conversion of a tension to a torque. It is harmful in
-/// (RM)^-T, where M is geometry: the measured joint angles are then wrong by 20 %, and the tip is displaced.
+/// (RM)^-T, where M is geometry: the measured joint angles are then 25 % too large (1 / 0.8), and the tip is displaced.
 #[test]
 fn a_motor_model_in_the_kinematics_is_detected() {
     let case = case(Scheme::Figure11);
@@ -179,7 +182,8 @@ fn a_motor_model_in_the_kinematics_is_detected() {
     }
 }
 
-/// The report of 1990 prints R with one wrong sign. The printed R has no inverse.
+/// The report of 1990 prints R with one wrong sign. With the printed R, the tendons cannot all pull while the joints
+/// are at rest.
 #[test]
 fn the_printed_r_is_refused_by_every_scheme() {
     let case = case(Scheme::StateFeedback);
@@ -188,7 +192,7 @@ fn the_printed_r_is_refused_by_every_scheme() {
     printed.geometry.r[1][3] = 1.09;
     for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11, Scheme::StateFeedback] {
         printed.controller.scheme = Some(scheme);
-        let refused = Controller::new(&printed, case.rate).expect_err("a singular R");
+        let refused = Controller::new(&printed, case.rate).expect_err("tendons that cannot all pull");
         assert_eq!(refused.key, "geometry.r", "{scheme:?}: {}", refused.reason);
     }
 }
@@ -208,7 +212,7 @@ fn a_controller_without_damping_is_detected() {
     }
 }
 
-/// The eigenvalue must predict the decay of a released finger, measured separately over time.
+/// The eigenvalue must predict how fast a loaded finger comes to rest after a nudge, measured separately over time.
 #[test]
 fn the_largest_eigenvalue_predicts_how_a_finger_comes_to_rest() {
     let case = case(Scheme::Figure10);

@@ -16,6 +16,7 @@ pub struct Finger {
     pub sensors: Sensors,
     controller: Controller,
     state: State,
+    /// Motor torques that act during the next cycle, N cm.
     acting: Vector4<f64>,
 }
 

@@ -56,7 +56,7 @@ impl Delays {
         self.known.sort_unstable_by_key(|delay| delay.periods);
         let count = self.known.len();
         let at = |place: usize| self.known.get(place).map_or("-".into(), |delay| delay.periods.to_string());
-        let undisturbed = || self.known.iter().filter(|delay| pauses.longest(delay.time) < paused);
+        let undisturbed = || self.known.iter().filter(|delay| pauses.total_on_worst_core(delay.time) < paused);
         println!(
             "| {what} | {count} | {:.2} % | {} | {} | {} | {} | {:.2} % |",
             self.share(self.known.iter()),

@@ -171,7 +171,7 @@ impl Pauses {
     }
 
     /// Returns the total length of the pauses between two times, ns, on the core for which this total is largest.
-    pub fn longest(&self, [from, to]: [u64; 2]) -> u64 {
+    pub fn total_on_worst_core(&self, [from, to]: [u64; 2]) -> u64 {
         let overlap = |&(begun, ended): &Pause| ended.min(to).saturating_sub(begun.max(from));
         let total = |core: &Vec<Pause>| {
             let near = &core[core.partition_point(|pause| pause.1 <= from)..];
@@ -208,9 +208,9 @@ pub enum Cause {
     /// most the part of a period that is left after [`REPLY_WINDOW`]. If the thread had kept its core, the cycle would
     /// have met its deadline.
     KeptFromCore,
-    /// The run time of the thread was longer than in [`Cause::KeptFromCore`], but the computation was not the cause.
-    /// Either the cycle would have been late even without the computation, or the computation took at most the fraction
-    /// `COMPUTING` of a period. Write, wait and read took long.
+    /// The run time of the thread was above the limit of [`Cause::KeptFromCore`], but the computation was not the
+    /// cause. Either the cycle would have been late even without the computation, or the computation took at most the
+    /// fraction `COMPUTING` of a period. The system calls that write, poll and read used too much run time.
     Exchange,
     /// None of the above: the computation of the library itself.
     Library,

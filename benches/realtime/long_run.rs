@@ -5,12 +5,13 @@ use crate::Failure;
 use crate::cyclictest::{Cyclictest, Measured};
 use crate::explain::{Cause, LateCycle, NotingClock, Pauses, Watchers, cause};
 use crate::fingers::reach;
-use sun2xp::finger::{Mailbox, Servo, Stage};
+use crate::under_control::under_control;
+use sun2xp::finger::{Mailbox, Servo};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Priority, now, spawn};
 
 /// Runs three fingers at 1000 Hz for a long time and classifies every late cycle by its cause. Exit status 1: the
-/// library's own computation made a cycle late.
+/// library's own computation made a cycle late, or a pause of a core that was too short to be detected.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Duration, minutes.
@@ -53,7 +54,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         pauses.count()
     );
     if own > 0 {
-        return Err(format!("the library's own computation made {own} cycles late").into());
+        return Err(format!(
+            "{own} cycles were late because of the library's own computation, or because of pauses of a core that are \
+             too short to be detected. Measure again when the machine has no other work. If cycles are late again, \
+             standard error shows how they spent their time"
+        )
+        .into());
     }
     Ok(())
 }
@@ -94,12 +100,11 @@ fn print_fingers(ran: &Ran, period: u64, pauses: &Pauses) -> usize {
     let mut own = 0;
     for (index, ((cycles, late), mailbox)) in ran.cycles.iter().zip(&ran.planners).enumerate() {
         let report = mailbox.report();
-        if report.stage != Stage::Running {
+        if let Err(reason) = under_control(index + 1, &report.stage) {
             // The servo has continued, so its cycles count.
             eprintln!(
-                "finger {} is {:?} at the end. Other work on the machine can cause this.",
-                index + 1,
-                report.stage
+                "{reason}. Other work on the machine can cause this. To measure a finger that stays under control, \
+                 measure again when the machine has no other work."
             );
         }
         let causes: Vec<(Cause, LateCycle)> = late.iter().map(|cycle| (cause(cycle, period, pauses), *cycle)).collect();

@@ -9,7 +9,7 @@ use sun2xp::control::{Law, Numbers};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 use toml_edit::ser::ValueSerializer;
 
-/// One column of the table.
+/// One column of the table of measurements (`table.rs`): a controller at a rate, and how it is measured.
 #[derive(Clone, Copy)]
 pub struct Case {
     pub scheme: Scheme,
@@ -17,7 +17,7 @@ pub struct Case {
     pub poses: usize,
     pub seed: u64,
     pub law: Law,
-    /// The numbers of state feedback. `None` selects those of the library.
+    /// The parameters of state feedback. `None` selects those of the library.
     pub numbers: Option<Numbers>,
 }
 
@@ -29,7 +29,7 @@ pub enum Friction {
     Harsh,
 }
 
-/// The poses to which the goals apply, degrees: lower and upper limit of each joint.
+/// The poses to which the goals of the table of measurements apply, degrees: lower and upper limit of each joint.
 pub const USUAL: [[f64; 2]; 3] = [[-30.0, 30.0], [-10.0, 70.0], [30.0, 100.0]];
 
 impl Case {

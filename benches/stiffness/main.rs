@@ -78,14 +78,14 @@ struct Arguments {
     /// With --truths: no walls and no bumps.
     #[arg(long)]
     short: bool,
-    /// Searches for better numbers of state feedback for the fingers that TEXT selects, as with --truths. The search
-    /// starts from the numbers that --numbers gives.
+    /// Searches for better parameters of state feedback for the fingers that TEXT selects, as with --truths. The search
+    /// starts from the parameters that --numbers gives.
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "")]
     search: Option<String>,
     /// With --truths and --search: keys of the finger's configuration to replace, as TOML.
     #[arg(long, default_value = "")]
     keys: String,
-    /// With --truths and --search: numbers of state feedback to replace, as TOML.
+    /// With --truths and --search: parameters of state feedback to replace, as TOML.
     #[arg(long, default_value = "")]
     numbers: String,
     /// The law of the spring: exact or report.

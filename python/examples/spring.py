@@ -53,7 +53,8 @@ def main(picture: str) -> None:
     axes.grid(alpha=0.3)
     figure.savefig(picture, dpi=120)
     for axis, name in enumerate(AXES):
-        print(f"{name}: {numpy.polyfit(measured[axis], FORCES, 1)[0]:.2f} N/cm of {STIFFNESS[axis, axis]:g}")
+        found = numpy.polyfit(measured[axis], FORCES, 1)[0]
+        print(f"{name}: {STIFFNESS[axis, axis]:g} N/cm sent, {found:.2f} N/cm measured")
 
 
 if __name__ == "__main__":

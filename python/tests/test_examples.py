@@ -32,9 +32,9 @@ def run(*arguments, folder):
 
 def test_the_spring_is_measured_and_plotted(tmp_path):
     said = run(PYTHON / "examples/spring.py", "spring.png", folder=tmp_path)
-    found = re.findall(r"([\d.]+) N/cm of ([\d.]+)", said)
+    found = re.findall(r"([\d.]+) N/cm sent, ([\d.]+) N/cm measured", said)
     assert len(found) == 3
-    for measured, sent in found:
+    for sent, measured in found:
         assert abs(float(measured) / float(sent) - 1) < 0.1, said
     assert (tmp_path / "spring.png").read_bytes().startswith(b"\x89PNG")
 

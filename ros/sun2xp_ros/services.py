@@ -58,7 +58,8 @@ class Services:
                 said.append(f"finger {finger} {action(finger)}")
             except Exception as refusal:
                 # If the service stop fails for one finger, it must still stop the others.
-                text = str(refusal) if isinstance(refusal, sun2xp.Error) else f"finger {finger}: {refusal!r}"
+                defect = f"finger {finger}: {refusal!r}: this is a defect of sun2xp_ros, please report it"
+                text = str(refusal) if isinstance(refusal, sun2xp.Error) else defect
                 response.success = False
                 said.append(text)
                 self._node.get_logger().error(text)

@@ -197,7 +197,8 @@ def answer_of(services, action):
 def test_a_service_answers_and_does_the_rest_although_one_finger_has_a_defect(failing):
     services, hand = failing(RuntimeError("broken"))
     answer = answer_of(services, services._recover)
-    assert not answer.success and answer.message == "finger 1: RuntimeError('broken'); finger 3 has recovered"
+    defect = "finger 1: RuntimeError('broken'): this is a defect of sun2xp_ros, please report it"
+    assert not answer.success and answer.message == f"{defect}; finger 3 has recovered"
     answer = services._answer((1, 3), services._stop, None, types.SimpleNamespace())
     assert not answer.success and "finger 3 is stopped" in answer.message and hand.stopped == [3]
 

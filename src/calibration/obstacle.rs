@@ -209,8 +209,8 @@ pub enum Obstacle {
     },
     /// A motor unwinds its tendon instead of pulling it.
     #[error(
-        "motor {motor} turns backwards: it unwinds its tendon when it should pull. Swap the two wires of the motor, or \
-         change its entry in motor.sign"
+        "motor {motor} turns backwards: it unwinds its tendon when it should pull. Change its entry in motor.sign, or, \
+         if it is brushed, swap its two wires"
     )]
     ReversedMotor {
         /// The motor's number, 1 to 4.
@@ -285,8 +285,8 @@ pub enum Obstacle {
     },
     /// The routine exceeded its time limit.
     #[error(
-        "the routine did not finish within {seconds:.0} s: check that the finger can move freely, or raise \
-         zeroing.time_limit_s"
+        "the routine did not finish within {seconds:.0} s: something slows the finger down, or zeroing.time_limit_s is \
+         too short. Check that the finger can move freely, or raise zeroing.time_limit_s"
     )]
     TimeLimit {
         /// The limit, s.

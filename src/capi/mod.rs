@@ -3,9 +3,10 @@
 //! `include/sun2xp.h` are generated from the files that `tests/header/main.rs` lists.
 //!
 //! If several reasons apply to a call, it reports the first one in this order: forked child (EPERM), null pointer
-//! (EFAULT), no hand (ENODEV), a struct whose size is too small (EINVAL), then the reasons that the hand finds: finger
-//! number, numbers that are not finite, symmetry and eigenvalues, limits, faulted finger. The lists in the manual have
-//! the same order. A slow call checks for free memory (ENOMEM) after the check for a forked child.
+//! (EFAULT), exiting process (ESHUTDOWN), no hand (ENODEV), a struct whose size is too small (EINVAL), then the reasons
+//! that the hand finds: finger number, numbers that are not finite, symmetry and eigenvalues, limits, faulted finger.
+//! The lists in the manual have the same order, without ESHUTDOWN. A slow call checks for free memory (ENOMEM) after
+//! the check for a forked child.
 
 // A C interface needs raw pointers.
 #![allow(unsafe_code)]

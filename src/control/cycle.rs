@@ -188,8 +188,8 @@ impl Controller {
             self.contact.end(&mut state.contact, &mut state.report);
             state.against_friction = Vector4::zeros();
             state.spring = None;
-            if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
-                law.idle(elastic);
+            if let (Some(law), Some(law_state)) = (&self.state_feedback, &mut state.state_feedback) {
+                law.idle(law_state);
             }
         }
         match activity {
@@ -207,8 +207,8 @@ impl Controller {
             | Activity::Tense(_)
             | Activity::Pull(_) => {}
         }
-        if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
-            law.commanded(elastic, &state.pulls, &state.against_friction);
+        if let (Some(law), Some(law_state)) = (&self.state_feedback, &mut state.state_feedback) {
+            law.commanded(law_state, &state.pulls, &state.against_friction);
         }
         state.acting = acting;
         self.heating.advance(&mut state.heat, &state.pulls);
@@ -235,7 +235,7 @@ impl Controller {
     /// the last cycle. While the finger does not follow a set point, the result is the measured pose without motion.
     pub fn reference(&self, state: &State, set_point: &SetPoint) -> (Vector3<f64>, Motion) {
         match (&self.state_feedback, &state.state_feedback, &state.doing) {
-            (Some(law), Some(elastic), Doing::Following(_)) => law.reference(elastic),
+            (Some(law), Some(law_state), Doing::Following(_)) => law.reference(law_state),
             (None, _, Doing::Following(anchor)) => {
                 let mut motion = set_point.motion.unwrap_or_default();
                 // An anchor that has not reached the set point also moves relative to it.
@@ -253,15 +253,15 @@ impl Controller {
             state.state_feedback = None;
             return false;
         };
-        let Some(elastic) = &mut state.state_feedback else {
+        let Some(law_state) = &mut state.state_feedback else {
             // A controller with another scheme was active until now.
             state.state_feedback = measured.map(|measured| law.start(measured));
             return state.state_feedback.is_some();
         };
-        law.observe(elastic, measured);
-        state.report.joints = elastic.joints;
-        state.report.joint_rates = elastic.joint_rates;
-        !law.blind(elastic)
+        law.observe(law_state, measured);
+        state.report.joints = law_state.joints;
+        state.report.joint_rates = law_state.joint_rates;
+        !law.blind(law_state)
     }
 
     /// Converts motor angles and tensions to joint angles and rates. `elapsed` is the time since the previous sample,

@@ -16,7 +16,7 @@ pub struct ControlInput {
     pub activity: Activity,
     /// Number of periods that will be skipped after this cycle, because the servo is late.
     pub skipped: u64,
-    /// Present if so many replies in a row were lost that the motor torques are faded to their rest value.
+    /// Present if so many replies in a row were lost that the motor torques fade to their final values.
     pub fading: Option<Fading>,
     /// Gravity in the finger's frame, m/s^2: that of the configuration until a planner sets another. Recordings of
     /// older libraries do not have it. Their controllers compensate the gravity with which they were constructed.

@@ -1,5 +1,7 @@
 //! The reaction to lost replies in a row. First the last command is held, or continued by prediction. Then the motor
-//! torques are faded to their rest values. Finally the finger faults, before the watchdog of its board trips.
+//! torques fade to their final values: the last torques, limited to what the end state keeps. Finally the finger
+//! faults, before the watchdog of its board trips. Only a watchdog of less than three periods trips before the fault,
+//! because one lost reply is not a fault.
 
 use crate::model::configuration::{ConfiguredHand, EndState};
 use nalgebra::Vector4;
@@ -8,13 +10,13 @@ use serde::{Deserialize, Serialize};
 /// Time for which the last command is held, ms.
 const HELD_MS: f64 = 3.0;
 
-/// Time after which the motor torques have reached their rest values, ms. A torque without feedback winds a tendon up,
+/// Time after which the motor torques have reached their final values, ms. A torque without feedback winds a tendon up,
 /// or off its motor, within some milliseconds. The watchdog does not prevent that, because commands are still sent.
-const BLIND_MS: f64 = 10.0;
+const FADED_MS: f64 = 10.0;
 
-/// Minimum number of lost replies in a row before the motor torques have reached their rest values. [`BLIND_MS`] is
+/// Minimum number of lost replies in a row before the motor torques have reached their final values. [`FADED_MS`] is
 /// shorter than this number of periods only at rates below 300 Hz, which a configuration does not permit.
-const LEAST_BLIND: u32 = 3;
+const LEAST_FADED: u32 = 3;
 
 /// Minimum number of lost replies in a row before the finger faults. At low rates too, one lost reply is not a fault.
 const LEAST_LOST: u32 = 2;
@@ -27,12 +29,13 @@ const SIMULATION_PATIENCE_MS: f64 = 5000.0;
 /// may have been discarded.
 const REPEAT_MS: f64 = 100.0;
 
-/// Motor torques that fade from the last command to their rest values.
+/// Motor torques that fade from the last command to their final values.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Fading {
     /// Remaining part of the fade, 1 to 0.
     pub left: f64,
-    /// Largest torque that a motor keeps at rest, N cm: 0 with the end state *release*.
+    /// Largest torque that a motor keeps after the fade, N cm: 0 with the end state *release*, and
+    /// `hand.hold_torque_limit` with *hold*.
     pub rest: f64,
 }
 
@@ -45,8 +48,8 @@ impl Fading {
     /// Returns the faded torques, N cm.
     pub fn torques(&self, commanded: &Vector4<f64>) -> Vector4<f64> {
         commanded.map(|torque| {
-            let rest = torque.clamp(-self.rest, self.rest);
-            rest + (torque - rest) * self.left
+            let kept = torque.clamp(-self.rest, self.rest);
+            kept + (torque - kept) * self.left
         })
     }
 }
@@ -55,11 +58,17 @@ impl Fading {
 pub(super) struct LinkWatch {
     /// Whether the finger is a simulation that runs in step.
     simulated: bool,
+    /// Lost replies in a row so far.
     in_a_row: u32,
-    repeat: u32,
-    held: u32,
-    blind: u32,
-    lost: u32,
+    /// Cycles from one repetition of an unanswered command to the next.
+    repeat_after: u32,
+    /// Lost replies in a row after which the torques begin to fade.
+    held_for: u32,
+    /// Lost replies in a row at which the torques have reached their final values.
+    faded_at: u32,
+    /// Lost replies in a row at which the finger faults.
+    fault_at: u32,
+    /// [`Fading::rest`] of every fade.
     rest: f64,
 }
 
@@ -74,10 +83,10 @@ impl LinkWatch {
         Self {
             simulated,
             in_a_row: 0,
-            repeat: cycles(REPEAT_MS),
-            held: cycles(HELD_MS),
-            blind: cycles(BLIND_MS).max(LEAST_BLIND),
-            lost: match simulated {
+            repeat_after: cycles(REPEAT_MS),
+            held_for: cycles(HELD_MS),
+            faded_at: cycles(FADED_MS).max(LEAST_FADED),
+            fault_at: match simulated {
                 true => cycles(SIMULATION_PATIENCE_MS),
                 false => within_watchdog.saturating_sub(1).max(LEAST_LOST),
             },
@@ -99,39 +108,41 @@ impl LinkWatch {
 
     /// Returns whether an unanswered command must be sent again.
     pub fn repeats(&self) -> bool {
-        self.in_a_row.is_multiple_of(self.repeat)
+        self.in_a_row.is_multiple_of(self.repeat_after)
     }
 
     /// Notes a reply. Returns whether so many replies were lost that the controller must restart from the measured
     /// tensions.
     pub fn answered(&mut self) -> bool {
-        std::mem::take(&mut self.in_a_row) >= self.blind && !self.in_step()
+        std::mem::take(&mut self.in_a_row) >= self.faded_at && !self.in_step()
     }
 
     /// Notes a lost reply. Returns the number of lost replies in a row if it is a fault.
     pub fn missed(&mut self) -> Option<u32> {
         self.in_a_row += 1;
-        (self.in_a_row >= self.lost).then_some(self.in_a_row)
+        (self.in_a_row >= self.fault_at).then_some(self.in_a_row)
     }
 
-    /// Returns the number of lost replies in a row if they explain why the watchdog of the board has tripped. The servo
-    /// has then sent commands in at least half of the periods of the watchdog's time.
+    /// Returns the number of lost replies in a row if they explain why the watchdog of the board has tripped. They
+    /// explain it if they are at least half of the number at which the finger faults. In this case the servo has sent
+    /// commands for about half of the watchdog's time or longer. If these commands had reached the board, its watchdog
+    /// would not have tripped.
     pub fn explains_watchdog(&self) -> Option<u32> {
-        (2 * self.in_a_row >= self.lost).then_some(self.in_a_row)
+        (2 * self.in_a_row >= self.fault_at).then_some(self.in_a_row)
     }
 
     /// Returns the fade of the next command; none while the command is held, and for a simulation that runs in step.
     pub fn fading(&self) -> Option<Fading> {
-        if self.in_a_row <= self.held || self.in_step() {
+        if self.in_a_row <= self.held_for || self.in_step() {
             return None;
         }
-        let left = f64::from(self.blind.saturating_sub(self.in_a_row)) / f64::from(self.blind - self.held);
+        let left = f64::from(self.faded_at.saturating_sub(self.in_a_row)) / f64::from(self.faded_at - self.held_for);
         Some(Fading { left, rest: self.rest })
     }
 
     /// Returns the number of lost replies in a row at which the finger faults.
-    pub fn most(&self) -> u32 {
-        self.lost
+    pub fn fault_at(&self) -> u32 {
+        self.fault_at
     }
 }
 
@@ -141,17 +152,14 @@ mod tests {
 
     #[test]
     fn torques_are_held_then_faded_and_the_finger_faults_within_the_watchdogs_time() {
-        for (rate, last_held, first_at_rest, faulted) in [(1000.0, 3, 10, 17), (2000.0, 6, 20, 35), (500.0, 2, 5, 8)] {
+        for (rate, last_held, first_faded, faulted) in [(1000.0, 3, 10, 17), (2000.0, 6, 20, 35), (500.0, 2, 5, 8)] {
             let mut watch = LinkWatch::new(&ConfiguredHand { rate, ..Default::default() }, false);
             for lost in 1..=faulted {
                 assert_eq!(watch.missed(), (lost == faulted).then_some(lost), "{rate} Hz");
                 match watch.fading() {
                     None => assert!(lost <= last_held, "{rate} Hz, {lost}"),
                     Some(fading) => {
-                        assert!(
-                            lost > last_held && (fading.left == 0.0) == (lost >= first_at_rest),
-                            "{rate} Hz, {lost}"
-                        );
+                        assert!(lost > last_held && (fading.left == 0.0) == (lost >= first_faded), "{rate} Hz, {lost}");
                     }
                 }
             }

@@ -62,8 +62,9 @@ impl Admission {
         self.kx(rows).map(|kx| spatial(&kx))
     }
 
-    /// Checks that Kx, N/cm, is symmetric, positive semi-definite and within the bound, and returns it. The argument
-    /// is `rows[row][column]`.
+    /// Checks that Kx, N/cm, is symmetric, positive semi-definite and within the bound, and returns it. Mirrored
+    /// entries are averaged. If `out_of_range` is `Clamp`, a Kx beyond the bound is not refused: the nearest one within
+    /// the bound is returned. The argument is `rows[row][column]`.
     pub fn kx(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
         self.ranges().kx(rows)
     }
@@ -77,8 +78,9 @@ impl Admission {
         found.map_err(|source| SetPointError::OutOfReach { finger: self.finger, tip, source })
     }
 
-    /// Checks the stiffness of a contact against the bound, and returns it. A rotational stiffness is converted with
-    /// the length of the last link.
+    /// Checks the stiffness of a contact against the bound, and returns it. If `out_of_range` is `Clamp`, a stiffness
+    /// beyond the bound is not refused: the nearest one within the bound is returned. A rotational stiffness is
+    /// converted with the length of the last link.
     pub fn contact(&self, contact: &Contact) -> Result<Matrix6<f64>, SetPointError> {
         let (bound, lever) = (self.stiffness_bound, self.links.0[2]);
         let largest = contact.largest_eigenvalue(lever);
@@ -98,9 +100,9 @@ impl Admission {
     }
 }
 
-/// The check that the damping of a finger's set point is within the range for its stiffness. Two planners may change
-/// damping and stiffness at the same time, so the check must run in the step that sends both. The closure that runs in
-/// this step owns a copy of the check.
+/// The check that the damping of a finger's set point is within the range for its stiffness. One planner may change the
+/// damping while another one changes the stiffness. So the check runs under the lock under which `Mailbox::try_send`
+/// changes and sends the whole set point. The closure that makes the change owns a copy of the check.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampingAdmission {
     /// Number of the finger, 1 to 3.

@@ -51,7 +51,7 @@ impl TryFrom<Vec<FingerNumber>> for Fingers {
             return Err("a hand has at least one finger: list the numbers of its fingers, for example [2]");
         };
         others.iter().try_fold(Self::one(first), |fingers, &finger| match fingers.contains(finger) {
-            true => Err("lists a finger twice"),
+            true => Err("a finger is listed twice: list each finger once, for example [1, 3]"),
             false => Ok(fingers.with(finger)),
         })
     }

@@ -93,14 +93,14 @@ impl InverseKinematics {
 
     /// Returns every solution within -pi to pi, rad, regardless of the joint limits. Joint 0 points toward the tip or
     /// away from it. If it points away, the finger bends over its own base. For each of the two angles of joint 0 there
-    /// are two solutions for joints 1 and 2. `open` is the angle of joint 0 for a tip on its axis.
+    /// are two solutions for joints 1 and 2. `on_axis` is the angle of joint 0 for a tip on its axis.
     ///
     /// # Errors
     /// Returns an error if there is no solution.
-    pub fn solutions(&self, tip: &Vector3<f64>, open: f64) -> Result<[Option<Vector3<f64>>; 4], OutOfReach> {
+    pub fn solutions(&self, tip: &Vector3<f64>, on_axis: f64) -> Result<[Option<Vector3<f64>>; 4], OutOfReach> {
         let across = tip.x.hypot(tip.z);
-        let toward = if across < ON_THE_AXIS { open } else { tip.x.atan2(tip.z) };
-        let away = half_turn(toward + PI);
+        let toward = if across < ON_THE_AXIS { on_axis } else { tip.x.atan2(tip.z) };
+        let away = wrapped(toward + PI);
         let [one, other] = match (self.elbows(across, tip.y), self.elbows(-across, tip.y)) {
             // In the direct solution, joint 0 points toward the tip. A finger that bends over its base spans a larger
             // distance, so it may reach a tip that is too near for the direct solution.
@@ -116,12 +116,12 @@ impl InverseKinematics {
         Ok([part(&near, 0), part(&near, 1), part(&far, 0), part(&far, 1)])
     }
 
-    /// Returns the two solutions for joints 1 and 2 in the plane of joint 0, by the law of cosines. `reach` is the
+    /// Returns the two solutions for joints 1 and 2 in the plane of joint 0, by the law of cosines. `across` is the
     /// distance of the tip from the axis of joint 0, cm, negative if joint 0 points away from the tip. `y` is the tip's
     /// y coordinate, cm.
-    fn elbows(&self, reach: f64, y: f64) -> Result<[(f64, f64); 2], OutOfReach> {
+    fn elbows(&self, across: f64, y: f64) -> Result<[(f64, f64); 2], OutOfReach> {
         let [l0, l1, l2] = self.links.0;
-        let (along, down) = (reach - l0, -y);
+        let (along, down) = (across - l0, -y);
         let distance = along.hypot(down);
         let (longest, least) = (l1 + l2, (l1 - l2).abs());
         let rounding = REACH_ROUNDING * longest;
@@ -135,7 +135,7 @@ impl InverseKinematics {
         let bent = cosine.acos();
         let elbow = |joint_2: f64| {
             let joint_1 = down.atan2(along) - (l2 * joint_2.sin()).atan2(l1 + l2 * joint_2.cos());
-            (half_turn(joint_1), joint_2)
+            (wrapped(joint_1), joint_2)
         };
         Ok([elbow(bent), elbow(-bent)])
     }
@@ -163,6 +163,6 @@ impl InverseKinematics {
 }
 
 /// Wraps an angle, rad, to the range -pi to pi.
-fn half_turn(angle: f64) -> f64 {
+fn wrapped(angle: f64) -> f64 {
     angle - 2.0 * PI * (angle / (2.0 * PI)).round()
 }

@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn an_element_reports_contact_pressure_and_its_loss() {
+    fn an_element_reports_a_contact_a_changed_pressure_and_the_end_of_the_contact() {
         let mut pads = pads();
         let mut received = 0;
         // A force in the direction of -z presses the element whose normal is z.

@@ -35,8 +35,8 @@ impl CrateTree {
         self.0.values()
     }
 
-    /// Resolves re-exports and returns the module that defines the item at a path from the crate's root. Returns `None`
-    /// for a path that leads out of the crate.
+    /// Resolves re-exports and returns the module that defines the item at a path from the crate's root. A path to
+    /// another crate resolves to the module of the file that has it (see [`from_root`]), or, in the root, to `None`.
     pub fn resolve(&self, path: &[String]) -> Option<Vec<String>> {
         let depth = (0..=path.len()).rev().find(|&depth| self.0.contains_key(&path[..depth]))?;
         let file = &self.0[&path[..depth]];
@@ -71,8 +71,8 @@ impl SourceFile {
     }
 }
 
-/// The names that a `use` imports, with their paths from the crate's root. A path out of the crate begins with a name
-/// that no module has.
+/// The names that a `use` in `module` imports, with their paths from the crate's root. A path to another crate cannot
+/// be told from a path below `module`, so it gets the path of `module` in front.
 pub fn paths(tree: &UseTree, module: &[String]) -> Vec<(String, Vec<String>)> {
     fn walk(tree: &UseTree, before: &[String], found: &mut Vec<(String, Vec<String>)>) {
         let with = |name: &dyn ToString| [before, &[name.to_string()]].concat();
@@ -92,8 +92,8 @@ pub fn paths(tree: &UseTree, module: &[String]) -> Vec<(String, Vec<String>)> {
     found.into_iter().map(|(name, path)| (name, from_root(&path, module))).collect()
 }
 
-/// Converts a path as a file writes it into a path from the crate's root. A path that begins with neither `crate`,
-/// `super` nor `self` may name a module below this one.
+/// Converts a path, as it is written in the file of `module`, to a path from the crate's root. A path that begins with
+/// neither `crate`, `super` nor `self` may name a module below `module`, so it is taken for such a path.
 pub fn from_root(path: &[String], module: &[String]) -> Vec<String> {
     let mut at = module.to_vec();
     for (place, name) in path.iter().enumerate() {

@@ -1,4 +1,5 @@
-/* The watchdog of c_examples/CanDrives.c, with frames that are not for the drives. */
+/* Tests the watchdog of c_examples/CanDrives.c: frames of encoder counts must not restart its time. A drive that gets
+   only such frames releases its motors and sends an emergency frame. */
 #define main main_of_the_example
 #include "CanDrives.c"
 #undef main

@@ -26,8 +26,8 @@ fn succeed_while_the_board_dies(source: &str) {
     assert!(run.status.success(), "{}", said(&run));
 }
 
-/// With `release`, the motors are without torque however the planner ends. Only the friction of the motors then keeps
-/// some tension in the tendons.
+/// With `hand.end_state = "release"`, the default, the motors are without torque however the planner ends. Only the
+/// friction of the motors then keeps some tension in the tendons.
 #[test]
 fn a_planner_that_leaves_without_closing_lets_the_tendons_go() {
     let bench = Bench::new();

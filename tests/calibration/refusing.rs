@@ -134,6 +134,8 @@ fn a_routine_that_takes_too_long() {
     finger.zeroing.time_limit_s = 2.0;
     let refused = Bench::new(&finger, &finger, 1000.0).open().calibrate(Task::Zero);
     assert_eq!(refused, Err(Obstacle::TimeLimit { seconds: 2.0 }));
+    let text = Obstacle::TimeLimit { seconds: 2.0 }.to_string();
+    assert!(text.contains("something slows the finger down, or zeroing.time_limit_s is too short"), "{text}");
 }
 
 /// Starts with tight and with slack tendons, at every rate, with every pair.

@@ -12,7 +12,7 @@ pub struct Case {
     pub what: &'static str,
     /// The expected fault or warning.
     pub expected: FaultKind,
-    /// Provokes the fault. Returns the affected part if the fault names one.
+    /// Provokes the fault. Returns the affected part if the test checks that the fault names it.
     pub inject: fn(&mut Bench) -> Injected,
     /// Shortest time for which the finger moves before the injection, ms.
     pub after: u64,
@@ -25,7 +25,7 @@ pub struct Case {
     pub detectable: Option<Detectable>,
 }
 
-/// The affected part, if the fault names one, and the speed of a drift, N/s.
+/// The affected part, if the test checks that the fault names it, and the speed of a drift, N/s.
 #[derive(Clone, Copy, Default)]
 pub struct Injected {
     pub part: Option<u8>,
@@ -73,11 +73,12 @@ impl Case {
 
     /// Lets the monitors learn the mismatch of the finger before the injection. `within` becomes the longest time until
     /// the motors reach their end state, ms.
-    fn later(self, within: f64) -> Self {
+    fn after_learning(self, within: f64) -> Self {
         Self { after: 3000, within, ..self }
     }
 
-    fn from(self, lasts_ms: f64, holds: fn(&Truth, &Injected, &ConfiguredFinger) -> bool) -> Self {
+    /// The fault becomes detectable when a stretch of `lasts_ms` begins during which `holds` returns true.
+    fn detectable_while(self, lasts_ms: f64, holds: fn(&Truth, &Injected, &ConfiguredFinger) -> bool) -> Self {
         Self { detectable: Some(Detectable { holds, lasts_ms }), ..self }
     }
 }
@@ -108,7 +109,7 @@ fn of_the_tendons() -> Vec<Case> {
         })
         // With the noise of the simulated gauges, 0.03 N rms, one count in five equals the previous one. A working
         // gauge repeats one count for 16.5 ms only once in 10^11 samples.
-        .from(0.0, |truth, _, _| truth.time > 0.0165),
+        .detectable_while(0.0, |truth, _, _| truth.time > 0.0165),
         case("gauge reads zero", GaugeStuck, |bench| {
             let gauge = bench.part();
             inject(bench, Defect::DeadGauge { gauge, count: Some(0) });
@@ -119,7 +120,7 @@ fn of_the_tendons() -> Vec<Case> {
             inject(bench, Defect::DeadGauge { gauge, count: Some(4095) });
             at(gauge)
         }),
-        case("drifting gauge (20 N/s)", GaugeDisagrees, drift).later(3000.0).from(10.0, disagrees),
+        case("drifting gauge (20 N/s)", GaugeDisagrees, drift).after_learning(3000.0).detectable_while(10.0, disagrees),
         case("drifting gauge (20 N/s), smaller tolerances", GaugeDisagrees, drift)
             .with(|configuration| {
                 let finger = &mut configuration.fingers[0];
@@ -128,8 +129,8 @@ fn of_the_tendons() -> Vec<Case> {
                 (monitors.friction_tolerance, monitors.moment_arm_tolerance) = (0.0, 0.01);
                 monitors.gauge_tolerance = 0.01;
             })
-            .later(600.0)
-            .from(10.0, disagrees),
+            .after_learning(600.0)
+            .detectable_while(10.0, disagrees),
     ]
 }
 
@@ -146,13 +147,13 @@ fn of_the_motors() -> Vec<Case> {
             inject(bench, Defect::JammedMotor(motor));
             at(motor)
         })
-        .from(12.0, stands),
+        .detectable_while(12.0, shows_stall),
         case("hot motor, reported by its driver", DriverFault, |bench| inject(bench, Defect::HotMotor(1))),
         case("hot motor, by I^2 t", OverheatedMotor, |bench| push(bench, [0.0, 0.0, -1.6]))
             .with(with_small_motors)
-            .from(0.0, |truth, _, finger| truth.hot_for.max() > finger.motor.thermal_time),
+            .detectable_while(0.0, |truth, _, finger| truth.hot_for.max() > finger.motor.thermal_time),
         case("impact (40 N)", OverTension, |bench| push(bench, [0.0, 40.0, 0.0]))
-            .from(4.0, |truth, _, finger| truth.tensions.max() > 1.3 * finger.tendon.maximum),
+            .detectable_while(4.0, |truth, _, finger| truth.tensions.max() > 1.3 * finger.tendon.maximum),
         case("impossible pose", ImpossiblePose, turn_encoders_unseen),
     ]
 }
@@ -193,20 +194,24 @@ pub fn warnings() -> Vec<Case> {
     vec![
         case("warm motor, by I^2 t", WarmMotor, |bench| push(bench, [0.0, 0.0, -1.6]))
             .with(with_small_motors)
-            .from(0.0, |truth, _, _| truth.heat.max() > 0.8),
-        case("joint at its stop", JointAtStop, |bench| push(bench, [-6.0, 0.0, 0.0])).from(0.0, |truth, _, finger| {
-            let ((low, high), (lower, upper)) = (finger.joint_limits(), finger.stops());
-            let (low, high) = (low.lerp(&lower, 0.8), high.lerp(&upper, 0.8));
-            // Slack tendons give no information about the joints.
-            truth.tensions.min() > 0.5 && (0..3).any(|joint| !(low[joint]..=high[joint]).contains(&truth.joints[joint]))
-        }),
+            .detectable_while(0.0, |truth, _, _| truth.heat.max() > 0.8),
+        case("joint at its stop", JointAtStop, |bench| push(bench, [-6.0, 0.0, 0.0])).detectable_while(
+            0.0,
+            |truth, _, finger| {
+                let ((low, high), (lower, upper)) = (finger.joint_limits(), finger.stops());
+                let (low, high) = (low.lerp(&lower, 0.8), high.lerp(&upper, 0.8));
+                // Slack tendons give no information about the joints.
+                truth.tensions.min() > 0.5
+                    && (0..3).any(|joint| !(low[joint]..=high[joint]).contains(&truth.joints[joint]))
+            },
+        ),
         case("30 % of the replies dropped", LineNoise, |bench| line(bench, LineFault::Drop, 0.3, 1000))
-            .from(0.0, |truth, _, _| truth.lost > 0.02),
+            .detectable_while(0.0, |truth, _, _| truth.lost > 0.02),
         case("overrun (every eighth cycle 2.2 ms late)", Overrun, |bench| {
             bench.wake_late(2200 * MICROSECOND);
             Injected::default()
         })
-        .from(0.0, |truth, _, _| truth.skipping > 0.02),
+        .detectable_while(0.0, |truth, _, _| truth.skipping > 0.02),
     ]
 }
 
@@ -236,7 +241,8 @@ fn drift(bench: &mut Bench) -> Injected {
     let mut drift = Vector4::zeros();
     drift[usize::from(gauge) - 1] = 20.0 * way;
     // The monitor compares gauges and encoders by one equation (`control/monitors/agreement.rs`), which cannot tell
-    // which of the four gauges is wrong.
+    // which of the four gauges is wrong. The fault names the gauge that differs most from the pull of its motor. This
+    // need not be the wrong one, so the part is not checked.
     Injected { part: None, drift }
 }
 
@@ -250,7 +256,7 @@ fn disagrees(truth: &Truth, injected: &Injected, finger: &ConfiguredFinger) -> b
 }
 
 /// Whether pull and tension differ by more than the monitor of stalled motors always tolerates.
-fn stands(truth: &Truth, injected: &Injected, finger: &ConfiguredFinger) -> bool {
+fn shows_stall(truth: &Truth, injected: &Injected, finger: &ConfiguredFinger) -> bool {
     let motor = usize::from(injected.part.expect("a motor")) - 1;
     let (pull, tension) = (truth.pulls[motor], truth.tensions[motor]);
     let larger = pull.abs().max(tension);

@@ -122,7 +122,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Reads the orders of the command line.
 fn orders_in(texts: &[String]) -> Result<Vec<Order>, Failure> {
     let read = |text: &String| match Order::read(text) {
-        Ok(Some(Order::Quit)) => Err(wrong_usage("quit cannot be given by --order")),
+        Ok(Some(Order::Quit)) => Err(wrong_usage(
+            "quit cannot be given by --order: write it to standard input, or end the program with a signal",
+        )),
         Ok(Some(order)) => Ok(order),
         Ok(None) => Err(wrong_usage("an --order is empty: see sun2xp board --help")),
         Err(reason) => Err(wrong_usage(format!("--order {}: {reason}", Shown(text)))),
@@ -197,7 +199,7 @@ impl Session<'_> {
             Order::For(number, action) => {
                 let found =
                     address(*number).and_then(|address| self.port.with_finger(address, |finger| action.apply(finger)));
-                Ok(found.unwrap_or_else(|| format!("error this board has no finger {number}")))
+                Ok(found.unwrap_or_else(|| faults::no_finger(*number)))
             }
             Order::Trouble(trouble) => {
                 let answer = trouble.apply(self.port, self.seed.unwrap_or_default(), address);
@@ -226,7 +228,7 @@ impl Drop for Session<'_> {
 }
 
 fn rate(text: &str) -> Result<f64, String> {
-    let rate: f64 = text.parse().map_err(|_| format!("{text} is not a number"))?;
+    let rate: f64 = text.parse().map_err(|_| format!("{text} is not a number: give a rate in Hz, for example 1000"))?;
     let sensible = (1.0..=100_000.0).contains(&rate);
     sensible.then_some(rate).ok_or_else(|| format!("{rate} is not between 1 and 100 000 Hz"))
 }

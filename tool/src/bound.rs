@@ -120,7 +120,7 @@ fn scheme(name: &str) -> Result<Scheme, String> {
 }
 
 fn rate(text: &str) -> Result<f64, String> {
-    let rate = text.parse().map_err(|_| format!("{text} is not a number"))?;
+    let rate = text.parse().map_err(|_| format!("{text} is not a number: give a rate in Hz, for example 1000"))?;
     if RATES.contains(&rate) {
         Ok(rate)
     } else {

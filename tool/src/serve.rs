@@ -29,17 +29,32 @@ pub fn run(arguments: &Arguments, script: Option<&Path>) -> Result<ExitStatus, F
         None => beside(&std::env::current_exe()?),
     };
     let error = Command::new(&program).args(&arguments.options).exec();
+    Err(not_started(&program, &error).into())
+}
+
+fn not_started(program: &Path, error: &io::Error) -> String {
     let shown = program.display();
-    Err(match error.kind() {
-        io::ErrorKind::NotFound => {
-            format!("{shown} is missing: install sun2xp-serve beside sun2xp (cargo build -p sun2xp-serve builds it)")
-        }
-        _ => format!("{shown} cannot be started: {error}"),
+    let remedy = "install sun2xp-serve beside sun2xp (cargo build -p sun2xp-serve builds it)";
+    match error.kind() {
+        io::ErrorKind::NotFound => format!("{shown} is missing: {remedy}"),
+        _ => format!("{shown} cannot be started ({error}): {remedy}"),
     }
-    .into())
 }
 
 /// The program beside the tool.
 fn beside(own: &Path) -> PathBuf {
     own.with_file_name(PROGRAM)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_that_does_not_start_has_a_remedy() {
+        for (error, cause) in [(libc::ENOENT, "is missing"), (libc::EACCES, "Permission denied")] {
+            let text = not_started(Path::new("/bin/sun2xp-serve"), &io::Error::from_raw_os_error(error));
+            assert!(text.contains(cause) && text.contains("install sun2xp-serve beside sun2xp"), "{text}");
+        }
+    }
 }

@@ -104,7 +104,9 @@ fn defects_occur_while_it_runs_and_are_repaired() {
     assert_eq!(tensions(&mut board)[1], 0.0, "cut by --order");
     assert_eq!(board.order("mend 1"), "ok");
     assert!(tensions(&mut board)[1] > 1.0);
-    assert!(board.order("jam 7 1").starts_with("error this board has no finger 7"));
+    for order in ["jam 7 1", "state 7"] {
+        assert_eq!(board.order(order), "error this board has no finger 7: name a finger that it has (option --finger)");
+    }
     assert!(board.order("jam 1 7").starts_with("error"));
     // The default finger has no tactile elements.
     assert_eq!(board.order("dead-element 1 0"), "error finger 1 has no part with this number");

@@ -1,9 +1,10 @@
 //! Determines the friction of the motors. The commanded pull of a motor is larger than the tension while the motor
 //! winds its tendon in, and smaller while it lets its tendon out.
 //!
-//! u = a t + s (C + mu t). u is the commanded pull, t the tension, a their ratio apart from friction, C the Coulomb
-//! friction, and mu the friction of the conduit. s is +1 while winding in and -1 while letting out. Only motors that
-//! turn steadily and fast contribute: at rest and at low speeds static friction is larger than C.
+//! u = a t + s (C + mu t). u is the commanded pull, t the tension, C the Coulomb friction, and mu the friction of the
+//! conduit. s is +1 while winding in and -1 while letting out. a is the mean of the ratios of u to t in these two
+//! directions. Only motors that turn steadily and fast contribute: at rest and at low speeds static friction is larger
+//! than C.
 
 use super::least_squares::LeastSquares;
 use crate::calibration::instruments::Instruments;

@@ -3,15 +3,15 @@
 //! At each frequency w the Fourier coefficients of pull P, tension T and motor travel X are known. Newton's law for a
 //! rotor whose mass at the tendon is m = J / r^2 gives
 //!
-//! Re[(a T - P) X*] / |X|^2 = m w^2 - k
+//! Re[(a_0 T - P) X*] / |X|^2 = m w^2 - k
 //!
-//! a is the ratio of the commanded pull to the tension, without friction. Friction is in phase with the speed, so it is
-//! not in this equation. k is a stiffness that acts on the rotor without changing the tension at the gauge: a tendon
+//! a_0 is the ratio of the commanded pull to the tension, without friction. Friction is in phase with the speed, so it
+//! is not in this equation. k is a stiffness that acts on the rotor without changing the tension at the gauge: a tendon
 //! that sticks in its conduit is stretched between the motor and the gauge, and the ripple of the torque acts like a
 //! spring too. The difference between the two frequencies eliminates k. A rotor with a delayed torque seems to have
 //! another inertia: up to 7 % less with a dead time of 1 ms, and up to 5 % more with a lag of 1 ms.
 //!
-//! P is the commanded pull, and a T is the tension in the scale of the commanded pull. So J is the inertia divided by
+//! P is the commanded pull, and a_0 T is the tension in the scale of the commanded pull. So J is the inertia divided by
 //! the ratio of the true torque to the commanded one. The controller computes with commanded torques, and needs this
 //! value.
 
@@ -96,7 +96,7 @@ impl Oscillation {
         1.0 / (self.samples.max(1.0) * (0.5 * self.step).sin())
     }
 
-    /// Returns m w^2 - k, N/cm. `ratio` is the ratio a of the commanded pull to the tension.
+    /// Returns m w^2 - k, N/cm. `ratio` is the ratio a_0 of the commanded pull to the tension.
     fn stiffness(&self, ratio: &Vector4<f64>) -> Vector4<f64> {
         let tension = self.tension.in_phase_with(&self.travel).component_mul(ratio);
         let pull = self.pull.held(self.step).in_phase_with(&self.travel);

@@ -29,8 +29,9 @@ use nalgebra::{Vector3, Vector4};
 /// Fraction of t_min from which a tendon counts as tight.
 const TIGHT: f64 = 0.8;
 
-/// Why a configuration whose joints cannot all be springs is refused.
-const NO_STIFFNESS: &str = "gives at least one joint no stiffness: check that geometry.r has rank 3";
+/// The reason to refuse a configuration in which a joint would have no stiffness. An R whose rank is below 3 is refused
+/// for another reason.
+const NO_STIFFNESS: &str = "gives at least one joint no stiffness: set every entry to a number above 0";
 
 impl Controller {
     /// Constructs the controller of `finger` at `rate`, Hz, without gravity. Gains that are not configured follow from
@@ -47,8 +48,8 @@ impl Controller {
         construct(finger).map_err(|refusal| with_culprit(refusal, finger, &|changed| construct(changed).is_ok()))
     }
 
-    /// Constructs a controller without gravity whose state feedback has these numbers. `cargo bench --bench stiffness`
-    /// uses this function to search for the numbers.
+    /// Constructs a controller without gravity whose state feedback has the parameters `numbers`. `cargo bench --bench
+    /// stiffness` uses this function to search for the best parameters.
     pub fn with_numbers(finger: &ConfiguredFinger, rate: f64, numbers: &Numbers) -> Result<Self, Unusable> {
         Self::construct(finger, &Vector3::zeros(), rate, Some(*numbers))
     }
@@ -115,8 +116,9 @@ impl Controller {
     }
 }
 
-/// Checks that warm motors can hold the tensions of a finger at rest against friction. Otherwise a finger that does
-/// nothing would overheat. Only state feedback is checked here, because it holds higher tensions than the pretension.
+/// Checks that the motors, with their continuous torque, can hold the tensions of a finger at rest against friction.
+/// Otherwise the motors of a finger that does nothing would overheat. Only state feedback is checked here, because it
+/// holds higher tensions than the pretension.
 fn check_continuous_torque(
     finger: &ConfiguredFinger,
     motor_torque: &MotorTorque,
@@ -142,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_warm_motor_must_hold_the_tensions_of_a_finger_at_rest() {
+    fn the_continuous_torque_must_hold_the_tensions_of_a_finger_at_rest() {
         let mut finger = ConfiguredFinger::default();
         finger.motor.continuous_torque = [0.56; 4];
         assert_eq!(finger.check(), Ok(()));
@@ -167,5 +169,15 @@ mod tests {
             finger.motor.torque_limit = [0.43; 4];
         };
         assert_eq!(refused(weak_motors), Err("motor.torque_limit"));
+    }
+
+    #[test]
+    fn tendons_without_stiffness_are_refused_with_a_remedy_for_their_own_key() {
+        let mut finger = ConfiguredFinger::default();
+        finger.controller.scheme = Some(Scheme::Figure10);
+        finger.tendon.stiffness = [0.0; 4];
+        let refused = Controller::new(&finger, 1000.0).map(|_| ()).expect_err("no stiffness");
+        assert_eq!(refused.key, "tendon.stiffness");
+        assert!(refused.reason.ends_with(": set every entry to a number above 0"), "{}", refused.reason);
     }
 }

@@ -33,10 +33,10 @@ impl Controller {
             Doing::Releasing(release) => release.scale(&ratio),
             _ => {}
         }
-        if let (Some(law), Some(old), Some(elastic)) =
+        if let (Some(law), Some(old), Some(law_state)) =
             (&self.state_feedback, &previous.state_feedback, &mut state.state_feedback)
         {
-            law.take_over(old, elastic);
+            law.take_over(old, law_state);
         }
         // The contact estimate has learned the error of the torques that `previous` computes. A controller that
         // computes other torques must learn again: the difference would count as a contact, and nothing is learned
@@ -53,10 +53,10 @@ impl Controller {
     /// from the motion of the set point until now, the reference of state feedback reaches the path through the filter
     /// that smooths steps.
     pub fn begin_path(&self, state: &mut State, set_point: &SetPoint) {
-        if let (Some(law), Some(elastic), Some(motion)) =
+        if let (Some(law), Some(law_state), Some(motion)) =
             (&self.state_feedback, &mut state.state_feedback, &set_point.motion)
         {
-            law.begin_path(elastic, &set_point.joints, motion);
+            law.begin_path(law_state, &set_point.joints, motion);
         }
     }
 

@@ -71,21 +71,21 @@ impl Controller {
             &softened
         };
         let joint_spring = &joint_spring.map(|joint_spring| joint_spring.softened(scale));
-        let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
+        let (Some(law), Some(law_state)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
         };
         // In the first cycle after another scheme, the joint angles in the report are not those of state feedback.
-        if elastic.joints != state.report.joints {
-            pose = JointSines::of(&elastic.joints);
+        if law_state.joints != state.report.joints {
+            pose = JointSines::of(&law_state.joints);
         }
         let limit = self.heating.limit(&state.heat);
         let begins = !matches!(state.doing, Doing::Following(_));
-        state.doing = Doing::Following(elastic.joints);
+        state.doing = Doing::Following(law_state.joints);
         let distribution = self.reachable(&(limit - law.upper_reserve));
         let springs = (spring, joint_spring, &set_point.motion);
         let gravity = (&self.gravity, &state.gravity);
         let Decision { pulls, against_friction, joint_torques, desired_tensions, torque_scale } =
-            law.decide(elastic, &pose, springs, begins, (&self.soft_limits, used, gravity), &distribution);
+            law.decide(law_state, &pose, springs, begins, (&self.soft_limits, used, gravity), &distribution);
         state.against_friction = against_friction;
         self.command_pulls(state, &pulls, &limit, false);
         state.report.joint_torques = joint_torques;

@@ -1,5 +1,5 @@
 //! Detects that a contact is about to slip: the force at the fingertip leaves the cone of `events.slip_friction`, which
-//! is narrower than the friction cone.
+//! should be narrower than the friction cone.
 //!
 //! Without touch sensors, the normal of a contact is not measured. The detector uses the direction that the force has
 //! when the finger first comes to rest during the contact. This direction is the normal if the finger has pressed

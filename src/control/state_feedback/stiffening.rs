@@ -5,8 +5,8 @@
 //! pulleys that the dither keeps sliding act like viscous friction. If the tip is close to the axis of joint 0, or the
 //! finger is nearly straight, K_theta is small in one direction. The lag is then larger than 5 % of a step of 5 mm.
 //!
-//! The additional stiffness is c R k R^T, a share of the stiffness that the tendons give the joints. It raises the
-//! share that K_theta uses by the same c in every direction. So it helps most in the directions in which K_theta is
+//! The additional stiffness is sigma R k R^T, a share of the stiffness that the tendons give the joints. It raises the
+//! share that K_theta uses by the same sigma in every direction. So it helps most in the directions in which K_theta is
 //! small, and changes little in the stiff directions, in which the loop has less margin.
 //!
 //! The additional stiffness decays soon after the motion. So a finger whose reference is at rest becomes the commanded
@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 /// Largest share of R k R^T that the spring, the soft joint limits and the additional stiffness use together. With
 /// 0.68, steps of fingers with rotors of half the inertia did not settle in some poses.
 const SUPPORTED: f64 = 0.57;
-/// Largest c, as a fraction of the share that the spring uses. A limp finger stays limp.
+/// Largest sigma, as a fraction of the share that the spring uses. A limp finger stays limp.
 const LARGEST_RATIO: f64 = 0.5;
 /// Largest additional torque, as a fraction of the sum of the magnitudes of the torques that the four tendons exert on
 /// the joint at the pretension. An object in the way of the finger meets at most this additional torque.
@@ -39,14 +39,14 @@ const ENDED: f64 = 1e-3;
 /// Time constant of the filter that finds the deflection before a motion, s.
 const RESTING: f64 = 0.1;
 
-/// Adds c R k R^T (d - d_0) to the torque of the spring. d is the deflection of the joints, and d_0 that before the
+/// Adds sigma R k R^T (d - d_0) to the torque of the spring. d is the deflection of the joints, and d_0 that before the
 /// motion. d_0 is not zero if an object loads the finger, or if gauges or moment arms are wrong. Without d_0, the
-/// finger would move when c rises.
+/// finger would move when sigma rises.
 #[derive(Clone, Debug)]
 pub(super) struct Stiffening {
     /// R k R^T, N cm/rad.
     tendons: Matrix3<f64>,
-    /// Largest c.
+    /// Largest sigma.
     most: f64,
     /// Largest additional torque, N cm.
     largest: Vector3<f64>,

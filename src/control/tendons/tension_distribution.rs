@@ -42,7 +42,8 @@ pub struct BoundedDistribution<'a> {
 
 impl TensionDistribution {
     /// Constructs the distribution from bounds in N: `minimum` for all tendons, and `maximum` for each, which includes
-    /// the limit of its motor. Returns an error if no tensions within the bounds give zero joint torque.
+    /// the limit of its motor. Returns an error unless every maximum is finite and above the tension that its tendon
+    /// has at zero joint torque.
     pub fn new(tendons: &Tendons, minimum: f64, maximum: Vector4<f64>) -> Result<Self, Unusable> {
         crate::control::number_checks::positive("tendon.minimum", &[minimum])?;
         let at_rest = tendons.pretension(minimum);
@@ -89,10 +90,10 @@ impl TensionDistribution {
 impl BoundedDistribution<'_> {
     /// Returns the smallest tensions, in the sense of eq. 20, for the joint torque tau, N cm.
     ///
-    /// For each tendon j there is a tau_g that puts it at t_min. Tendon i then has the tension s (A_i - A_j q_i/q_j) +
-    /// t_min q_i/q_j, where A = Q tau and s is the scale. Eq. 20 selects the largest of these tau_g. This tau_g gives
-    /// tendon i the largest of these tensions, so each of them must be at most t_max. These conditions, one for each
-    /// pair i, j, bound s.
+    /// For each tendon j there is a tau_g that puts it at t_min. Tendon i then has the tension
+    /// s (A_i - A_j q_i4/q_j4) + t_min q_i4/q_j4. Here s is the scale, and A = Q (tau, 0). Eq. 20 selects the largest
+    /// of these tau_g. This tau_g gives tendon i the largest of these tensions, so each of them must be at most t_max.
+    /// These conditions, one for each pair i, j, bound s.
     #[inline]
     pub fn distribute(&self, torques: &Vector3<f64>) -> DistributedTensions {
         let Self { of, maximum } = self;

@@ -235,9 +235,9 @@ faults! {
         "the program or its user wants this finger to be at rest, or detected a danger",
         "Make sure that the finger can move safely, then recover it", [Recover];
     51 SetPointExpired "SET_POINT_EXPIRED" Fault Finger Time "set point expired",
-        "the planner has sent nothing for longer than its last set point was valid, and either \
-         finger.motion.on_expiry is \"end state\" or finger.motion.end_state_ms (with sun2xp serve: \
-         serve.end_ms) has passed as well",
+        "the planner has sent nothing for longer than its last set point was valid; if finger.motion.on_expiry is \
+         \"end state\", the finger then stops at once; otherwise it stops finger.motion.end_state_ms later (with \
+         sun2xp serve: serve.end_ms after the newest target)",
         "the planner hangs, is stopped in a debugger, or plans for longer than its set points are valid",
         "Recover the finger and send set points in time, or raise finger.motion.valid_ms, finger.motion.end_state_ms \
          or serve.end_ms", [Recover];

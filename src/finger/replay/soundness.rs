@@ -95,7 +95,7 @@ impl<'a> InputLimits<'a> {
     pub fn new(hand: &'a ConfiguredHand) -> Self {
         // A built-in simulated finger waits for its servo and never skips a period, so the limit for real fingers is
         // used for all fingers.
-        Self { hand, most_skipped: u64::from(LinkWatch::new(hand, false).most()) }
+        Self { hand, most_skipped: u64::from(LinkWatch::new(hand, false).fault_at()) }
     }
 
     /// Checks an input. If no servo can have recorded one of its values, returns the key of that value, and the reason.

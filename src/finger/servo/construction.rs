@@ -70,7 +70,7 @@ impl FingerServo {
     /// simulated fingers wait too.
     pub fn in_step(mut self, hand: &ConfiguredHand) -> Self {
         self.link = LinkWatch::new(hand, true);
-        self.supervision = Supervision::new(hand.rate, self.link.most(), self.board.gauge_bits);
+        self.supervision = Supervision::new(hand.rate, self.link.fault_at(), self.board.gauge_bits);
         self
     }
 
@@ -126,7 +126,7 @@ impl FingerServo {
             answered: true,
             replied: false,
             last_answer: 0,
-            supervision: Supervision::new(hand.rate, link.most(), identity.gauge_bits),
+            supervision: Supervision::new(hand.rate, link.fault_at(), identity.gauge_bits),
             link,
             motion: SetPointMotion::new(),
             alarm: StopSignal::new(false, stop_calls()),

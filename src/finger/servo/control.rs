@@ -19,7 +19,7 @@ impl FingerServo {
         let input = ControlInput {
             anew_from: std::mem::take(&mut self.restart).then_some(self.feedback),
             activity: self.activity,
-            skipped: if self.link.in_step() { 0 } else { skipped.min(self.link.most().into()) },
+            skipped: if self.link.in_step() { 0 } else { skipped.min(self.link.fault_at().into()) },
             fading: self.link.fading(),
             gravity: Some((*self.mailbox.gravity()).into()),
             path_begins: std::mem::take(&mut self.motion.path.begins),

@@ -41,8 +41,9 @@ impl Ranges {
         Ok(admitted)
     }
 
-    /// Checks that Kx, N/cm, is symmetric, positive semi-definite and within the bound, and returns it. The argument
-    /// is `rows[row][column]`.
+    /// Checks that Kx, N/cm, is symmetric, positive semi-definite and within the bound, and returns it. Mirrored
+    /// entries are averaged. If `out_of_range` is `Clamp`, a Kx beyond the bound is not refused: the nearest one within
+    /// the bound is returned. The argument is `rows[row][column]`.
     ///
     /// # Errors
     /// Returns an error if Kx is not finite, is not a spring or is too stiff.

@@ -34,7 +34,7 @@ fn later_runs_are_added_key_by_key() {
 
 /// The file names the board. The open hand has the port at which the board was found.
 #[test]
-fn the_board_counts_and_not_the_port_at_which_it_was_found() {
+fn the_board_matters_and_not_the_port_at_which_it_was_found() {
     let mut file = Configuration::default();
     file.fingers[1].board = Some(BoardNumber([7; 12]));
     let mut open = file.clone();

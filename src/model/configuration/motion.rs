@@ -12,8 +12,8 @@ pub struct ConfiguredMotion {
     pub acceleration: f64,
     /// Largest jerk of a joint on a path, rad/s^3.
     pub jerk: f64,
-    /// Period of the planner's set points, ms, over which they are interpolated. A period below 10 ms acts as 10 ms.
-    /// Without it they are not interpolated.
+    /// Period of the planner's set points, ms. The motion to each set point is spread over three such periods, or more
+    /// if the set point is far. A period below 10 ms acts as 10 ms. Without it set points are not interpolated.
     pub interpolate_ms: Option<f64>,
     /// Time for which a set point is valid, ms. Without it set points do not expire.
     pub valid_ms: Option<f64>,

@@ -153,7 +153,7 @@ static const char *check_example(int which, const uint8_t *wire, unsigned length
     if (!from_wire(wire, length - 1, &decoded))
         return "does not decode";
     if (decoded.length != frame_length(decoded.bytes[0] >> 4) || length != decoded.length + 2)
-        return "has not the length of its type";
+        return "does not have the length of its type";
     if (decoded.length != own.length || memcmp(decoded.bytes, own.bytes, own.length) != 0)
         return "is not what the text beside it says";
     if (own_length != length || memcmp(encoded, wire, length) != 0)
@@ -176,7 +176,7 @@ static void begin_example(struct reading *reading, const char *name)
     for (reading->which = 0; reading->which < EXAMPLES; reading->which++)
         if (strcmp(name, examples[reading->which].name) == 0)
             return;
-    printf("%s: unknown here\n", name);
+    printf("%s: no example has this name: add it to examples.c, or correct the name on the page\n", name);
     reading->wrong = 1;
     reading->which = -1;
 }
@@ -208,7 +208,7 @@ int check_page(const char *path)
         return 1;
     }
     if (crc32_of((const uint8_t *)"123456789", 9) != 0xCBF43926u) {
-        printf("the check of 123456789 differs\n");
+        printf("the CRC-32 of 123456789 is not 0xCBF43926: correct crc32_of\n");
         reading.wrong = 1;
     }
     while (fgets(text, sizeof text, page)) {
@@ -222,7 +222,7 @@ int check_page(const char *path)
     fclose(page);
     for (int i = 0; i < EXAMPLES; i++)
         if (!reading.found[i]) {
-            printf("%s: not on the page\n", examples[i].name);
+            printf("%s: not on the page: add it to %s, or remove it from examples.c\n", examples[i].name, path);
             reading.wrong = 1;
         }
     return reading.wrong;

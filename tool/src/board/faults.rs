@@ -21,6 +21,11 @@ pub enum Trouble {
     PlugIn,
 }
 
+/// The answer to an order for a finger that the board does not have.
+pub fn no_finger(number: u8) -> String {
+    format!("error this board has no finger {number}: name a finger that it has (option --finger)")
+}
+
 /// A duration longer than any program runs, ns.
 const FOREVER: u64 = u64::MAX;
 
@@ -127,7 +132,7 @@ impl Trouble {
         {
             Some(true) => "ok".into(),
             Some(false) => format!("error finger {number} has no part with this number"),
-            None => format!("error this board has no finger {number}"),
+            None => no_finger(number),
         };
         match *self {
             Trouble::Finger(number, defect) => finger(number, &|finger| finger.inject(&defect)),

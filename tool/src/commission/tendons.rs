@@ -24,7 +24,11 @@ pub fn tendons(desk: &mut Desk) -> Result<Outcome, Failure> {
     desk.machine.configure(&desk.finger)?;
     let found = match desk.machine.carry_out(Task::Identify) {
         Ok(Findings::Identified(found)) => found,
-        Ok(other) => return Err(format!("the identification returned {other:?}").into()),
+        Ok(other) => {
+            return Err(
+                format!("the identification returned {other:?}. This is a defect of sun2xp: please report it").into()
+            );
+        }
         Err(Refused::Obstacle(obstacle)) => {
             outcome.wrong(Wrong::Refused(obstacle.to_string()));
             return Ok(outcome);

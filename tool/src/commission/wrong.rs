@@ -129,6 +129,12 @@ mod tests {
         }
     }
 
+    /// A motor that is commutated electronically has more than two wires.
+    #[test]
+    fn the_wires_of_a_reversed_motor_are_swapped_only_if_it_is_brushed() {
+        assert!(Wrong::MotorReversed(3).remedy().contains("if motor 3 is brushed"));
+    }
+
     #[test]
     fn readings_that_no_exchange_explains_are_listed() {
         let text = Wrong::GaugesUnclear([2, 2, 0, 4]).to_string();

@@ -47,7 +47,9 @@ pub fn zero(desk: &mut Desk, outcome: &mut Outcome, held: bool) -> Result<bool, 
     desk.machine.configure(&desk.finger)?;
     let zeros = match desk.machine.carry_out(Task::Zero) {
         Ok(Findings::Zeros(zeros)) => zeros,
-        Ok(other) => return Err(format!("the zeroing returned {other:?}").into()),
+        Ok(other) => {
+            return Err(format!("the zeroing returned {other:?}. This is a defect of sun2xp: please report it").into());
+        }
         Err(Refused::Obstacle(obstacle)) => {
             outcome.wrong(match obstacle {
                 Obstacle::Moved { .. } | Obstacle::NotHeld { .. } => Wrong::PoseRefused(obstacle.to_string()),

@@ -119,7 +119,8 @@ impl Tracker {
         }
     }
 
-    /// Takes messages into account. `lost` is the number of cycles of each finger that are missing before them.
+    /// Takes messages into account. `lost` is the number of cycles of each finger that are missing before or between
+    /// them.
     pub fn apply(&mut self, messages: &[Message], lost: [u64; FINGERS]) {
         for finger in FingerNumber::ALL {
             if let Some(state) = self.state.finger_mut(finger) {

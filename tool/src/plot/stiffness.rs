@@ -91,7 +91,7 @@ impl Plot for Stiffness {
         };
         let legend = [
             (Sign::Line(SENT), "stiffness as it was sent".into()),
-            (Sign::Line(IN_FORCE), format!("stiffness in force, scale {scale:.2}")),
+            (Sign::Line(IN_FORCE), format!("stiffness in the pose, scale {scale:.2}")),
             (Sign::Line(FORCE), "force of the tip at the end".into()),
             (Sign::Line(FORCES), "before".into()),
         ];

@@ -9,12 +9,13 @@ use super::{Plot, Selection};
 use crate::failure::Failure;
 use crate::trace::Item;
 
-/// The curves of the fingers. Each finger also has its own width, so that equal curves do not hide each other.
+/// The curves of the fingers. They differ in colour and in width, so that equal curves do not hide each other.
 const CURVES: [Stroke; 3] = [Stroke::solid(BLUE, 3.0), Stroke::solid(VERMILION, 2.0), Stroke::solid(GREEN, 1.2)];
 
 const PERIOD: Stroke = Stroke { dashes: Some("2 3"), ..Stroke::solid(SOFT_INK, 1.4) };
 
-/// Heights of the histograms and of the panel below them, and the space between them, pixels.
+/// Height of the histograms, height of the panel below them, and the vertical space between the histograms and this
+/// panel, pixels.
 const HISTOGRAM: f64 = 270.0;
 const COURSE: f64 = 190.0;
 const GAP: f64 = 84.0;
@@ -66,7 +67,7 @@ impl Plot for Timing {
         let height = HISTOGRAM + GAP + COURSE;
         let only = if let [(index, _)] = present[..] { Some(index as i32 + 1) } else { None };
         let selection = &Selection { finger: only, ..selection.clone() };
-        let subtitle = subtitle(selection, self.rate, "from the scheduled beginning of a cycle");
+        let subtitle = subtitle(selection, self.rate, "times since the scheduled beginning of the cycle");
         let mut figure = Figure::new("Timing of the servo", &subtitle, &legend, height);
         let wake_up = histogram("wake-up", &present, |one| one.1, period);
         let whole = histogram("end of the computation", &present, |one| one.2, period);
@@ -88,13 +89,11 @@ fn histogram(name: &str, fingers: &[(usize, &Times)], of: fn(&(f64, f32, f32)) -
     let largest = sorted.iter().map(|(_, values)| values[values.len() - 1]).fold(period as f32, f32::max);
     let mut marks = vec![Mark::Moment { x: period, stroke: PERIOD, label: String::new() }];
     let mut most = 1;
-    let mut worst = Vec::new();
     for (index, values) in &sorted {
         let bins = bins(values);
         most = bins.iter().map(|&(_, count)| count).fold(most, usize::max);
         let name = format!("{name} {}", index + 1);
         marks.push(Mark::Curve { name, points: outline(&bins), stroke: CURVES[*index] });
-        worst.push(values[values.len() - 1]);
     }
     let all: Vec<f32> = {
         let mut all: Vec<f32> = sorted.into_iter().flat_map(|(_, values)| values).collect();

@@ -1,6 +1,6 @@
 //! The highest rate at which a hand meets every deadline.
 
-use super::off_line::{Costs, RateLimit, Scheduled, Sensor, off_line_schedule};
+use super::off_line::{Costs, Scheduled, Sensor, Violation, off_line_schedule};
 use serde::Serialize;
 use sun2xp::model::configuration::{Configuration, RATES};
 
@@ -14,10 +14,10 @@ pub struct Fastest {
     pub limit: Option<Limit>,
 }
 
-/// A deadline that may be missed, and the first thread that may miss it.
+/// A condition that may be violated, and the first thread that may violate it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Limit {
-    pub missed: RateLimit,
+    pub missed: Violation,
     pub thread: u8,
 }
 

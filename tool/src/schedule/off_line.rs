@@ -76,14 +76,14 @@ pub struct Scheduled {
     /// The latest times at which the replies have arrived and the cycle is done, us after the scheduled beginning of
     /// the cycle. `None` if there is no bound within the period.
     pub response: Option<(f64, f64)>,
-    /// The deadline that may be missed, if any.
-    pub limit: Option<RateLimit>,
+    /// The condition that may be violated, if any.
+    pub limit: Option<Violation>,
 }
 
-/// A deadline that may be missed.
+/// A condition of the schedule that may be violated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum RateLimit {
+pub enum Violation {
     /// The line is busy for a larger part of a period than permitted.
     Line,
     /// Replies may arrive after the part of a period in which they are awaited.
@@ -115,9 +115,9 @@ pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor:
             let window = task.wake_up as f64 * 1e-3 + REPLY_WINDOW * period;
             let response = response.map(|response| (response.waited as f64 * 1e-3, response.done as f64 * 1e-3));
             let limit = match response {
-                _ if line > USABLE_SHARE => Some(RateLimit::Line),
-                None => Some(RateLimit::Cycle),
-                Some((replies, _)) if replies > window => Some(RateLimit::Replies),
+                _ if line > USABLE_SHARE => Some(Violation::Line),
+                None => Some(Violation::Cycle),
+                Some((replies, _)) if replies > window => Some(Violation::Replies),
                 Some(_) => None,
             };
             let load = (task.before as f64 + task.after as f64) * 1e-3 / period;

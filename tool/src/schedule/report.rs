@@ -1,7 +1,7 @@
 //! The result of `sun2xp schedule`, for people and for other programs.
 
 use super::fastest::{Fastest, Limit};
-use super::off_line::{Costs, RateLimit, Scheduled, Sensor, off_line_schedule, touches};
+use super::off_line::{Costs, Scheduled, Sensor, Violation, off_line_schedule, touches};
 use crate::print::{Cell, Look, Screen, Table, painted};
 use serde::Serialize;
 use std::io::{self, Write};
@@ -169,10 +169,10 @@ fn capitalized(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-fn missed(limit: RateLimit) -> &'static str {
+fn missed(limit: Violation) -> &'static str {
     match limit {
-        RateLimit::Line => "the line is too busy",
-        RateLimit::Replies => "replies may arrive too late",
-        RateLimit::Cycle => "a cycle may end too late",
+        Violation::Line => "the line is too busy",
+        Violation::Replies => "replies may arrive too late",
+        Violation::Cycle => "a cycle may end too late",
     }
 }

@@ -44,7 +44,7 @@ fn an_eventful_run_that_ends_in_a_fault_is_written_and_replayed() {
         assert!(controls(&recording).any(|control| control.input.anew_from.is_some()), "never restarted");
         assert!(
             controls(&recording).any(|control| control.input.fading.is_some_and(|fading| fading.left == 0.0)),
-            "never at rest"
+            "never faded"
         );
 
         let (status, told) = replayed(file);
@@ -100,8 +100,9 @@ fn refused_and_superseded_adjustments_are_not_kept() {
         assert_eq!(Calibrating::begin(&hand, 2, Task::Zero).expect_err("refused").errno(), libc::EBUSY);
         cycles(&hand, 5);
     }
-    // At most these controllers are kept: the one before the order to calibrate, the one with this order, the one for
-    // the calibration, the newest one, and the one that the newest one replaced.
+    // At most these controllers are kept: the one before the order to calibrate, the one that the servo took in the
+    // same cycle as this order, the one with which the calibration computes, the newest one, and the one that the
+    // newest one replaced.
     assert!(kept(2) <= 5, "{}", kept(2));
     wait_until("calibrated", || matches!(calibrating.poll(&hand), Ok(CalibrationState::Done(_))));
     hand.send_position(2, [0.1, 0.5, 1.0]).expect("sent");

@@ -86,7 +86,7 @@ fn a_hand_has_the_listed_fingers() {
     for (list, word) in [
         ("[]", "list the numbers of its fingers, for example [2]"),
         ("[4]", "no finger 4: fingers are 1, 2 and 3"),
-        ("[2, 2]", "twice"),
+        ("[2, 2]", "a finger is listed twice: list each finger once, for example [1, 3]"),
         ("2", "must be"),
     ] {
         let (line, reason) = refusal(&format!("[hand]\nfingers = {list}\n"));

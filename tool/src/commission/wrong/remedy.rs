@@ -40,7 +40,7 @@ impl Wrong {
                 format!("Turn motor {motor} by exactly one turn; a mark on its shaft helps")
             }
             Self::MotorReversed(motor) => {
-                format!("Nothing to do: motor.sign compensates it. Or swap the two wires of motor {motor}")
+                format!("Nothing to do: motor.sign compensates it. Or, if motor {motor} is brushed, swap its two wires")
             }
             Self::MotorBlocked(motor) => format!("Free motor {motor}: its drum, brake, bearing or tendon blocks it"),
             Self::MotorDead(motor) => format!(

@@ -11,13 +11,13 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, BorderType, Padding, Paragraph};
 use sun2xp::telemetry::Sample;
 
-/// Inner width from which labels are written out.
+/// Smallest inner width at which labels are not abbreviated.
 const WIDE: usize = 32;
 
-/// Width from which the frame has a margin inside.
+/// Smallest width at which the frame has an inner margin.
 const PADDED: u16 = 38;
 
-/// Inner width from which numbers have more distance.
+/// Smallest inner width at which there is one more column between numbers.
 const SPACIOUS: usize = 36;
 
 /// Width of a number with its sign and two decimals.
@@ -26,7 +26,7 @@ const NUMBER: usize = 6;
 /// Number of lines inside the frame of a compact finger.
 pub const COMPACT: u16 = 10;
 
-/// Number of lines inside the frame of a finger that is shown with all its values.
+/// Largest number of lines inside the frame of a finger. All its values with the empty lines between them need 21.
 pub const COMPLETE: u16 = 23;
 
 /// Draws a finger into its column.
@@ -60,10 +60,10 @@ pub fn draw(frame: &mut Frame, area: Rect, palette: &Palette, finger: &FingerSta
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-/// The lines in place of the values of a finger that has had no cycle.
+/// The lines in place of the values of a finger of which no cycle is known in which the controller ran.
 pub fn no_cycle(palette: &Palette, finger: &FingerState) -> Vec<Line<'static>> {
     let reason = match finger.known {
-        true => ["no cycle with a command", "since this view began"],
+        true => ["controller has not run", "since this view began"],
         false => ["no cycle yet", ""],
     };
     reason.map(|line| Line::styled(line, palette.dim)).into()

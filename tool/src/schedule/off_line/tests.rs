@@ -27,7 +27,7 @@ fn three_fingers_on_three_cores() {
     }
     // The line is the limit: 550 us are 80 % of a period at 1454.5 Hz.
     assert_eq!(Fastest::of(&hand, &COSTS, &Sensor::default()).rate, Some(1454));
-    assert_eq!(off_line_schedule(&hand, 1455.0, &COSTS, &Sensor::default())[0].limit, Some(RateLimit::Line));
+    assert_eq!(off_line_schedule(&hand, 1455.0, &COSTS, &Sensor::default())[0].limit, Some(Violation::Line));
     // Ten more bytes take 100 us more. At 2 megabaud the exchange takes 225 + 100 + 50 us, which is 80 % of a
     // period at 2133 Hz.
     let sensor = Sensor { bytes: 10, compute: 50.0 };
@@ -35,7 +35,7 @@ fn three_fingers_on_three_cores() {
     hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
     // 100 + 10 + 375 + 70 = 555: the cycle is done in time up to 1801 Hz.
     assert_eq!(Fastest::of(&hand, &COSTS, &sensor).rate, Some(1801));
-    assert_eq!(off_line_schedule(&hand, 1802.0, &COSTS, &sensor)[0].limit, Some(RateLimit::Cycle));
+    assert_eq!(off_line_schedule(&hand, 1802.0, &COSTS, &sensor)[0].limit, Some(Violation::Cycle));
 }
 
 /// On one core each thread may have to wait for two cycles of each other thread: 680 + 4 * 30.
@@ -59,7 +59,7 @@ fn three_fingers_on_one_thread() {
     assert_eq!(thread.response, Some((680.0, 740.0)));
     // On one port the replies follow each other: 100 + 10 + 170 + 100 + 3 * 280 + 60 is more than a period.
     hand.fingers.iter_mut().for_each(|finger| finger.port = "/dev/ttyUSB0".into());
-    assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[0].limit, Some(RateLimit::Line));
+    assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[0].limit, Some(Violation::Line));
     hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
     let schedule = off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default());
     assert_eq!(schedule[0].response, Some((715.0, 775.0)));
@@ -114,5 +114,5 @@ fn the_reply_window_begins_at_the_wake_up() {
     let mut apart = hand.clone();
     apart.fingers.iter_mut().enumerate().for_each(|(core, finger)| finger.core = Some(core));
     let costs = Costs { wake_up: 9.0, write: 310.0, ..costs };
-    assert_eq!(off_line_schedule(&apart, 1000.0, &costs, &Sensor::default())[0].limit, Some(RateLimit::Replies));
+    assert_eq!(off_line_schedule(&apart, 1000.0, &costs, &Sensor::default())[0].limit, Some(Violation::Replies));
 }
