@@ -1,5 +1,5 @@
-//! Changes of a finger's configuration while it runs. The new controller is made on the planner's thread and passed to
-//! the servo as a whole.
+//! Changes of a finger's configuration while it runs. An ordinary thread makes the new controller, and passes it to the
+//! servo as a whole.
 
 use crate::control::motion::PathExtent;
 use crate::control::{JointSpring, SetPoint};
