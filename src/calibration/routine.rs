@@ -92,10 +92,10 @@ impl Calibration {
 
     /// Returns the configuration of the finger's controller while a routine runs at `rate`, Hz. The scheme is Figure 10
     /// of COINS TR 90-48, and configured gains of this scheme stay in force. If the gains on the tension error are not
-    /// configured, they are lower from 750 Hz up than without a routine. Routines move slowly, and the lower gains are
-    /// stable with gauges and amplifiers that lag by 1 ms. State feedback is not used, because it relies on the
-    /// stiffness, friction and zeros that a routine has yet to find. Figure 11 is not used, because it would adapt to
-    /// uncalibrated gauges.
+    /// configured, a routine at 750 Hz or more uses lower gains than the default ones of this scheme. Routines move
+    /// slowly, and the lower gains are stable with gauges and amplifiers that lag by 1 ms. State feedback is not used,
+    /// because it relies on the stiffness, friction and zeros that a routine has yet to find. Figure 11 is not used,
+    /// because it would adapt to uncalibrated gauges.
     pub fn controlled(finger: &ConfiguredFinger, rate: f64) -> ConfiguredFinger {
         let configured = &finger.controller;
         let controller = match configured.scheme(rate) {
@@ -156,8 +156,9 @@ impl Calibration {
 mod tests {
     use super::*;
 
-    /// With state feedback, only calibrations use `tension_gain` and `tension_integral`. Without their values in a
-    /// calibration, a reader of the reference would take the values for Figure 10 as those in force.
+    /// With state feedback, only calibrations use `tension_gain` and `tension_integral`. If `docs/sun2xp.toml`, the
+    /// reference of all keys, did not give their values in a calibration, a reader would take the values for Figure 10
+    /// as those in force.
     #[test]
     fn the_reference_gives_the_gains_of_a_calibration() {
         let controller = Calibration::controlled(&ConfiguredFinger::default(), GENTLE_RATE).controller;

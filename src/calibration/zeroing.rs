@@ -117,8 +117,8 @@ impl Zeroing {
         }
     }
 
-    /// Runs one cycle of the current phase. A finger under control is read first. Every method zeros the gauges before
-    /// it zeros the encoders in the configured pose or between the stops, or keeps their zeros.
+    /// Runs one cycle of the current phase. A finger under control is read first. Then every method zeros the gauges.
+    /// Afterwards it zeros the encoders, in the configured pose or between the stops, or keeps their zeros.
     pub fn step(&mut self, instruments: &mut Instruments, sample: &Sample) -> Stepped {
         match self.phase {
             Phase::Start => self.begin(instruments, sample),

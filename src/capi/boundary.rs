@@ -40,8 +40,8 @@ pub(super) fn guarded(name: &'static str, handle: Handle, call: impl FnOnce() ->
     result
 }
 
-/// Runs a quick call in its own frame, as [`contained`] does. It is compiled once for all calls, which keeps the
-/// library small.
+/// Runs a quick call in its own frame, as [`contained`] does. This function is compiled once for all calls, which keeps
+/// the library small.
 #[inline(never)]
 #[allow(improper_ctypes_definitions, reason = "called from this file only")]
 extern "C" fn quick(name: &'static str, handle: Handle, call: &mut dyn FnMut() -> Result<(), Refusal>) -> c_int {
@@ -79,7 +79,7 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
 /// The part of a slow call that its own thread runs.
 type Work = Box<dyn FnOnce() -> Result<(), Refusal> + Send>;
 
-/// Runs a slow call in its own thread, as [`delegated`] does. It is compiled once for all calls.
+/// Runs a slow call in its own thread, as [`delegated`] does. This function is compiled once for all calls.
 #[inline(never)]
 #[allow(improper_ctypes_definitions, reason = "called from this file only")]
 extern "C" fn elsewhere(
@@ -100,8 +100,8 @@ extern "C" fn elsewhere(
 }
 
 /// Runs a slow call that must take place in any case. Unlike [`delegated`], it runs the call in the planner's thread if
-/// there is no memory for another thread or the system refuses to start one. `prepare` makes the call in the planner's
-/// thread.
+/// there is no memory for another thread or the system refuses to start one. `prepare` runs in the planner's thread and
+/// returns the function that carries out the call.
 #[inline(always)]
 pub(super) fn delegated_or_done_here<C: FnOnce() -> Result<(), Refusal> + Copy + Send + 'static>(
     name: &'static str,

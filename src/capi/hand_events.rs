@@ -118,7 +118,8 @@ impl HandEvents {
     fn guarded(&self, removed: Arc<AtomicBool>, mut callback: impl FnMut(&Event, u64)) -> impl FnMut(&Event, u64) {
         move |event, lost| {
             let _calling = self.calling.lock();
-            // This comes before the check of `removed`, so that `end_previous` waits for each callback that passes it.
+            // `running` is set before `removed` is checked, so that `end_previous` waits for each callback that passes
+            // this check.
             *self.running.lock() = Some(removed.clone());
             // ENDED and `removed` can have changed while this thread waited for the lock.
             if !ENDED.load(Ordering::Acquire) && !removed.load(Ordering::Acquire) {
@@ -165,7 +166,7 @@ mod tests {
     use std::sync::mpsc::channel;
     use std::thread;
 
-    /// A listener can be ended in a callback while its own thread waits for the lock of the callbacks.
+    /// A callback that runs can remove a listener whose thread waits for the lock `calling` at this time.
     #[test]
     fn a_removed_callback_is_not_called() {
         let (finger, kind, part) = (FingerNumber::ONE, EventKind::Settled, Part::Finger);

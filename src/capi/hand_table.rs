@@ -19,8 +19,8 @@ struct Place {
     /// Locked while a hand is being opened or closed at this place, which takes a long time. Calls for a finger never
     /// wait for this lock.
     lifecycle: Mutex<()>,
-    /// Locked for writing only to insert or remove a hand.
-    /// Boxed, so that the table is small and all zeros, and takes no space in the library's file.
+    /// Locked for writing only to insert or remove a hand. The hand is boxed, so that the table is small and all zeros,
+    /// and takes no space in the library's file.
     hand: RwLock<Option<Box<Opened>>>,
     /// The value of the handle of the open hand; 0 if there is none.
     handle: AtomicUsize,
@@ -57,7 +57,7 @@ pub(super) fn default_handle() -> Handle {
 /// Opens the hand of OpenHand. `open_remote` opens the hand if it is on another machine.
 pub(super) fn open_default(open_remote: RemoteOpener) -> Result<(), Refusal> {
     refuse_while_exiting()?;
-    // The lifecycle of an open hand is not locked here, because its own callback may be closing it.
+    // The lifecycle of an open hand is not locked, because a callback that closes this hand would be refused meanwhile.
     if default_handle() != Handle::NULL {
         return Err(Refusal::AlreadyOpen);
     }
@@ -265,7 +265,8 @@ pub(super) fn remote_to_command(handle: Handle) -> Result<Option<Arc<dyn RemoteH
     remote(handle)
 }
 
-/// The events of an open hand. They can be used without locking the hand.
+/// The events at the place that a handle names. They can be used without locking the hand. The hand of the handle may
+/// be closed.
 pub(super) fn events(handle: Handle) -> Result<&'static HandEvents, Refusal> {
     Place::named_by(handle).map(|place| &place.events)
 }

@@ -102,7 +102,7 @@ pub struct sun2xp_io {
     pub in_step: c_int,
     /// Shortest watchdog time that the hardware supports, s.
     pub shortest_watchdog: f64,
-    /// Step in which the library stores tensions, N. 0 selects 0.005 N.
+    /// Resolution with which the library stores tensions, N. 0 selects 0.005 N.
     pub tension_unit: f64,
     /// First argument of the functions.
     pub user: *mut c_void,

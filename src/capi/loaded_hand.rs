@@ -123,8 +123,8 @@ fn last_refusal(library: &RemoteLibrary, handle: *const sun2xp_hand) -> RemoteRe
         let text = "libsun2xp_remote gave no reason: please report this defect of the library".into();
         return RemoteRefusal::Other { number: SUN2XP_ERROR_DEFECT, errno: libc::EIO, text, actions: Vec::new() };
     };
-    // The name of the call and the remedy are removed here. The report adds the name and the remedy of the
-    // call that the planner made.
+    // The name of the call and the remedy are removed here, because `reporting::refuse` adds the name of the call that
+    // the planner made, and the remedy.
     let text = text.strip_prefix(&format!("{call}: ")).unwrap_or(&text);
     let text = text.strip_suffix(&format!(" ({remedy})")).unwrap_or(text).to_owned();
     RemoteRefusal::Other { number, errno, text, actions: named(&remedy, Interface::Handles) }

@@ -18,8 +18,8 @@ pub const SUN2XP_LOG_REFUSAL: c_int = 1;
 /// The library continues, but not as the user may expect.
 pub const SUN2XP_LOG_WARNING: c_int = 2;
 
-/// A function that receives messages: severity (SUN2XP_LOG_...), one line of text, and the argument of
-/// sun2xp_set_log.
+/// A function that receives messages. Its arguments are the severity (SUN2XP_LOG_...), one line of text, and
+/// the argument user of sun2xp_set_log.
 pub type sun2xp_log = Option<extern "C" fn(severity: c_int, text: *const c_char, user: *mut c_void)>;
 
 type Callback = extern "C" fn(c_int, *const c_char, *mut c_void);
@@ -37,12 +37,12 @@ thread_local! {
 ///   callback   function to call with each message; null: messages go to standard error again
 ///   user       third argument of each call of the function
 ///
-/// With a callback the library calls it with each message, and prints nothing, except while sun2xp_set_log
-/// replaces the callback. The library calls it in a thread whose call is refused (the first refusal of each
-/// kind, unless hand.print_refusals is false), and in threads of the library that are not real-time, for
-/// example in the one that opens a hand. Several threads may call the callback at the same time. The callback
-/// must make no calls of the library, and must return. The text is valid only until the callback returns.
-/// There is one callback for all hands of the process.
+/// If there is a callback, the library calls it with each message, and prints nothing, except while
+/// sun2xp_set_log replaces the callback. The library calls it in a thread whose call is refused (the first
+/// refusal of each kind, unless hand.print_refusals is false), and in threads of the library that are not
+/// real-time, for example in the one that opens a hand. Several threads may call the callback at the same
+/// time. The callback must make no calls of the library, and must return. The text is valid only until the
+/// callback returns. There is one callback for all hands of the process.
 ///
 /// When sun2xp_set_log has returned, the previous callback is not running and is not called again. A message
 /// that comes while sun2xp_set_log waits for the previous callback is printed.

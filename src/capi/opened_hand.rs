@@ -10,7 +10,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Why a line of a text is refused.
+/// The reason for which a text that is not UTF-8 is refused.
 pub(super) const NOT_UTF_8: &str = "the line is not UTF-8 text: encode it in UTF-8";
 
 #[allow(clippy::large_enum_variant, reason = "the table keeps it in a box")]
@@ -24,8 +24,8 @@ pub(super) enum Source {
     /// The file that OpenHand finds, or none.
     Found,
     File(PathBuf),
-    /// A text that is possibly not UTF-8. It is checked when it is read, because the manual lists EMFILE before this
-    /// reason.
+    /// A text that is possibly not UTF-8. It is checked when it is read, because the manual lists EMFILE before the
+    /// EINVAL of an unusable configuration.
     Text(Vec<u8>),
 }
 

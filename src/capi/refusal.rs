@@ -22,7 +22,7 @@ pub(super) enum Refusal {
     Null { name: &'static str, wanted: Wanted },
     #[error("{name}->size is {size}: set it to sizeof *{name}, at least {least}, before the call")]
     WrongSize { name: &'static str, size: usize, least: usize },
-    /// The report adds the remedy, which depends on the interface.
+    /// `capi/reporting.rs` adds the remedy, which depends on the interface.
     #[error("no hand is open")]
     NoHand,
     #[error("the hand is already open, and stays open: call CloseHand before OpenHand")]

@@ -1,5 +1,5 @@
-//! A hand on another machine, as the C calls use it. The package `remote/library` implements it over the network. This
-//! library implements it by passing the calls on to that package's library ([`crate::capi::loaded_hand`]).
+//! A hand on another machine, as the C calls use it. The package `remote/library` implements it over the network.
+//! libsun2xp implements it by passing the calls on to that package's library ([`crate::capi::loaded_hand`]).
 
 use crate::calibration::Task;
 use crate::capi::event_struct::sun2xp_event;

@@ -33,13 +33,14 @@ impl<T: Copy> SizedStruct<T> {
         // The type name contains the path of its module.
         let of_type = type_name::<T>().rsplit("::").next().unwrap_or_default();
         non_null(place, name, Wanted::Struct(of_type))?;
-        // SAFETY: `place` is not null, as checked above. By the contract its first member exists; the others may not.
+        // SAFETY: `place` is not null, as checked above. By the contract its first member exists. Other members may be
+        // missing.
         let size = unsafe { place.cast::<usize>().read_unaligned() };
         Ok(Self { place: place.cast_mut(), size, name })
     }
 
-    /// Reads the first struct of an array of `count` structs. Refuses a wrong size, and then a number
-    /// that is not 1 to `most`. Returns the first struct and the number of structs.
+    /// Reads the first struct of an array of `count` structs. Refuses a `count` below 1, then a null pointer, then a
+    /// wrong size, then a `count` above `most`. Returns the first struct and the number of structs.
     ///
     /// # Safety
     /// As for [`Self::new`], if `count` is positive.

@@ -1,5 +1,5 @@
-//! Everything that determines a finger's command in one cycle, except the controller and its state. Both the servo and
-//! a replay compute with [`ControlInput::run`].
+//! Everything that determines a finger's command in one cycle, except the controller, its state and the reply. Both the
+//! servo and a replay compute with [`ControlInput::run`].
 
 use crate::control::{Activity, Controller, Feedback, MotorCommand, Report, State};
 use crate::finger::Fading;

@@ -34,8 +34,8 @@ pub struct RestoredBoard {
     pub configured: Configured,
     /// The numbers of requests to stop that were made before the recovery began.
     pub stops: StopCounts,
-    /// Number of restarts of the board that recoveries have found since open. Only boards that lose something at a
-    /// restart are examined: their zeros, or the readings of tactile elements.
+    /// Number of restarts of the board that recoveries have found since open. Only boards that lose their zeros or the
+    /// readings of tactile elements at a restart are examined.
     pub restarts: u32,
 }
 

@@ -9,7 +9,8 @@ use crate::finger::Adjustable;
 pub enum Order {
     /// No order yet.
     Nothing,
-    /// Calibrate. The finger is limp afterwards, whether the calibration succeeds or not.
+    /// Calibrate. If the calibration has moved the finger, the finger is limp afterwards, whether the calibration
+    /// succeeds or not. Otherwise the finger returns to its previous stage.
     Calibrate(CalibrationRun),
     /// Restart with the newest [`Adjustable`], because the units of the controller's state may have changed.
     Restart {

@@ -116,7 +116,8 @@ mod tests {
         SetPoint::hard_finger(Vector3::from_element(angle), Matrix3::identity())
     }
 
-    /// The servo accepts the set point in its next cycle, because it was sent for the phase that has just ended.
+    /// The servo accepts the set point in its next cycle, because the phase for which it was sent has just ended with
+    /// the expiry of the previous set point.
     #[test]
     fn a_set_point_that_was_sent_while_its_predecessor_expired_is_kept() {
         let mut report = FingerReport::opening(at(0.1));
@@ -139,7 +140,7 @@ mod tests {
         assert_eq!((sent.spring, sent.number, sent.set_point), (1, 1, at(0.1)));
     }
 
-    /// The servo discards the correction, because it belongs to the phase that has ended.
+    /// The servo discards the correction, because the set point that it corrects has expired.
     #[test]
     fn a_correction_that_was_sent_while_its_set_point_expired_is_replaced_by_the_held_one() {
         let mut report = FingerReport::opening(at(0.1));

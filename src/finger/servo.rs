@@ -224,7 +224,8 @@ impl FingerServo {
     }
 
     /// Publishes the timing, the record and the report of this cycle. The report comes after the record, so that a
-    /// planner that has read the report of a cycle finds its record, unless the record waits behind a fault.
+    /// planner that has read the report of a cycle finds its record, unless the black box holds the record back until
+    /// an earlier fault is reported (`BlackBox::wait_at_faults`).
     pub fn publish(&mut self) {
         let timing = std::mem::take(&mut self.timing);
         if let Some(record) = self.record.take() {

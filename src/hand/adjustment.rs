@@ -51,8 +51,8 @@ impl Hand {
     /// read, cannot change while the hand is open, or results in a configuration that cannot be used. Returns an error
     /// if the set point that was sent last, or any part of a path that has not ended, is outside the new limits, unless
     /// commands are clamped. If commands are clamped, a path outside the new joint limits ends, and the finger moves to
-    /// its end at once. Clamping a set point does not change the time for which it is valid. After an error nothing is
-    /// changed.
+    /// the last pose of the path at once. Clamping a set point does not change the time for which it is valid. After an
+    /// error nothing is changed.
     pub fn adjust(&self, finger: i32, keys: &str) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;

@@ -40,7 +40,7 @@ pub(super) struct Admission {
     pub law: Law,
     /// The limits of the motion on a path.
     pub motion_limits: MotionLimits,
-    /// Refuse or clamp.
+    /// Whether a value outside its range is refused or clamped.
     pub out_of_range: OutOfRange,
 }
 
@@ -111,7 +111,7 @@ pub(super) struct DampingAdmission {
     pub admissible: AdmissibleDamping,
     /// Length of the last link, cm, with which a rotational stiffness is converted to N/cm.
     pub lever: f64,
-    /// Refuse or clamp.
+    /// Whether a damping outside its range is refused or clamped.
     pub out_of_range: OutOfRange,
 }
 
@@ -136,7 +136,7 @@ impl DampingAdmission {
         Ok(())
     }
 
-    /// Returns the spring with the narrowest range of damping.
+    /// Returns the spring with the narrowest range of damping, which is the stiffer one.
     pub fn with_narrowest_range(&self, springs: [Matrix6<f64>; 2]) -> Result<Matrix6<f64>, SetPointError> {
         let mut narrowest = (f64::NEG_INFINITY, Matrix6::zeros());
         for spring in springs {

@@ -42,8 +42,9 @@ pub struct SearchedPort {
 }
 
 /// Queries the identity of every finger at every port that the patterns name. Only a Hello is sent, which changes
-/// nothing on a board. Serial devices that another program has open are not touched, as far as this user can see them.
-/// Takes at most 160 ms for a port and a rate, and at most 100 ms more for each further finger of the board.
+/// nothing on a board. A serial device that another program has open is not touched, if this user may see the open
+/// files of that program. Takes at most 160 ms for a port and a rate, and at most 100 ms more for each further finger
+/// of the board.
 ///
 /// `baud` are the bit rates to try at each port, bit/s. A * in the last part of a pattern stands for any text.
 pub fn search_boards(patterns: &[String], baud: &[u32]) -> Vec<SearchedPort> {
@@ -87,7 +88,8 @@ pub fn find_boards(configuration: &mut Configuration, fingers: Fingers) -> Resul
     }
 }
 
-/// Returns the only port at which a finger answers whose board has this unique number.
+/// Returns the port at which the board with this unique number answers. Returns an error if there is no such port, or
+/// more than one.
 fn port_of(
     finger: FingerNumber,
     number: BoardNumber,

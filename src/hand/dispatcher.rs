@@ -139,14 +139,15 @@ impl Dispatcher {
         Ok(())
     }
 
-    /// The last two seconds; none before the first cycle.
+    /// The recording of the last two seconds; none before the first cycle.
     pub fn recording(&self, finger: FingerNumber) -> Result<Option<Recording>, HandError> {
         let mut collected = self.collected(finger)?;
         collected.collect();
         Ok(collected.black_box.recording())
     }
 
-    /// A record of the last two seconds.
+    /// The record of `cycle`, or of the newest cycle if `cycle` is none. Returns none if the black box does not contain
+    /// the record.
     pub fn record(&self, finger: FingerNumber, cycle: Option<u64>) -> Result<Option<KeptRecord>, HandError> {
         let mut collected = self.collected(finger)?;
         collected.collect();

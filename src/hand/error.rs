@@ -265,7 +265,8 @@ pub enum HandError {
     NoObject,
 }
 
-/// The remedy of a calibration that is not stored, as a sentence after the reason. One reason already ends with it.
+/// The remedy for a calibration that is not stored, as a sentence after the reason. The text of `Mismatch` already
+/// contains its remedy.
 fn storing_remedy(reason: &ConfigurationError) -> &'static str {
     match reason {
         ConfigurationError::Mismatch { .. } => "",

@@ -40,8 +40,8 @@ const DIGITS: usize = 6;
 /// The only key in [`HELD_BY_BOUND`] that is not in the finger's table.
 const RATE: &str = "hand.rate";
 
-/// The results of one run, or of several calibrations in a row, for one finger. When they are stored, only the keys
-/// in `values` are written.
+/// The results of one calibration, of several calibrations in a row, or of one search for a bound of Kx, for one
+/// finger. When they are stored, only the keys in `values` are written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// Number of the finger, 1 to 3.

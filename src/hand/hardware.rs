@@ -35,8 +35,8 @@ impl Hardware {
         FingerNumber::ALL.into_iter().filter(|finger| self.0[finger.index()].is_some())
     }
 
-    /// Replaces the port, and the default scale and zero of the gauges, of every finger whose hardware the program
-    /// provides.
+    /// Replaces the port of every finger whose hardware the program provides, and the scale and zero of its gauges if
+    /// they have their default values.
     ///
     /// # Errors
     /// Returns an error if such a finger is not opened, or if its configured gauges cannot belong to its hardware.

@@ -98,7 +98,7 @@ pub(super) fn black_box_folder(configuration: &Configuration) -> Result<Option<P
     }
 }
 
-/// Returns the absolute path.
+/// Returns `path` as an absolute path.
 pub(super) fn from_here(path: PathBuf) -> PathBuf {
     // If there is no working directory, a relative path stays as it is. It is not valid then.
     std::path::absolute(&path).unwrap_or(path)

@@ -2,7 +2,7 @@
 //! when the hand is opened.
 //!
 //! The servo releases its link when every finger on it has faulted and all Stop frames are sent, because opening a port
-//! and shaking hands take too long for a servo. A recovery call opens the port and shakes hands on the planner's
+//! and shaking hands take too long for a servo. A recovery call opens the port and shakes hands on an ordinary
 //! thread. If `finger.reconnect` is set, a separate thread already tries to open a failed port before the call. Only a
 //! recovery call configures boards, because that ends a hold. If another finger of the port runs, the servo keeps the
 //! link and relays the handshake of the recovering finger.
@@ -51,7 +51,7 @@ struct Task {
 impl Recovering {
     /// Notes the state of finger 1, 2 or 3 and of every other finger on its port. If the finger is not faulted, the
     /// other steps only wait for a recovery of another caller. If a finger was stopped before this call and its servo
-    /// has not faulted it yet, this call waits until the servo has done so. That takes a cycle.
+    /// has not carried out the stop yet, this call waits until the servo has done so. That takes a cycle.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if a servo does not carry out a request to stop within 5 s.

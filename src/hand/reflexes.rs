@@ -15,7 +15,8 @@ const STRONGEST: f64 = 1000.0;
 /// Largest angle of a rule, rad.
 const WIDEST: f64 = std::f64::consts::PI;
 
-/// Largest damping ratio of a rule. The servo clamps the ratio of a rule to the range for the stiffness.
+/// Largest damping ratio of a rule. When the rule reacts, the servo clamps the ratio to the range that the stiffness of
+/// the finger admits.
 const MOST_DAMPED: f64 = 10.0;
 
 impl Hand {
@@ -24,11 +25,11 @@ impl Hand {
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger already has 16 reflexes. Returns an error if the
-    /// rule names a joint that does not exist, or if its other finger is not opened or is the finger itself. Returns an
-    /// error if a value of the rule is outside its range: times of 0 to 3600 s, forces and tensions of 0 to 1000 N,
-    /// angles of -pi to pi, damping ratios of 0 to 10. A direction must be finite. Returns the errors of
-    /// [`Hand::send_position`] for the pose of [`Reaction::Retract`], and those of [`Hand::send_stiffness`] for the Kx
-    /// of [`Reaction::Soften`].
+    /// rule names a joint that does not exist. Returns an error if [`Condition::OtherFinger`] names a finger that is
+    /// not opened, or the finger of the reflex itself. Returns an error if a value of the rule is outside its range:
+    /// times of 0 to 3600 s, forces and tensions of 0 to 1000 N, angles of -pi to pi, damping ratios of 0 to 10. A
+    /// direction must be finite. Returns the errors of [`Hand::send_position`] for the pose of [`Reaction::Retract`],
+    /// and those of [`Hand::send_stiffness`] for the Kx of [`Reaction::Soften`].
     pub fn install_reflex(&self, finger: i32, reflex: Reflex) -> Result<u32, HandError> {
         self.install_reflex_with(finger, reflex, reflex.priority.into())
     }

@@ -62,7 +62,7 @@ pub(super) fn start(
     accept(missing, real_time)?;
     let first = now() + HEAD_START;
     for _ in &numbers {
-        // A thread that has died leaves its message in the channel. The channel has room for all messages, so this
+        // A thread that has died leaves its message in the channel. The channel has room for all messages, so `send`
         // never waits.
         let _ = begin.send(first);
     }

@@ -79,8 +79,8 @@ impl Hand {
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a number is NaN or
-    /// infinite. Even if commands are clamped, returns an error if the position is out of reach or outside the joint
-    /// limits.
+    /// infinite. Returns an error if the position is out of reach or outside the joint limits, even if commands are
+    /// clamped.
     pub fn send_tip(&self, finger: i32, tip: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let present = self.dispatcher.last_report(finger)?.cycle.joints;

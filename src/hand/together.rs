@@ -47,9 +47,10 @@ impl AdmittedPath {
 
 impl Hand {
     /// Sends commands as [`Hand::send_group`] does, and paths as [`Hand::send_path`] does. Either everything is sent,
-    /// or nothing is. A path of `paths` has the number of its finger. It begins at most two periods before or after
-    /// the commands of other fingers take effect. If the same finger has a command too, the path begins with the
-    /// stiffness and damping of this command, and replaces its pose and its validity.
+    /// or nothing is. Each entry of `paths` has the number of a finger, and the poses of its path. A path begins at
+    /// most two periods before or after the commands of other fingers take effect. If the same finger has a command
+    /// too, the path begins with the stiffness and damping of this command, and replaces the pose and the validity of
+    /// the command.
     ///
     /// A finger that stops, or whose set point expires, in the period after the call discards what it got. The other
     /// fingers keep theirs.

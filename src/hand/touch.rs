@@ -5,7 +5,7 @@ use crate::hand::{Hand, HandError};
 use crate::model::FingerNumber;
 
 impl Hand {
-    /// The newest reading of a tactile element of finger 1, 2 or 3. Elements count from 0, in the order of
+    /// The newest reading of a tactile element of finger 1, 2 or 3. Elements are numbered from 0, in the order of
     /// `[finger.touch]`. The servo fetches one tactile event of a finger in each period in which the line has time for
     /// it.
     ///

@@ -21,7 +21,7 @@ pub(super) struct ElasticTendons {
     friction: Option<Capstans>,
     /// Contacts of the tendons with conduits and pulleys, if there is friction.
     contacts: [Contacts; 4],
-    /// Stretch at motor angle zero and theta = 0, m.
+    /// Stretch at motor angle zero and theta = 0 of tendons that have neither slipped nor crept, m.
     home_stretch: Vector4<f64>,
     /// Torn tendons, which have no tension.
     cut: [bool; 4],
@@ -189,7 +189,7 @@ impl ElasticTendons {
         (self.radius[tendon] * motor[tendon], self.r.column(tendon).dot(theta))
     }
 
-    /// Returns the stretch of a tendon at motor angle zero and theta = 0, m.
+    /// Returns the stretch of a tendon at motor angle zero and theta = 0, m. Slipping and creep have reduced it.
     fn rest_stretch(&self, tendon: usize) -> f64 {
         self.home_stretch[tendon] - self.slipped[tendon] - self.crept[tendon]
     }

@@ -4,7 +4,7 @@
 use std::io;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// A clock that a thread can read and wait for. Times are ns since an arbitrary start.
+/// A clock that a thread can read, and by which it can sleep until a given time. Times are ns since an arbitrary start.
 pub trait Clock {
     /// The time, ns.
     fn now(&self) -> u64;
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_past_time_is_as_far_from_the_present_time_as_on_the_clock_that_nobody_corrects() {
+    fn a_converted_time_is_as_long_ago_as_on_the_boot_clock() {
         let present = seconds_since_1970(boot_time());
         assert!(present.abs_diff(since_1970() / 1_000_000_000) <= 1);
         // A machine in a test may have been started less than a minute ago.

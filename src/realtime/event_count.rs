@@ -42,8 +42,9 @@ impl EventCount {
         count
     }
 
-    /// Waits for a notification since `prepared`, for at most 0.1 s, and not after `deadline`, ns of the monotonic
-    /// clock. The caller then checks its condition again.
+    /// Waits for a notification that comes after the call of [`EventCount::prepare`] that returned `prepared`. Waits
+    /// for at most 0.1 s, and not after `deadline`, ns of the monotonic clock. The caller then checks its condition
+    /// again.
     pub fn wait(&self, prepared: u32, deadline: u64) {
         let limit = deadline.saturating_sub(now()).min(LONGEST_SLEEP);
         if limit > 0 && futex::wait(&self.count, prepared, limit) {
@@ -107,7 +108,7 @@ mod tests {
             seen.iter().for_each(|own| drop(scope.spawn(|| follow(own))));
             let mut slow = 0;
             for number in 1..=ROUNDS {
-                // Most threads sleep after this time.
+                // After this time, most of the threads are asleep.
                 thread::sleep(Duration::from_millis(1));
                 changes.store(if slow < ROUNDS / 2 { number } else { ROUNDS }, Ordering::Relaxed);
                 let began = now();
@@ -130,7 +131,7 @@ mod tests {
         assert!(now() - began >= 5_000_000);
         let prepared = events.prepare();
         events.notify();
-        // The count has changed, so this returns at once. Otherwise it would return after 0.1 s.
+        // The count has changed, so the next wait returns at once. Otherwise it would return after 0.1 s.
         let began = now();
         events.wait(prepared, u64::MAX);
         assert!(now() - began < LONGEST_SLEEP);

@@ -1,8 +1,8 @@
-//! The floating-point environment: rounding, flushing of denormals, and exception traps. It belongs to a thread, and a
-//! new thread inherits it. The library always computes in the default environment: the planner's environment must
-//! neither stop a servo nor change the last bit of a result.
+//! The floating-point environment: rounding, flushing of denormals, and exception traps. Every thread has its own. A
+//! new thread inherits the environment of the thread that starts it. The library always computes in the default
+//! environment: the planner's environment must neither stop a servo nor change the last bit of a result.
 //!
-//! On x86-64 a call changes only MXCSR, because nothing in this library uses the x87 unit.
+//! On x86-64, [`Environment`] changes only MXCSR, because nothing in this library uses the x87 unit.
 #![allow(unsafe_code, reason = "no Rust function reads or writes these registers")]
 
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]

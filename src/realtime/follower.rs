@@ -1,4 +1,5 @@
-//! A phase-locked loop that makes the servo's period follow the clock of a board, called the other clock.
+//! A phase-locked loop that makes the servo's period follow the clock of a board. The board's clock is called the other
+//! clock here.
 
 /// Resolution of the other clock, ns per count. Its counter wraps at 65 536.
 const NS_A_COUNT: i64 = 1000;

@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_threads_of_a_test_count_as_a_planners() {
+    fn the_threads_of_a_test_count_as_threads_of_a_planner() {
         assert!(!planner_has_ended());
         assert_eq!(others_have_ended(), Some(false));
         assert!(!has_ended(id()) && !has_ended("no number"));

@@ -156,7 +156,7 @@ impl Mapping {
     /// has no memory.
     fn new(layout: Layout) -> Option<Self> {
         let bytes = layout.size().max(1).next_multiple_of(page_size());
-        assert!(layout.align() <= page_size(), "the alignment of a value is at most the page size");
+        assert!(layout.align() <= page_size(), "the alignment of a value must not exceed the page size");
         let protection = libc::PROT_READ | libc::PROT_WRITE;
         let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | libc::MAP_POPULATE;
         // SAFETY: the mapping is new, and the system chooses its address.

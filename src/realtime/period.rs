@@ -119,7 +119,7 @@ mod tests {
                 now = now.max(schedule.next()) + lasted;
                 periods += 1 + schedule.advance(now);
                 prop_assert_eq!(schedule.next(), periods * period);
-                prop_assert!(schedule.next() + period > now, "cycle {} would be made up", cycle);
+                prop_assert!(schedule.next() + period > now, "a passed period is not skipped after cycle {}", cycle);
             }
         }
     }

@@ -115,7 +115,7 @@ mod tests {
     /// The cycle ends after 10 + 20 + 300 + 40 ns, and the wait ends 40 ns earlier.
     #[test]
     fn a_single_thread_responds_after_the_sum_of_its_parts() {
-        let [Some(response)] = response_times(&[thread(0, 80, 1000, [10, 20, 300, 40])])[..] else { panic!("met") };
+        let [Some(response)] = response_times(&[thread(0, 80, 1000, [10, 20, 300, 40])])[..] else { panic!("late") };
         assert_eq!(response, Response { waited: 330, done: 370 });
     }
 
@@ -152,7 +152,7 @@ mod tests {
         }
     }
 
-    /// The periods are so long that each of these threads meets its period if it is alone.
+    /// The periods are so long that each of these threads would end its cycle within its period if it were alone.
     #[test]
     fn sums_that_are_too_large_have_no_bound() {
         const TENTH: u64 = u64::MAX / 10;

@@ -20,8 +20,8 @@ pub enum Severity {
     Refusal,
 }
 
-/// A function that receives the messages that otherwise go to standard error. Returns false for a message that it does
-/// not accept.
+/// A function that receives the messages that otherwise go to standard error. It returns false for a message that it
+/// does not accept.
 pub type MessageReceiver = fn(Severity, &str) -> bool;
 
 static RECEIVER: OnceLock<MessageReceiver> = OnceLock::new();

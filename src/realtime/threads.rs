@@ -64,7 +64,8 @@ pub(super) fn spawn_alike<T: Send + 'static>(
     start(name, CALL_STACK_BYTES, Box::new(body))
 }
 
-/// `body` is boxed, because the standard library's code of a thread is large and generic over the body.
+/// `body` is boxed, because the standard library's code that starts a thread is large, and would be compiled again for
+/// each type of `body`.
 fn start<T: Send + 'static>(
     name: &str,
     stack: usize,

@@ -42,7 +42,7 @@ impl Batch {
         }
     }
 
-    /// Writes the messages as a block. Returns whether there were any.
+    /// Writes the messages as a block, if there are any. Returns whether a block was written.
     pub fn write(&mut self, ring: &mut BlockWriter<Mapping>) -> bool {
         let any = self.used > 0 && ring.write(self.before, &self.bytes[..self.used]);
         (self.used, self.before) = (0, self.after);

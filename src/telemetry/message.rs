@@ -57,7 +57,7 @@ impl Message {
         postcard::to_stdvec(self).map_err(io::Error::other)
     }
 
-    /// Returns the message in `bytes`.
+    /// Decodes the message that `bytes` contain.
     ///
     /// # Errors
     /// Returns an error if `bytes` are not exactly one message.
@@ -143,7 +143,7 @@ pub struct Description {
     pub name: String,
     /// Number of the hand's process.
     pub process: u32,
-    /// Version of the library in that process.
+    /// Version of the library in the hand's process.
     pub library: String,
     /// Time at which the hand was opened, s since 1970. Like `clock_offset`, it follows from the system's clock as it
     /// was set when the reader attached.

@@ -87,7 +87,7 @@ impl Reader {
         let (reply, mapping) = answer(&name, &socket, process.as_ref(), deadline)?;
         let (description, position) = reply;
         let incomprehensible = |reason: &str| AttachError::Incomprehensible { name, reason: reason.into() };
-        let ring = BlockReader::new(mapping, position).ok_or_else(|| incomprehensible("no memory"))?;
+        let ring = BlockReader::new(mapping, position).ok_or_else(|| incomprehensible("memory file too small"))?;
         let (bytes, lost) = (Vec::new(), [0; MARKS]);
         Ok(Self { description, socket, process, ring, bytes, counted: None, lost, ended: false })
     }
@@ -134,7 +134,7 @@ impl Reader {
                 Found::Nothing => return Ok(block > 0),
                 // The marks of the next block show what was lost.
                 Found::Overtaken => {}
-                Found::Damaged => return Err(Ended::Damaged("a block has an impossible length".into())),
+                Found::Damaged => return Err(Ended::Damaged("a block has an impossible position or length".into())),
             }
         }
         Ok(true)

@@ -12,7 +12,7 @@ pub(super) const MOST_READERS: usize = 16;
 /// Time in which a reader must send its request, ns.
 const REQUEST_TIME: u64 = 2_000_000_000;
 
-/// A connection that has been accepted.
+/// An accepted connection whose reader has not sent its request yet.
 struct Candidate {
     socket: Socket,
     since: u64,

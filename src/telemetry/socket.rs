@@ -13,14 +13,14 @@ const BACKLOG: libc::c_int = 16;
 /// Space for a control message with one descriptor.
 const CONTROL_BYTES: usize = 64;
 
-/// A socket that keeps messages apart and never waits.
+/// A socket that preserves the boundaries of messages and never waits.
 pub(super) struct Socket(Descriptor);
 
 /// The process at the other end of a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Peer {
     pub user: u32,
-    /// 0 if this process cannot see it.
+    /// Number of the process at the other end. It is 0 if this process cannot see that one.
     pub process: i32,
 }
 

@@ -61,7 +61,7 @@ impl MotorFriction {
             let (found, _) = fit.solve().ok_or(implausible("the friction", f64::NAN))?;
             let [a, coulomb, conduit]: [f64; 3] = found.into();
             let (a, conduit) = (a / gains[motor], conduit / gains[motor]);
-            // Beyond these bounds of the conduit, the ratio below would be the root of a negative number.
+            // If the friction of the conduit exceeded `a`, the ratio below would be the root of a negative number.
             if !RATIOS.contains(&a) || conduit.abs() >= a {
                 return Err(implausible("the ratio of commanded pull to tension", a));
             }

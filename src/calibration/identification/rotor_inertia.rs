@@ -71,9 +71,9 @@ impl Oscillation {
         Self { step, samples: 0.0, pull: none, tension: none, travel: none }
     }
 
-    /// Adds the changes of pull, N, tension, N, and travel, cm, since the previous sample. The pull is what the motors
-    /// are commanded from a sample to the next one. Unlike the values, their changes do not contain the trend of a
-    /// finger that moves.
+    /// Adds the changes of pull, N, tension, N, and travel, cm, since the previous sample. The pull of a sample is the
+    /// one that is commanded from this sample to the next one. Unlike the values, their changes do not contain the
+    /// trend of a finger that moves.
     pub fn add(&mut self, phase: f64, changes: &[Vector4<f64>; 3]) {
         self.samples += 1.0;
         for (harmonic, change) in [&mut self.pull, &mut self.tension, &mut self.travel].into_iter().zip(changes) {

@@ -81,14 +81,36 @@ impl GaugeZero {
             if spread[index] > LARGEST_SPREAD {
                 return Err(Obstacle::UnsteadyGauge { tendon, newton: spread[index] });
             }
-            let fall = self.tight.map(|tight| tight[index] - offsets[index]);
-            if let Some(fall) = fall.filter(|&fall| fall < LEAST_FALL * instruments.minimum) {
-                return Err(Obstacle::DeadGauge { tendon, newton: fall });
+            if let Some(tight) = self.tight {
+                check_fall(tendon, tight[index] - offsets[index], LEAST_FALL * instruments.minimum)?;
             }
             if offsets[index].abs() > LARGEST_OFFSET {
                 return Err(Obstacle::GaugeOffset { tendon, newton: offsets[index] });
             }
         }
         Ok(Break(offsets))
+    }
+}
+
+/// Checks that a gauge reports at least `least` N less when its tendon is slack.
+fn check_fall(tendon: u8, fall: f64, least: f64) -> Result<(), Obstacle> {
+    match fall {
+        fall if fall <= -least => Err(Obstacle::ReversedGauge { gauge: tendon }),
+        fall if fall < least => Err(Obstacle::DeadGauge { tendon, newton: fall.abs() }),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gauge_that_rises_when_its_tendon_is_let_out_is_reversed_and_not_dead() {
+        let check = |fall| check_fall(2, fall, 1.5);
+        assert_eq!(check(-5.0), Err(Obstacle::ReversedGauge { gauge: 2 }));
+        assert_eq!(check(-0.1), Err(Obstacle::DeadGauge { tendon: 2, newton: 0.1 }));
+        assert_eq!(check(1.4), Err(Obstacle::DeadGauge { tendon: 2, newton: 1.4 }));
+        assert_eq!(check(1.5), Ok(()));
     }
 }

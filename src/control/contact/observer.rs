@@ -48,7 +48,7 @@ struct Following {
     waited: f64,
     /// Number of the sample, 0 to [`REFRESH`] - 1.
     sample: u8,
-    /// The links, N cm s^2.
+    /// Inertia matrix of the links and its derivatives, N cm s^2.
     links: LinkMomentum,
     /// Torque of gravity for which the error of the torques has been learned, N cm.
     learned_weight: Vector3<f64>,

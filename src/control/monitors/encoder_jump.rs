@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_is_detected_as_before() {
+    fn a_jump_is_detected_with_and_without_lost_replies() {
         assert!(!alarmed(&[1.0, 1.0, 1.0, 1.0], 0.0));
         assert!(alarmed(&[1.0, 1.0, 1.0, 1.0], 200.0));
         assert!(alarmed(&[1.0, 1.0, 10.0, 1.0, 1.0, 1.0], 200.0));

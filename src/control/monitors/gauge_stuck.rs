@@ -159,7 +159,7 @@ impl GaugeStuck {
         }
     }
 
-    /// Returns the flicker. `full_scale` is the largest count of the gauges.
+    /// Returns the learned flicker of the gauges. `full_scale` is the largest count of the gauges.
     pub fn flickers(&self, memory: &Memory, full_scale: u16) -> Flicker {
         let known = std::array::from_fn(|gauge| {
             let reverses = memory.reversals[gauge] > LEAST_REVERSALS || memory.bends[gauge] > LEAST_BENDS;

@@ -127,7 +127,7 @@ impl Default for Filter {
     /// Nothing is known yet.
     fn default() -> Self {
         let noise = LEAST_NOISE * LEAST_NOISE;
-        // A standard deviation of 1 for the factors. The offset is zero at first.
+        // The standard deviation of the factors is 1. The offset is zero at first.
         let mut covariance = SMatrix::identity() / noise;
         covariance[(7, 7)] = 1.0;
         Self { estimate: Estimate::zeros(), covariance, noise, terms: Terms::zeros(), moved: 0, since: 0.0 }

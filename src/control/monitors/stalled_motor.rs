@@ -30,8 +30,8 @@ pub(super) struct StalledMotor {
     /// `monitors.stall_fraction`.
     fraction: f64,
     friction: MotorFriction,
-    /// Longest time without an excessive imbalance that does not restart the duration, s: a period of the dither. It is
-    /// 0 without dither.
+    /// If the imbalance stays within the tolerated one for longer than this time, s, the duration restarts. The time is
+    /// a period of the dither, or 0 without dither.
     longest_gap: f64,
 }
 

@@ -23,14 +23,15 @@ const LOW: f64 = 0.3;
 /// Fraction of t_min below which the tension of a tendon is gone.
 const GONE: f64 = 0.1;
 
-/// Fraction of t_min from which the tension of a low tendon counts as missing. The missing tension is the tension that
-/// the stretch indicates minus the tension that the gauge shows, less its mean before any tendon became low. This mean
-/// is not zero on a finger with friction along its tendons or with inexact parameters.
+/// Rise of the missing tension from which the tension of a low tendon counts as missing, as a fraction of t_min. The
+/// missing tension is the tension that the stretch indicates minus the tension that the gauge shows. Its rise is
+/// measured from its mean before any tendon became low. This mean is not zero on a finger with friction along its
+/// tendons or with inexact parameters.
 const MISSED: f64 = 0.3;
 
-/// If the mean of the missing tension (see [`MISSED`]) is positive, the tension that must be missing is larger by this
-/// fraction of the mean. A positive mean shows that the configuration indicates too much stretch. The configuration
-/// indicates even more stretch when the tensions of the other tendons rise.
+/// If the mean of the missing tension (see [`MISSED`]) is positive, the rise of the missing tension must be larger
+/// by this fraction of the mean. A positive mean shows that the configuration indicates too much stretch. The
+/// configuration indicates even more stretch when the tensions of the other tendons rise.
 const INEXACT: f64 = 0.5;
 
 /// A low tendon that shows some tension does not count as slipping if another tendon became low within this time before
@@ -63,7 +64,7 @@ pub(super) struct TensionLost {
     low: f64,
     /// Tension below which the tension of a tendon is gone, N.
     gone: f64,
-    /// Difference from which tension counts as missing, N.
+    /// Rise of the missing tension from which the tension counts as missing, N.
     missed: f64,
 }
 
@@ -175,8 +176,9 @@ mod tests {
         fault_within(100, before, then, shown)
     }
 
-    /// Returns the fault of a finger whose tendons show 10 N and whose tendon 0 misses `before`, N, for 0.1 s. Then the
-    /// tendons show the tensions of `shown`, N, and tendon 0 misses the tension `then`, N, for `time` ms.
+    /// Returns the fault of a finger. For 0.1 s, its gauges show 10 N, and the missing tension of tendon 0 is `before`,
+    /// N. Then, for `time` ms, the gauges show the tensions `shown`, N, and the missing tension of tendon 0 is `then`,
+    /// N.
     fn fault_within(time: usize, before: f64, then: f64, shown: [f64; 4]) -> Option<Symptom> {
         let lost = TensionLost::new(&ConfiguredFinger::default());
         let (feedback, report) = (Feedback::default(), Report::default());

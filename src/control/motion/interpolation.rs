@@ -56,8 +56,9 @@ pub struct InterpolationState {
 #[derive(Clone, Copy, Debug, Default)]
 struct Step {
     way: Vector3<f64>,
-    /// Period of the planner when the step began, s, or longer. The step keeps it, so that a change of the period does
-    /// not move the set point.
+    /// Length of each third of the step, s. It is the period of the planner when the step began, or longer (see
+    /// [`Interpolation::time_of_new_step`]). The step keeps it, so that a change of the period does not move the set
+    /// point.
     time: f64,
     /// Time since the step began, s.
     age: f64,

@@ -1,5 +1,6 @@
 //! Timed motion of a set point: its derivatives, the paths that it follows, and the interpolation of set points that
-//! arrive at a low rate. In every cycle, a servo applies these to the set point before the controller runs.
+//! arrive at a low rate. In every cycle, before the controller runs, a servo moves the set point along its path or by
+//! the interpolation.
 
 mod derivatives;
 mod extent;

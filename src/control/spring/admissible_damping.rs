@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn the_range_narrows_as_the_spring_gets_stiffer_and_never_excludes_one() {
+    fn the_range_narrows_as_the_spring_gets_stiffer_and_always_contains_a_ratio_of_one() {
         for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11, Scheme::StateFeedback] {
             for rate in [500.0, 999.0, 1000.0, 5000.0] {
                 let mut finger = ConfiguredFinger::default();

@@ -14,7 +14,7 @@ pub struct JointSpring {
 }
 
 impl JointSpring {
-    /// Returns none for a spring without stiffness and torque.
+    /// Returns the spring, or none if it has neither stiffness nor torque.
     pub fn unless_zero(self) -> Option<Self> {
         (self != Self::default()).then_some(self)
     }

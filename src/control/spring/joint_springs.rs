@@ -7,9 +7,9 @@ use crate::control::spring::soft_limits::SoftLimits;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Matrix3, Vector3};
 
-/// The springs of one finger: the spring of the set point, the spring that holds joint 0 with the tip near its axis,
-/// and the soft joint limits. Their stiffness is the same for every controller and for both laws. With the report's
-/// law, this stiffness is correct only at small deflections.
+/// The springs of one finger: the spring of the set point, the spring that holds joint 0 while the tip is near the axis
+/// of this joint, and the soft joint limits. Their stiffness is the same for every controller and for both laws. With
+/// the report's law, this stiffness is correct only at small deflections.
 #[derive(Clone, Debug)]
 pub struct JointSprings {
     joint_stiffness: JointStiffness,

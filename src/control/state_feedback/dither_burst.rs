@@ -22,7 +22,7 @@ const HELD: f64 = 0.1;
 
 /// Time constant with which the envelope rises, s. The tensions are still low directly after a motion. With 0.01 s, the
 /// first oscillation is therefore so large that a tension falls to 3.8 N after a reach of 30 mm. With 0.025 s, "worn"
-/// and "sheathed" fingers settle later.
+/// and "sheathed" fingers settle later. These names are values of `simulation.hand`.
 const RISING: f64 = 0.02;
 /// Value from which the envelope counts as risen.
 const RISEN: f64 = 0.8;

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 const FIRMNESS: f64 = 2.0;
 
 /// Like [`FIRMNESS`], but for the firmness of a joint while the other joints are free, 1/rad. This firmness is small if
-/// the finger is nearly straight. With 0.2, the amplitude is smallest if joint 2 is bent by 32 degrees or more, and as
-/// configured at 21 degrees.
+/// the finger is nearly straight. With 0.2, the amplitude is smallest if joint 2 is bent by 32 degrees or more, and the
+/// factor is 1 at 21 degrees.
 const FREE_FIRMNESS: f64 = 0.2;
 
 /// Range of the factor on the amplitude. With a factor of up to 2.5 the softest poses are more exact, but they creep

@@ -1,4 +1,4 @@
-//! Feed-forward of the Coulomb friction of motors and conduits, which acts before the observer has found the friction.
+//! Feed-forward of the Coulomb friction of motors and conduits. It acts before the observer has found the friction.
 
 use crate::control::motors::motor_friction::MotorFriction;
 use nalgebra::Vector4;
@@ -10,8 +10,8 @@ const CREEP: f64 = 0.001;
 /// share sat(v / creep) (coulomb + conduit t), N at the tendon.
 ///
 /// v is the observed speed. If v were the speed of the reference, a limit cycle would remain at high stiffness because
-/// of friction. The observer must receive the pull without this feed-forward. Otherwise the disturbance
-/// that it estimates would compensate the same friction a second time.
+/// of friction. The observer must receive the pull without this feed-forward. Otherwise the disturbance that it
+/// estimates would compensate the same friction a second time.
 #[derive(Clone, Debug)]
 pub(crate) struct FrictionFeedForward {
     pub friction: MotorFriction,

@@ -5,7 +5,8 @@
 //! the encoders and of the gauges, and from a bandwidth. The other numbers are tuned. Most of them are dimensionless,
 //! or their unit is cycles or radians per cycle. They were found by a search on the eigenvalues of the exact one-cycle
 //! map of the default finger. No number was tuned for a single pose. `cargo bench --bench stiffness -- --search`
-//! searches for the numbers of a set of fingers.
+//! searches for the numbers of a set of fingers. A name in quotes, such as "worn", is a value of
+//! `simulation.hand`. An identified finger uses the values that a calibration has found.
 
 use crate::control::number_checks::{not_negative, positive};
 use crate::control::rate_table::{Row, Tuned, at};

@@ -204,7 +204,8 @@ impl TendonObserver {
         estimate.x[2]
     }
 
-    /// Returns 1 - K C and A. The error of a prediction times 1 - K C is the error of the corrected estimate, and the
+    /// Returns 1 - K C and A. K is the gain, C converts a state to the measurements, and A is the transition of the
+    /// state in one period. The error of a prediction times 1 - K C is the error of the corrected estimate, and the
     /// error of the estimate times A is the error of the next prediction.
     pub fn error_transition(&self) -> (Matrix6<f64>, Matrix6<f64>) {
         (Matrix6::identity() - self.gain * measured(self.tendon.stiffness), self.transition)

@@ -159,8 +159,8 @@ mod tests {
         (wave(0), Motion { rates: wave(1), accelerations: wave(2), jerk: wave(3), snap: wave(4) })
     }
 
-    /// A set point at rest, then 0.3 s along the path, then a set point at rest again. The first set point is `offset`,
-    /// rad, away from the beginning of the path.
+    /// Runs a reference whose set point is at rest, then moves along the path for 0.3 s, and then is at rest again. The
+    /// first set point is `offset`, rad, away from the beginning of the path.
     fn run(offset: f64) -> Vec<ReferenceMotion> {
         let (filter, slew) = (Reference::new(0.008, RATE), Slew::new(5.0, RATE));
         let (mut anchor, mut along) = (Vector3::x() * offset, None);

@@ -1,10 +1,10 @@
 //! Dither of the tensions that causes no joint torque. It keeps the tendons sliding in their conduits and on their
 //! pulleys.
 //!
-//! A pulley with the friction p transmits any tension between t / (1 + p) and t (1 + p), depending on the direction in
-//! which the tendon slid last. The gauges do not measure this difference. If the tension at the gauge oscillates by
-//! more than p t, the tendon slides in both directions in every period, and the mean tension at the joint equals the
-//! mean tension at the gauge. The oscillation is along the null vector n of R, so that it does not move the joints.
+//! At a tension t at the gauge, the friction p of a pulley permits any tension between t / (1 + p) and t (1 + p) at the
+//! joint, depending on the last direction of sliding. The gauge does not measure the difference. If t oscillates by
+//! more than p t, the tendon slides in both directions in every period, and the mean tension at the joint equals that
+//! at the gauge. The oscillation is along the null vector n of R, so that it does not move the joints.
 
 use super::dither_burst::{DitherBurst, DitherBurstState};
 use super::dither_scale::{DitherScale, DitherScaleState};
@@ -68,7 +68,7 @@ pub(crate) struct TensionDither {
     /// Largest b, N. See [`Numbers::dither_rise`].
     risen: f64,
     burst: DitherBurst,
-    /// For a finger whose configured pulley friction requires a larger dither.
+    /// Set only for a finger whose configured pulley friction requires a larger dither.
     scaling: Option<DitherScale>,
     /// Largest b of a burst, N. The limit [`TensionDither::risen`] does not apply to it. If this b grew with the
     /// tensions, the dither of loaded fingers would make tendons slack at hard walls.

@@ -7,8 +7,8 @@ use nalgebra::Vector4;
 /// t_min can add an error of the same size.
 pub(crate) const RATIOS: (f64, f64) = (0.4, 2.0);
 
-/// Below this pull, N, a command contains no information about the motor, because friction alone can hold such a
-/// tension.
+/// Below this pull, N, a command contains no information about the motor, because friction alone can hold a
+/// tension of this size.
 const LEAST_PULL: f64 = 2.0;
 
 /// Fraction of its limit from which a motor is considered to be saturated.

@@ -104,7 +104,7 @@ impl Serialize for EventKind {
 impl<'de> Deserialize<'de> for EventKind {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let number = u8::deserialize(deserializer)?;
-        Self::from_number(number).ok_or_else(|| D::Error::custom(format!("no kind has the number {number}")))
+        Self::from_number(number).ok_or_else(|| D::Error::custom(format!("no kind of event has the number {number}")))
     }
 }
 

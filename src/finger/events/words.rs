@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_event_survives_its_words() {
+    fn every_event_survives_the_conversion_to_words() {
         let parts = [Part::Finger, Part::joint(2), Part::tendon(3), Part::motor(0), Part::gauge(1), Part::encoder(2)];
         for (&kind, part) in EventKind::ALL.iter().zip(parts.into_iter().cycle()) {
             let event = Event {

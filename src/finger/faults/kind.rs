@@ -27,6 +27,7 @@ impl Serialize for FaultKind {
 impl<'de> Deserialize<'de> for FaultKind {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let number = u8::deserialize(deserializer)?;
-        Self::from_number(number.into()).ok_or_else(|| D::Error::custom(format!("no kind has the number {number}")))
+        Self::from_number(number.into())
+            .ok_or_else(|| D::Error::custom(format!("no kind of fault has the number {number}")))
     }
 }

@@ -91,7 +91,7 @@ faults! {
     17 BoardStopped "BOARD_STOPPED" Fault Finger Status "board stopped",
         "the board stopped the motors and reports no fault",
         "another program sent the board a Stop frame, or the firmware of the board stopped by itself",
-        "Look up the status bits in docs/board-protocol.md, then recover the finger", [Recover];
+        "End other programs that use the board, or correct its firmware, then recover the finger", [Recover];
     18 EmergencyStopInput "EMERGENCY_STOP_INPUT" Fault Finger Status "emergency stop, input",
         "the emergency stop input of the board is active, or was active",
         "somebody pressed the button, or the wire of the button is broken",
@@ -236,9 +236,10 @@ faults! {
         "Make sure that the finger can move safely, then recover it", [Recover];
     51 SetPointExpired "SET_POINT_EXPIRED" Fault Finger Time "set point expired",
         "the planner has sent nothing for longer than its last set point was valid; if finger.motion.on_expiry is \
-         \"end state\", the finger then stops at once; otherwise it stops finger.motion.end_state_ms later (with \
-         sun2xp serve: serve.end_ms after the newest target)",
-        "the planner hangs, is stopped in a debugger, or plans for longer than its set points are valid",
+         \"end state\", the finger then stops at once; otherwise it stops finger.motion.end_state_ms later if this \
+         key is set (with sun2xp serve: serve.end_ms after the newest target)",
+        "the planner hangs, is stopped in a debugger, or plans for longer than its set points are valid; with sun2xp \
+         serve also: the planner was killed, or the network is cut or loses packets",
         "Recover the finger and send set points in time, or raise finger.motion.valid_ms, finger.motion.end_state_ms \
          or serve.end_ms", [Recover];
     52 ReflexStop "REFLEX_STOP" Fault Finger Nothing "stopped by a reflex",

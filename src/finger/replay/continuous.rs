@@ -101,7 +101,7 @@ pub enum Unsound {
         reason: String,
     },
     /// A cycle does not come after the previous one.
-    #[error("cycle {0} comes after a cycle with a higher number. {ALTERED}")]
+    #[error("cycle {0} comes after a cycle with the same or a higher number. {ALTERED}")]
     Order(u64),
     /// A controller computes a command that is not a finite number.
     #[error("cycle {0}: the controller commands a torque that is not a finite number. {ALTERED}")]

@@ -12,8 +12,8 @@ use nalgebra::Vector4;
 /// 0.55 rad beyond its limits, and returned.
 const BLOW_MARGIN: f64 = 0.3;
 
-/// Fraction of the scheduled cycles. If fewer have run in an opening that times out, the fault names the machine as the
-/// cause, and otherwise a tendon.
+/// If less than this fraction of the scheduled cycles has run in an opening that times out, the fault names the machine
+/// as the cause. Otherwise the fault names a tendon.
 const MOST_CYCLES: f64 = 0.75;
 
 impl FingerServo {
@@ -121,8 +121,9 @@ impl FingerServo {
         self.sampled_at = None;
         self.command = MotorCommand::default();
         self.restart = true;
-        // The motors have cooled since their torque ended. The servo notes the time of every cycle, also of a faulted
-        // finger. A keyframe is recorded before the first cycle, so a replay starts with the cooled motors too.
+        // The motors have cooled since their torque ended. The servo notes the time of every cycle, even while the
+        // finger is faulted. A keyframe is recorded before the first cycle, so a replay starts with the cooled motors
+        // too.
         let off_ms = self.report.last.saturating_sub(self.faulted_at) as f64 * 1e-6 - self.limits.hold_ms;
         self.adjustable.controller.cool(&mut self.state, off_ms.max(0.0) * 1e-3);
         self.link.answered();

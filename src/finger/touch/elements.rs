@@ -61,7 +61,7 @@ impl Element {
 }
 
 impl Elements {
-    /// Creates the configured elements. None has a reading.
+    /// Creates the configured elements, without readings.
     pub fn new(touch: &ConfiguredTouch) -> Self {
         let elements = Pages::from_fn(touch.elements.len(), |element| Element {
             newton_per_count: touch.elements[element].newton_per_count,

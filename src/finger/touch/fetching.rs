@@ -49,8 +49,8 @@ impl TouchFetching {
     /// with the number of an earlier event could then make the board delete events that were not received, so the next
     /// request has the number 0. If the board was not reset, one event may come twice. A board that was reset has also
     /// forgotten its readings, and never reports the end of a contact from before the reset. `restarts` is the number
-    /// of restarts that recoveries have found since open. The board may have restarted after any fault, because its
-    /// finger was not under control.
+    /// of restarts that recoveries have found since open. It may have grown after a fault of any kind, because the
+    /// board may have restarted while its finger was faulted.
     pub fn recover(&mut self, fault: FaultKind, restarts: u32) {
         (self.asked, self.received, self.unanswered, self.pause) = (None, 0, 0, 0);
         let restarted = std::mem::replace(&mut self.restarts, restarts) != restarts;

@@ -43,7 +43,7 @@ fn another_controller_does_not_inherit_a_bound_that_is_too_large_for_it() {
 }
 
 #[test]
-fn keys_of_open_are_refused_by_name() {
+fn keys_that_take_effect_only_at_open_are_refused_by_name() {
     for keys in [
         "port = 'x'",
         "encoder.zero = [0, 0, 0, 0]",

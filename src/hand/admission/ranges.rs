@@ -15,7 +15,7 @@ pub struct Ranges {
     pub joint_limits: (Vector3<f64>, Vector3<f64>),
     /// Bound on the largest eigenvalue of Kx, N/cm.
     pub stiffness_bound: f64,
-    /// Refuse or clamp.
+    /// Whether a value outside its range is refused or clamped.
     pub out_of_range: OutOfRange,
 }
 
@@ -48,7 +48,7 @@ impl Ranges {
     /// # Errors
     /// Returns an error if Kx is not finite, is not a spring or is too stiff.
     pub fn kx(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
-        // nalgebra is column-major. Only this line converts from the row-major order of C.
+        // nalgebra is column-major. Only this line converts a Kx from the row-major order of C.
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);
         let (symmetric, (smallest, largest)) = spring(&asked).map_err(|error| self.no_spring(error))?;
         let bound = self.stiffness_bound;

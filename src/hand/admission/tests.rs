@@ -45,7 +45,7 @@ fn kx_is_taken_row_by_row() {
 }
 
 #[test]
-fn springs_of_any_rank_are_admitted_and_others_refused() {
+fn springs_of_any_rank_are_admitted_up_to_the_bound_and_other_matrices_are_refused() {
     let diagonal = |a, b, c| [[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]];
     let refuse = admission(OutOfRange::Refuse);
     for rows in [diagonal(0.0, 0.0, 0.0), diagonal(6.0, 0.0, 1.0), diagonal(6.0, 6.0, 6.0)] {

@@ -154,7 +154,7 @@ fn shared_values_are_overridden_for_one_finger() {
 }
 
 #[test]
-fn inline_tables_take_it_too() {
+fn results_are_stored_in_inline_tables_too() {
     let text = "finger.3 = { encoder = { zero = [0, 0, 0, 0] } }\n";
     let text = stored(
         text,
@@ -173,7 +173,7 @@ fn a_single_number_keeps_its_comment_or_is_added() {
 }
 
 #[test]
-fn others_findings_stay() {
+fn results_of_other_fingers_stay() {
     // All results were found before any of them was stored.
     let (first, second) =
         (zeros(FingerNumber::ONE, [5, 6, 7, 8], 200.0), zeros(FingerNumber::TWO, [9, 9, 9, 9], 190.0));
@@ -186,7 +186,7 @@ fn others_findings_stay() {
 }
 
 #[test]
-fn signs_are_given_to_the_sizes_that_are_there() {
+fn signs_are_applied_to_the_magnitudes_in_the_file() {
     let file = "[finger.1.gauge]\nnewton_per_count = [0.0312345678, 0.02, -0.03, 0.04] # measured\n";
     let text = stored(file, &[signs(FingerNumber::ONE, [1; 4], [1, -1, -1, 1])]);
     assert_eq!(text, file.replace("0.02,", "-0.02,"));
@@ -249,7 +249,7 @@ fn results_of_hardware_of_the_program_are_stored_beside_any_port() {
 }
 
 #[test]
-fn a_failed_write_is_named() {
+fn the_error_of_a_failed_storing_names_the_file() {
     let error = store_findings(Path::new("/proc/version"), &[]).expect_err("not the text of a configuration");
     assert!(error.to_string().contains("/proc/version"), "{error}");
 }

@@ -77,7 +77,7 @@ mod tests {
         ["sun2xp.toml", "/home/me/.config/sun2xp/sun2xp.toml", "/opt/xdg/sun2xp/sun2xp.toml", SYSTEM_FILE];
 
     #[test]
-    fn the_first_that_is_there() {
+    fn the_first_file_that_exists_is_found() {
         assert_eq!(found(false, "named", &FILES).expect("trusted").as_deref(), Some("named"));
         for first in 0..FILES.len() {
             assert_eq!(found(false, "", &FILES[first..]).expect("trusted").as_deref(), Some(FILES[first]));

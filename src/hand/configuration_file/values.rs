@@ -1,6 +1,6 @@
 //! Conversion from TOML to the types of a configuration. General deserializers accept an array that is too long, and an
-//! array in place of a table. This one accepts only valid values. For an invalid value, it reports the position and
-//! what is expected there.
+//! array in place of a table. The deserializer of this file accepts only valid values. For an invalid value, it reports
+//! the position and what is expected there.
 //!
 //! Serde makes the compiler compile the generic functions again for each of some 50 types. So these functions contain
 //! little, and call others that are neither generic nor inlined. With all of the code in them, they would be a

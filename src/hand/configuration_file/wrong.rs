@@ -6,8 +6,8 @@ use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
 use toml_edit::TomlError;
 
-/// Text that is not valid TOML, an unknown key, or an invalid value. It is boxed, because serde's code for each type
-/// moves it at many places.
+/// Text that is not valid TOML, an unknown key, or an invalid value. The details are boxed, because serde's code for
+/// each type moves the error at many places.
 #[derive(Debug)]
 pub struct Wrong(Box<Details>);
 

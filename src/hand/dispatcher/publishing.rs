@@ -16,8 +16,8 @@ use std::sync::Arc;
 /// Interval between two publications of a finger's status, ns.
 const STATUS_INTERVAL: u64 = 1_000_000_000;
 
-/// Age of the oldest events that a first reader gets, ns. A reader that asks to attach waits for the next publication,
-/// and must not miss what happens meanwhile.
+/// Age of the oldest events that a first reader gets, ns. A first reader is one that attaches while there is no other
+/// reader. A reader that asks to attach waits for the next publication, and must not miss what happens meanwhile.
 const EARLIER_EVENTS: u64 = 250_000_000;
 
 /// Memory for what a first reader needs besides the outlets, bytes.

@@ -17,7 +17,7 @@ pub enum PathError {
         most: usize,
     },
     /// The time for which a set point is valid is not usable.
-    #[error("a set point cannot be valid for {0} s: send 0 for the configured time, or up to 3600")]
+    #[error("a set point cannot be valid for {0} s: send 0 for the configured time, or up to 3600 s")]
     Valid(f64),
     /// A time is NaN, above the longest permitted time, or less than 1 ms later than the time before it, which is 0 for
     /// the first pose.
@@ -64,8 +64,8 @@ pub enum PathError {
     /// The path leaves the joint limits between two poses.
     #[error(
         "on the way to pose {pose}, joint {joint} of finger {finger} would go to {value:.4} rad, outside the permitted \
-         range of {low:.4} to {high:.4} rad: add poses on this way, or allow more time for the way before it and for \
-         the way after it"
+         range of {low:.4} to {high:.4} rad: add poses on this way, or allow more time for the ways directly before \
+         and after this way"
     )]
     BeyondJointLimit {
         /// The finger.

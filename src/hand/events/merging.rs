@@ -3,8 +3,8 @@
 use super::source::EventSource;
 use crate::finger::events::{Event, EventReader};
 
-/// Number of periods for which an event waits for earlier events of other fingers. Only a servo that is late by more
-/// than this can cause events to be out of order.
+/// Number of periods for which an event waits for earlier events of other fingers. Events can be out of order only if a
+/// servo is late by more than this number of periods.
 const PATIENCE: u64 = 2;
 
 /// The next event of several fingers.
@@ -41,7 +41,7 @@ impl MergedEvents {
     pub fn next(&mut self, now: u64) -> Next {
         for finger in &mut self.fingers {
             if finger.next.is_none() {
-                // The horizon is read first, so no event that is published after this is earlier than the horizon.
+                // The horizon is read first, so no event that is published later is earlier than the horizon.
                 finger.horizon = finger.reader.horizon();
                 finger.next = finger.reader.take();
             }
@@ -135,7 +135,7 @@ mod tests {
                 let longest = if draw(20) == 0 { 3 * PERIOD / 2 } else { PERIOD * 4 / 10 };
                 let ended = began + draw(longest);
                 cycles.push(Cycle { finger, number, scheduled, began, ended, events: draw(4) as usize });
-                // A cycle that ends late delays the next one, as the schedule of a servo does.
+                // A cycle that ends late delays the next one, as in the schedule of a servo.
                 scheduled += PERIOD;
                 scheduled += ended.saturating_sub(scheduled) / PERIOD * PERIOD;
                 if ended > scheduled {
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn of_100_000_events_a_second_none_is_lost_by_a_planner_that_reads_20_times_a_second() {
+    fn a_planner_that_reads_20_times_a_second_loses_none_of_100_000_events_a_second() {
         let (mut writers, source) = source();
         let mut merged = MergedEvents::new(&source);
         let (mut written, mut taken) = (0, 0);
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn of_100_000_events_a_second_those_that_nobody_takes_are_counted() {
+    fn lost_events_are_counted_at_100_000_events_a_second() {
         let (mut writers, source) = source();
         let mut merged = MergedEvents::new(&source);
         let mut written = 0;

@@ -13,7 +13,7 @@ fn keys(found: &Found) -> Vec<String> {
 }
 
 #[test]
-fn a_run_holds_its_own_keys_and_no_others() {
+fn results_contain_only_the_keys_that_were_found() {
     let configuration = Configuration::default();
     let found = Found::by_calibration(&zeros(), FingerNumber::TWO, &configuration);
     assert_eq!(keys(&found), ["encoder.zero", "gauge.zero"]);
@@ -22,7 +22,7 @@ fn a_run_holds_its_own_keys_and_no_others() {
 }
 
 #[test]
-fn later_runs_are_added_key_by_key() {
+fn later_results_are_added_key_by_key() {
     let configuration = Configuration::default();
     let mut found = Found::by_calibration(&zeros(), FingerNumber::ONE, &configuration);
     found.values.push(value("gauge", "newton_per_count", Numbers::Real(vec![1.0, 2.0, -3.0, 4.0])));

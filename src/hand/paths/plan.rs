@@ -25,7 +25,7 @@ const BRAKING: f64 = 0.15;
 /// Longest path, s.
 const LONGEST: f64 = 3600.0;
 
-/// Margin by which a path that is too fast is made slower than necessary. Its limits are then met despite rounding.
+/// Factor by which a path that is too fast is made slower than necessary, so that it meets its limits despite rounding.
 const MARGIN: f64 = 1.001;
 
 /// Largest number of attempts to make a path slower. From rest one attempt is enough. If a path begins in motion, each

@@ -46,7 +46,7 @@ fn kind(error: &HandError) -> Option<FaultKind> {
 
 /// The comparison also ensures that the numbers of a hand's boards still differ after a recovery.
 #[test]
-fn a_board_with_another_number_is_not_the_one_of_open_and_gets_no_terms() {
+fn a_board_with_another_number_is_refused_and_gets_no_terms() {
     let (mut link, known) = opened(board(), true);
     known.compare(&mut link).expect("the same board");
     let mut link = Link::new(SimulatedCable::new(board().numbered(7)));
@@ -56,7 +56,7 @@ fn a_board_with_another_number_is_not_the_one_of_open_and_gets_no_terms() {
 }
 
 #[test]
-fn a_board_with_another_firmware_version_is_the_one_of_open() {
+fn a_board_with_another_firmware_version_is_accepted() {
     let (mut link, mut known) = opened(board(), true);
     known.identity.firmware.0[2] += 1;
     known.compare(&mut link).expect("the firmware version is only information");
@@ -81,7 +81,7 @@ fn only_terms_end_a_hold() {
 #[test]
 fn a_board_that_does_not_keep_its_zeros_must_not_have_restarted() {
     let (mut link, mut known) = opened(board(), false);
-    known.configure(&mut link).expect("it has counted on");
+    known.configure(&mut link).expect("its counts have continued");
     finger(&mut link).reset();
     for attempt in 0..2 {
         // The first attempt has given the board its terms, but not its counts.
