@@ -133,8 +133,8 @@ impl<T: Transport> Link<T> {
         self.send_with(commands, &[])
     }
 
-    /// Does the same as [`send`](Self::send), with TactileRequests after the Commands, at most 15. The answers then
-    /// follow the Replies and delay none of them.
+    /// Does the same as [`send`](Self::send), and also sends TactileRequests, at most 15, after the Commands. Their
+    /// answers then follow the Replies and delay none of the Replies.
     pub fn send_with(&mut self, commands: &[OutgoingCommand], requests: &[OutgoingRequest]) -> Result<(), LinkError> {
         // An incomplete frame of the last period is now useless, and must not damage the next Reply. It is kept if
         // reading was cut short, because the rest of it may still be unread. It is also kept if it may be the answer to

@@ -178,7 +178,7 @@ fn failing(source: &io::Error) -> String {
 }
 
 /// [`remedy`] takes EAGAIN for a limit of threads, and ENOSPC for a limit of pseudo-terminals. A call at a port creates
-/// neither.
+/// neither a thread nor a pseudo-terminal.
 fn remedy_at_port(source: &io::Error) -> Option<&'static str> {
     if matches!(source.raw_os_error(), Some(libc::EAGAIN | libc::ENOSPC)) { None } else { remedy(source) }
 }

@@ -200,7 +200,10 @@ impl ConfiguredFinger {
         for joint in 0..3 {
             let (low, high) = (self.joints.minimum_degrees[joint], self.joints.maximum_degrees[joint]);
             if low >= high {
-                let reason = format!("joint {joint}: its lower limit {low} is not below its upper limit {high}");
+                let reason = format!(
+                    "joint {joint}: its lower limit {low} is not below its upper limit {high}: lower it, or raise \
+                     joints.maximum_degrees"
+                );
                 return unusable("joints.minimum_degrees", reason);
             }
         }

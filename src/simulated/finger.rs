@@ -49,7 +49,7 @@ pub struct SimulatedFinger {
     state: State,
     /// Time up to which the physics has been computed, ns.
     clock: u64,
-    /// When the last Command that the motors followed arrived, ns. `None`: not since the last Configure.
+    /// Arrival time of the last Command that the motors followed, ns. `None`: there was none since the last Configure.
     commanded_at: Option<u64>,
     /// When silence or a Stop led to the end state, ns. `None`: not since the last Configure.
     ended_at: Option<u64>,
@@ -130,8 +130,8 @@ impl SimulatedFinger {
         self.clock
     }
 
-    /// Returns when the last Command that the motors followed arrived, board time in ns. `None`: not since the last
-    /// Configure.
+    /// Returns the arrival time of the last Command that the motors followed, board time in ns. `None`: there was none
+    /// since the last Configure.
     pub fn commanded_at(&self) -> Option<u64> {
         self.commanded_at
     }

@@ -18,8 +18,8 @@ pub enum Pace {
     /// The rate of real time. The watchdog trips in time when the host falls silent.
     RealTime,
     /// The board's time also stops, for up to two seconds, while no commands arrive. An ordinary kernel thread carries
-    /// the bytes of a pseudo-terminal. A busy machine can delay that thread, and a servo, by tens of ms. This must not
-    /// stop a simulated hand.
+    /// the bytes of a pseudo-terminal. A busy machine can delay that thread, and a servo, by tens of ms. Such a delay
+    /// must not stop a simulated hand.
     Patient {
         /// How far the board's time continues after the last bytes, ns. It must not exceed the time for which a finger
         /// can do without its controller. When an old torque acted for 10 ms again and again, joints turned by radians.

@@ -8,10 +8,10 @@ use crate::simulated::pace::{LONGEST_STEP, PATIENCE};
 ///
 /// All boards have the same time, because an object that they share cannot be at two times. The time advances at the
 /// rate of real time, but waits for late hosts, as with [`Pace::Patient`](crate::simulated::Pace). If the motors of a
-/// finger follow commands, and no bytes arrive for this finger within the grace, the time stops until they arrive. It
-/// does not stop for a finger that is stopped, faulted or not opened, because the motors of such a finger follow no
-/// commands. While no finger follows commands, the time stops when no bytes have arrived for any finger within the
-/// grace. The time does not stop for a host that has been silent for two seconds.
+/// finger follow commands, and no bytes arrive for this finger within one period of its host (the grace), the time
+/// stops until they arrive. It does not stop for a finger that is stopped, faulted or not opened, because the motors of
+/// such a finger follow no commands. While no finger follows commands, the time stops when no bytes have arrived for
+/// any finger within the grace. The time does not stop for a host that has been silent for two seconds.
 #[derive(Clone, Debug)]
 pub struct SharedTime {
     /// How far the time continues after the last bytes for a finger, ns.

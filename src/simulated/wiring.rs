@@ -3,8 +3,8 @@
 /// Largest count of the converter behind each gauge.
 const GAUGE_FULL_SCALE: u16 = 4095;
 
-/// For each connector of the board, the motor, encoder or gauge of the finger to which it leads. Indices run from 0 to
-/// 3.
+/// For each connector of the board: the motor, encoder or gauge that is connected to it, and the defects of this
+/// connection. Indices run from 0 to 3.
 #[derive(Clone, Debug)]
 pub struct Wiring {
     motor_at: [usize; 4],
@@ -12,9 +12,11 @@ pub struct Wiring {
     gauge_at: [usize; 4],
     /// Factor of the torque at each motor's connector: 1, -1, or 0 if the motor is not connected.
     torque: [f64; 4],
+    /// Whether each encoder counts backwards.
     backwards: [bool; 4],
     /// The count of an encoder that no longer counts.
     stuck: [Option<i32>; 4],
+    /// Whether the signal wires of each gauge are swapped.
     reversed: [bool; 4],
 }
 

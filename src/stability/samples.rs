@@ -90,10 +90,10 @@ impl ContactType {
 }
 
 /// Returns `number` samples of the finger at rest, anywhere within the joint limits. If `walls` is true, every finger
-/// presses against a wall. Of four samples, one is isotropic with eigenvalues of 1, two have random eigenvalues of
-/// which the largest is 1, and one has three random eigenvalues. Of four samples, one is a soft finger, and with walls
-/// one is a frictionless point. The others are hard fingers. Half of the samples have the report's law. The relative
-/// damping is 1, or the smallest or largest admissible one.
+/// presses against a wall. Of every four samples, one is isotropic with eigenvalues of 1, two have random eigenvalues
+/// of which the largest is 1, and one has three random eigenvalues. Of every four samples, one is a soft finger, and
+/// with walls one is a frictionless point. The others are hard fingers. Half of the samples have the report's law. The
+/// relative damping is 1, or the smallest or largest admissible one.
 pub(super) fn samples(finger: &ConfiguredFinger, number: usize, seed: u64, walls: bool) -> Vec<Sample> {
     let mut random = Pcg64::seed_from_u64(seed);
     let (low, high) = finger.joint_limits();
@@ -158,7 +158,7 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    /// A bound that is found with a damping of 1 only says nothing about the other dampings that a planner may request.
+    /// A bound that is found only with a damping of 1 says nothing about the other dampings that a planner may request.
     #[test]
     fn every_law_and_contact_is_tried_with_the_least_damping_with_one_and_with_the_most() {
         let finger = ConfiguredFinger::default();

@@ -24,12 +24,13 @@ use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RAT
 ///
 /// The search simulates the configured controller, links, tendons and motors, with viscous friction, without Coulomb
 /// friction, with exact measurements and one cycle of delay. At a wall, the configured Coulomb friction of the joints
-/// acts as a damper. The search covers a set of plants that differ from the configuration: rotors, links, tendons and
-/// motors, amplifier lag, an extra cycle of delay, held masses, lost replies. The samples are random: poses within the
-/// joint limits, axes of Kx, contact types, both stiffness laws (`finger.controller.law`), damping and loads. Each
-/// plant is searched without walls, and with walls of 30 to 1000 N/cm. Every motion must decay to 1/e within 10 s. In a
-/// pose whose tendons support less than the bound, the servo scales Kx down, and so does the search. The bound is low
-/// enough that no pose needs a scale below one half.
+/// acts as a damper. The search covers a set of plants. Each of them, except the nominal plant, differs from the
+/// configuration in one respect: rotor inertia, link masses, tendon stiffness, motor constants, amplifier lag, an extra
+/// cycle of delay, a held mass or lost replies. The samples are random: poses within the joint limits, axes of Kx,
+/// contact types, both stiffness laws (`finger.controller.law`), damping and loads. Each plant is searched without
+/// walls, and with walls of 30 to 1000 N/cm. Every motion must decay to 1/e within 10 s. In a pose whose tendons
+/// support less than the bound, the servo scales Kx down, and so does the search. The bound is low enough that no pose
+/// needs a scale below one half.
 ///
 /// The bound of the finger is the least bound of all plants. In the printed table, the number in brackets counts the
 /// samples that are unstable even with a spring of 1 N/cm. A plant with such samples is reported, but does not limit
@@ -83,7 +84,7 @@ pub struct Arguments {
 /// Least number of samples of a bound. With fewer, all tips may be too near the axis of joint 0.
 const LEAST_SAMPLES: u32 = 10;
 
-/// A finger whose stiffness is searched, and the rate, Hz.
+/// A finger whose bound or passivity is computed, and the rate of the hand, Hz.
 struct Searched<'a> {
     number: FingerNumber,
     finger: &'a ConfiguredFinger,
@@ -202,7 +203,7 @@ fn conclude(
     Ok(print())
 }
 
-/// Searches the bound of one finger with the default options. Returns it in N/cm, and what limits it.
+/// Finds the bound of one finger with the default options. Returns it in N/cm, and what limits it.
 ///
 /// # Errors
 /// Returns an error if the finger has no bound.

@@ -119,7 +119,7 @@ enum Refused {
 }
 
 impl Arguments {
-    /// Carries out one task, and asks the person who holds the finger where that is necessary.
+    /// Carries out one task. If the task needs it, the person is first asked to hold the finger or to let it go.
     fn carry_out(&self, hand: &Hand, task: Task, finger: i32, before: &ConfiguredFinger) -> Result<Findings, Refused> {
         let calibrated = hand.calibrated(finger).map_err(Refused::ByHand)?;
         let at_pose = calibrated.zeroing_method() == ZeroingMethod::Pose;

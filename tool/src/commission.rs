@@ -165,7 +165,8 @@ pub fn examine(file: &Path, finger: FingerNumber, yes: bool, quiet: bool) -> Res
     }
     if ![Step::Zeros, Step::Tendons].iter().all(|step| known.steps.contains_key(step)) {
         return Err(format!(
-            "finger {finger} has changed since it was measured, because an earlier step was done again: {advice}"
+            "the steps zeros and tendons of finger {finger} do not both count as passed, because an earlier step was \
+             done again, or because one of the two was not done or has failed: {advice}"
         )
         .into());
     }

@@ -185,7 +185,7 @@ impl Files<'_> {
         }
         paths.sort();
         for path in paths {
-            // The files are written, also if nobody reads their names.
+            // The files have been written, even if nobody reads their names.
             let _ = writeln!(io::stdout(), "{}", path.display());
         }
         Ok(())

@@ -53,7 +53,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !Screen::available() {
         return Err("the monitor needs a terminal: use `sun2xp status` for a file, a pipe or a script".into());
     }
-    // If the person has to choose a hand, the shell shows the names. So this comes before the view takes the terminal.
+    // If several hands are open and none is named, the error lists their names. It must appear in the shell, so the
+    // hands are counted before the view takes the terminal.
     let names = telemetry::hands().map_err(AttachError::Names)?;
     if arguments.name.is_none() && names.len() > 1 {
         return Err(Box::new(AttachError::Several(names)));

@@ -126,7 +126,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let svg = figure.finish(arguments.width.into());
     let bytes = if as_png { png::draw(&svg)? } else { svg.into_bytes() };
     replace_file(&output, |file| file.write_all(&bytes)).map_err(|error| unwritable(&output, &error))?;
-    // The picture is written, also if nobody reads its name.
+    // The picture has been written, even if nobody reads its name.
     let _ = writeln!(io::stdout(), "{}", output.display());
     Ok(())
 }

@@ -121,8 +121,8 @@ fn note_losses(lost: [u64; 3], files: &mut Files, counts: &mut Counts, display: 
         files.write_lost(finger, lost)?;
         let lost = Counted(lost, "cycle is", "cycles are");
         display.line(&format!(
-            "finger {finger}: {lost} lost, and marked in the topic /lost, because this recorder or a thread of the \
-             hand was too slow: reduce the load of the machine, or record to a faster disk"
+            "finger {finger}: {lost} lost, because this recorder or a thread of the hand was too slow. The topic /lost \
+             marks the gap. Reduce the load of the machine, or record to a faster disk"
         ));
     }
     Ok(())
@@ -130,7 +130,7 @@ fn note_losses(lost: [u64; 3], files: &mut Files, counts: &mut Counts, display: 
 
 fn report(path: &files::Written, took: Duration, counts: &Counts, reason: Option<&str>) -> Result<ExitStatus, Failure> {
     let reason = reason.map(|reason| format!(" ({reason})")).unwrap_or_default();
-    // The cycles are recorded, also if nobody reads this.
+    // The cycles have been recorded, even if nobody reads this line.
     let _ = writeln!(io::stdout(), "{path}: {:.1} s, {counts}{reason}", took.as_secs_f64());
     Ok(if counts.lost == 0 { ExitStatus::SUCCESS } else { ExitStatus::FAILURE })
 }

@@ -88,7 +88,7 @@ fn state(name: Option<&str>) -> Result<HandState, Failure> {
         let received = reader.read(MEASURING / 5, &mut messages);
         tracker.apply(&messages, received.as_ref().map(|received| received.lost).unwrap_or_default());
         if let Err(end) = received {
-            // The text of a damaged memory names its own remedy.
+            // The other error, a damaged shared memory, has a text that names the remedy.
             let remedy = if end == Ended::Closed { ". Open it again, and repeat the command" } else { "" };
             return Err(format!("the hand \"{}\" ended while it was read: {end}{remedy}", tracker.state.name).into());
         }

@@ -1,5 +1,5 @@
-//! Makes finger 1 of a hand on another machine a soft spring, moves it, and prints where it is. The argument is the
-//! configuration file with the table [remote].
+//! Turns finger 1 of a hand on another machine into a soft spring, moves the finger, and prints where it is. The
+//! argument is the configuration file with the table [remote].
 
 use std::error::Error;
 use std::path::Path;

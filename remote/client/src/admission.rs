@@ -203,7 +203,7 @@ fn finite(what: &'static str, finger: Finger, values: &[f64]) -> Result<(), Admi
 }
 
 impl AdmissionError {
-    /// The finger that the error concerns; none if it concerns none.
+    /// The finger that the error names; none if it names no finger.
     pub(crate) fn finger(&self) -> Option<Finger> {
         match self {
             Self::NotFinite { finger, .. }

@@ -16,7 +16,7 @@ const STALE_MS: u32 = 100;
 /// Largest configuration file, bytes.
 const LARGEST: u64 = 1 << 20;
 
-/// Which hand to use, how to reach it, and who asks.
+/// The configuration of a client: which hand it uses, how it reaches the hand, and its own name.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RemoteConfiguration {
@@ -26,7 +26,7 @@ pub struct RemoteConfiguration {
     pub hand: HandName,
     /// The name of this client. With TLS it is the common name of the certificate, and may be left out here.
     pub client: Option<ClientName>,
-    /// Age above which a position is refused, ms: 1 to 60000.
+    /// Largest age of a measured position that calls return, ms: 1 to 60000.
     pub stale_ms: u32,
     /// Whether opening takes the hand over from another owner.
     pub take_over: bool,

@@ -31,7 +31,7 @@ pub fn discover(configuration: &RemoteConfiguration) -> Result<Vec<Discovered>, 
     configuration.checked_client()?;
     let session = connection::open(configuration)?;
     let replies = connection::get(&session, EVERY_STATUS, None, (LIMIT, usize::MAX));
-    // The session is closed also if Zenoh reports an error.
+    // An error of `close` is ignored, because the session is closed even then.
     let _ = session.close().wait();
     let replies = replies.map_err(|error| {
         let endpoint = &configuration.endpoint;

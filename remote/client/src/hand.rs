@@ -40,8 +40,8 @@ impl RemoteHand {
         Ok(hand)
     }
 
-    /// Connects to the hand to read it. It is never acquired, unless [`RemoteHand::reopen`] or [`RemoteHand::acquire`]
-    /// is called. There may be any number of watchers.
+    /// Connects to the hand to read it. This client does not acquire the hand, unless [`RemoteHand::reopen`] or
+    /// [`RemoteHand::acquire`] is called. There may be any number of watchers.
     ///
     /// # Errors
     /// Returns an error if the configuration or a certificate cannot be used, or if the hand cannot be reached.
@@ -59,7 +59,7 @@ impl RemoteHand {
         self.link.acquire(true)
     }
 
-    /// Acquires the hand as [`RemoteHand::reopen`] does, and recovers no finger. Call [`RemoteHand::recover`] for each
+    /// Acquires the hand as [`RemoteHand::reopen`] does, but recovers no finger. Call [`RemoteHand::recover`] for each
     /// finger that may move.
     ///
     /// # Errors

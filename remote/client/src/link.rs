@@ -200,7 +200,7 @@ impl Drop for Link {
             let _ = sender.join();
         }
         self.shared.events.close();
-        // The session is closed also if Zenoh reports an error.
+        // An error of `close` is ignored, because the session is closed even then.
         let _ = self.session.close().wait();
     }
 }

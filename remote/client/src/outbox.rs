@@ -110,7 +110,7 @@ impl Outbox {
         self.seen = self.seen.max(time);
     }
 
-    /// Notes that a record of this owner has shown the command number.
+    /// Notes that a record in a State of this epoch has shown the command number.
     pub fn confirm(&mut self, finger: Finger, command: u32) {
         self.slots[finger.index()].confirm(command);
     }
@@ -127,7 +127,8 @@ impl Outbox {
             self.slots.iter_mut().for_each(|slot| slot.refuse(answer.number));
             if answer.number > self.reported {
                 self.refusal = Some(answer.text.clone());
-                // Until now every Target repeated what was refused. Each of them is refused too.
+                // Every Target that was sent after the refused one repeated its values, so the server refuses it too.
+                // Such a refusal is not reported, unless its Target also had a change that is kept.
                 let others = self.slots.iter().filter_map(Slot::first_unconfirmed).min();
                 self.reported = others.map_or(self.sequence, |first| first - 1).max(answer.number);
             }

@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_in_the_future_has_no_age() {
+    fn a_time_in_the_future_has_the_age_0() {
         let mut clock = ServerClock::default();
         clock.heard(1000 * MS, 2000 * MS);
         assert_eq!(clock.age(1100 * MS, 2000 * MS), Some(0));

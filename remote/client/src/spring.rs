@@ -3,13 +3,15 @@
 
 use nalgebra::Matrix3;
 
-/// The asymmetry and the negative eigenvalue that count as rounding, relative to the largest entry or eigenvalue.
+/// The largest asymmetry that counts as a rounding error, relative to the largest entry. It is also the largest
+/// magnitude of a negative eigenvalue that counts as a rounding error, relative to the largest magnitude of an
+/// eigenvalue.
 const ROUNDING: f64 = 1e-3;
 
 /// Why a matrix is not a spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotASpring {
-    /// Two entries differ.
+    /// `Kx[row][column]` and `Kx[column][row]` differ.
     NotSymmetric {
         /// Row of the first such pair.
         row: usize,
@@ -49,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_diagonal_matrix_has_its_largest_entry() {
+    fn the_largest_eigenvalue_of_a_diagonal_matrix_is_its_largest_entry() {
         let largest = largest_eigenvalue(&[[1.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 2.0]]).expect("a spring");
         assert!((largest - 3.0).abs() < 1e-12, "{largest}");
         assert_eq!(largest_eigenvalue(&[[0.0; 3]; 3]), Ok(0.0));

@@ -7,8 +7,8 @@ use crate::error::RemoteError;
 use std::sync::Arc;
 
 /// Sends commands to several hands, each hand at most once. Their Targets have the same time stamp, and leave at the
-/// same time. Either every command is sent, or none is. A hand takes its commands in the cycle in which they arrive:
-/// two servers have no common clock.
+/// same time. Either every command is sent, or none is. Each hand takes its commands in the cycle in which they arrive,
+/// because two servers have no common clock.
 ///
 /// # Errors
 /// Returns the errors of [`RemoteHand::send_group`] of each hand. Returns an error if a hand is given twice.

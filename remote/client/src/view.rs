@@ -32,7 +32,7 @@ pub struct View {
     heard: Option<u64>,
     /// The number and the time of the newest State.
     newest_state: Option<(u64, u64)>,
-    /// Why the newest message that could not be decoded was dropped.
+    /// The error of the newest message that could not be decoded.
     malformed: Option<DecodeError>,
     pub statistics: RemoteStatistics,
 }
@@ -64,7 +64,7 @@ impl View {
         self.malformed = Some(error);
     }
 
-    /// Why the newest message that could not be decoded was dropped.
+    /// The error of the newest message that could not be decoded.
     pub fn malformed(&self) -> Option<&DecodeError> {
         self.malformed.as_ref()
     }

@@ -17,7 +17,7 @@ impl MeasuredRate {
         self.0 = Some((first, *newest));
     }
 
-    /// Cycles per second, Hz; NaN before the second cycle.
+    /// Cycles per second, Hz; NaN until records of two cycles were noted.
     pub fn rate(&self) -> f64 {
         let Some((first, newest)) = &self.0 else { return f64::NAN };
         let seconds = (newest.begin - first.begin) as f64 * 1e-9;
@@ -64,7 +64,8 @@ mod tests {
     #[test]
     fn a_server_that_was_started_again_is_measured_anew() {
         assert_eq!(measured(&[(9000, 9), (1, 20), (1001, 21)]), 1000.0);
-        // The first record was of an early cycle.
+        // After the restart, the cycle has a higher number than in the first record, but a lower one than in the
+        // record before.
         assert_eq!(measured(&[(5, 1), (9005, 10), (3000, 20), (4000, 21)]), 1000.0);
         // The machine of the server was started again.
         assert_eq!(measured(&[(9000, 90), (9500, 3), (10_500, 4)]), 1000.0);

@@ -41,8 +41,8 @@ struct Connection {
 
 impl Stoppable for NetworkHand {
     fn stop_every_finger(&self) -> bool {
-        // A closed hand has nothing to stop. The refusal cannot be reported, because the call that requested the stop
-        // has returned.
+        // A closed hand has nothing to stop. Its refusal cannot be reported to the planner, because the call that
+        // requested the stop has returned.
         let Ok(connection) = self.connection() else { return true };
         // A planner that has lost the hand must not stop the hand of the next owner later.
         connection.hand.emergency_stop().is_ok() || !connection.hand.is_owner()
@@ -140,7 +140,7 @@ fn follows_set_points(record: &client::Record) -> Result<(), RemoteRefusal> {
     }
 }
 
-/// The finger of a call that takes 0 for all fingers; none for all.
+/// Returns the finger with this number. Returns none for the number 0, which stands for all fingers.
 fn one_or_all(hand: &client::RemoteHand, number: i32) -> Result<Option<i32>, RemoteRefusal> {
     if number == 0 { Ok(None) } else { member(hand, number).map(|finger| Some(finger.get())) }
 }
@@ -161,7 +161,7 @@ impl RemoteHand for NetworkHand {
 
     fn tip(&self, finger: i32) -> Result<sun2xp_tip, RemoteRefusal> {
         let (connection, record) = self.newest(finger)?;
-        // Refuses a finger that has stopped, as for a hand of this machine.
+        // Refuses a finger that has stopped, as a hand of this machine does.
         connection.hand.position(finger).map_err(refusal)?;
         Ok(results::tip(&record))
     }

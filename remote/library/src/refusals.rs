@@ -6,7 +6,7 @@ use sun2xp::finger::Action;
 use sun2xp::{Fault, FaultKind, FingerNumber, HandError};
 use sun2xp_remote_client::{HandName, RemoteError, RemoteErrorKind as Kind};
 
-/// The numbers of `sun2xp.h`.
+/// The error numbers of `sun2xp.h`.
 mod number {
     pub const NO_HAND: i32 = 4;
     pub const BUSY: i32 = 5;
@@ -110,7 +110,7 @@ mod tests {
 
     /// A planner that gets ERANGE looks for a mistake in its own numbers.
     #[test]
-    fn a_request_that_fails_is_not_a_number_out_of_range() {
+    fn a_failed_request_is_not_reported_as_a_number_out_of_range() {
         let failed = || RemoteError::Refused("a tendon is slack: tension it".into());
         assert_eq!(numbers_of(calibration_refusal(failed())), (number::CALIBRATION, libc::ECANCELED));
         assert_eq!(numbers_of(recovery_refusal(failed())), (number::PORT, libc::EIO));

@@ -27,11 +27,11 @@ impl StopCalls {
     /// too.
     pub fn watch<H: Stoppable>(hand: Weak<H>, mut seen: u32) -> Result<Self, RemoteRefusal> {
         let ended = Arc::new(AtomicBool::new(false));
-        let seen_by_thread = ended.clone();
+        let must_end = ended.clone();
         // The thread inherits this mask, so the planner's signal handlers run only in the planner's own threads.
         let _blocked = SignalsBlocked::all();
         let started = Builder::new().name("sun2xp stop".into()).spawn(move || {
-            while !seen_by_thread.load(Ordering::Acquire) {
+            while !must_end.load(Ordering::Acquire) {
                 let calls = stop_calls();
                 if calls != seen {
                     let Some(hand) = hand.upgrade() else { return };

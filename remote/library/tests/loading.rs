@@ -5,7 +5,7 @@ mod rig;
 use rig::{Loading, Way, remote};
 use std::fs;
 
-/// What OpenHand returns, the errno and the text.
+/// Splits what `opens.c` prints into the result of OpenHand, the errno and the error text.
 fn opened(said: &str) -> (i32, i32, String) {
     let mut words = said.trim_end().splitn(3, ' ');
     let mut number = || words.next().expect("a number").parse().expect("a number");
@@ -35,7 +35,7 @@ fn a_library_of_another_version_is_refused() {
 }
 
 #[test]
-fn a_server_that_is_not_there_is_a_line_that_is_not_connected() {
+fn a_server_that_is_not_there_is_reported_as_not_connected() {
     let loading = Loading::new(&remote(NOBODY));
     for way in [Way::Configured, Way::Path] {
         let (result, errno, text) = opened(&loading.said("opens.c", way));

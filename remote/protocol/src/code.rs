@@ -16,15 +16,16 @@ pub enum Code {
     NoSuchFinger = 3,
     /// Another client owns the hand.
     Owned = 4,
-    /// The sender is not the owner, or the epoch is old.
+    /// The sender is not the owner, its epoch is old, or it may not send this Request.
     NotOwner = 5,
-    /// The hand refused an argument.
+    /// The hand refused an argument, or a recovery or calibration failed.
     Argument = 6,
     /// The hand refused the request, because a finger has stopped.
     Stopped = 7,
-    /// The server ends, or cannot make an epoch.
+    /// The server is shutting down, or its machine has no random numbers for an epoch.
     Closed = 8,
-    /// A recovery or calibration is in progress already.
+    /// A recovery or calibration is already in progress. For a Target also: a finger is being opened or closed, or is
+    /// limp.
     InProgress = 9,
 }
 

@@ -50,7 +50,7 @@ pub struct Status {
     pub counts: Counts,
     /// Fingers 1 to 3; none for a finger that the hand does not have.
     pub fingers: [Option<FingerStatus>; FINGERS],
-    /// The owner; none if there is none.
+    /// The owner; none if nobody owns the hand.
     pub owner: Option<ClientName>,
 }
 

@@ -548,8 +548,8 @@ async fn accept_task(
                             tracing::error!("{}-{}: {}", file!(), line!(), e)
                         }
                     }
-                    // CHANGED in sun2xp: upstream sleeps after failed handshakes too, so that strangers without a
-                    // certificate can keep every new client waiting.
+                    // CHANGED in sun2xp: upstream sleeps after failed handshakes too. Strangers without a certificate
+                    // can therefore keep every new client waiting.
                     Err(e @ (tls_listener::Error::TlsAcceptError { .. } | tls_listener::Error::HandshakeTimeout { .. })) => {
                         tracing::warn!("{}", e);
                     }

@@ -146,8 +146,8 @@ impl IoFaults {
     pub const SENSOR: Self = Self(1 << 5);
     /// The encoder counts have lost their reference to the zero. If [`FingerIo::start`] sets this bit when the hand is
     /// opened, the finger does not fault while the bit stays set: a message reports it, and the finger must be zeroed.
-    /// Once a sample has come without the bit, the next sample with the bit reports a loss: it faults the finger, or
-    /// refuses its recovery.
+    /// Once a sample has come without the bit, the next sample with the bit reports a loss. In [`FingerIo::exchange`]
+    /// the loss faults the finger. In [`FingerIo::start`] it makes the recovery fail.
     pub const ZERO_LOST: Self = Self(1 << 6);
 
     /// Returns whether any of these bits is set.

@@ -1,4 +1,4 @@
-//! What a request asks for, to recognise its answer.
+//! The properties of a request by which its answer is recognised.
 
 use crate::board::protocol::{ANY_ADDRESS, Decoder, Frame, Message};
 

@@ -12,7 +12,7 @@ const ANSWER_PERIODS: u8 = 20;
 pub(super) struct RelayedRequest {
     bytes: [u8; 1 + MAX_WIRE],
     length: usize,
-    /// What the request asks for; none if its bytes are no frame.
+    /// The properties by which the answer is recognised; none if the bytes of the request are no frame.
     asked: Option<Asked>,
     /// Number of periods for which the answer is still awaited.
     periods: u8,

@@ -77,7 +77,7 @@ impl Port {
         Ok(found.c_ospeed)
     }
 
-    /// Returns the settings of the port. This type uses TCGETS2 and TCSETS2, because tcgetattr and tcsetattr do not
+    /// Returns the settings of the port. [`Port`] uses TCGETS2 and TCSETS2, because tcgetattr and tcsetattr do not
     /// support arbitrary baud rates.
     fn settings(&self) -> io::Result<libc::termios2> {
         // SAFETY: all zeros is a valid termios2.

@@ -52,7 +52,7 @@ pub enum Frame {
 /// A frame with its header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Message {
-    /// The finger that is addressed or that answers, 1 to 15. 0 only in a Hello.
+    /// The address of the finger that is addressed or that answers, 1 to 15. Only a Hello may have the address 0.
     pub address: u8,
     /// The sequence number, which the host chooses and the board copies.
     pub sequence: u8,

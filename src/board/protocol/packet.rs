@@ -35,7 +35,8 @@ pub struct Packet<'a> {
 }
 
 impl<'a> Packet<'a> {
-    /// Returns `None` if there are too few bytes or the check is wrong.
+    /// Checks the bytes of a frame without their stuffing, and creates a view of them. Returns `None` if there are too
+    /// few bytes or the check is wrong.
     pub fn checked(bytes: &'a [u8]) -> Option<Self> {
         let (content, sent) = bytes.split_last_chunk::<CHECK>()?;
         (check(content) == u32::from_le_bytes(*sent)).then(|| Self::unchecked(bytes)).flatten()

@@ -31,7 +31,7 @@ pub struct TactileEvent {
     pub number: u8,
     /// What changed.
     pub change: TactileChange,
-    /// The element of the finger's sensors. The board defines their order.
+    /// Number of the sensor element on the finger. The board defines the order of the elements.
     pub element: u16,
     /// Raw count of the element.
     pub count: u16,

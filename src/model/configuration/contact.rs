@@ -10,7 +10,7 @@ pub struct ConfiguredContact {
     pub bandwidth: f64,
     /// Least force at the tip with which a finger at rest counts as touching something, N.
     pub force: f64,
-    /// Increase of the least force with the fastest joint rate, N s/rad.
+    /// Increase of `force` with the rate of the fastest joint, N s/rad.
     pub force_per_rate: f64,
     /// A contact must exceed this torque at one or more joints, N cm. The value must exceed the errors that noise,
     /// dither and joint friction cause.

@@ -56,12 +56,12 @@ pub enum OutOfRange {
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RealTime {
-    /// Opening fails if any of these is not available.
+    /// Opening fails if SCHED_FIFO, locked memory or a core is not available.
     Enforce,
-    /// Opening continues without them, and reports it.
+    /// If SCHED_FIFO, locked memory or a core is not available, opening continues without it, and reports this.
     #[default]
     Try,
-    /// Opening does not request them.
+    /// Opening requests neither SCHED_FIFO nor locked memory nor cores.
     Ignore,
 }
 

@@ -3,7 +3,8 @@
 use super::ConfiguredFinger;
 use crate::model::finger_number::FingerNumber;
 
-/// Beginning of the port of a finger whose hardware the program provides. The number of the finger follows.
+/// Prefix of the value of `port` for a finger whose hardware the program provides. The number of the finger follows the
+/// prefix.
 const IO_PORT: &str = "sun2xp_io:";
 
 impl ConfiguredFinger {

@@ -6,14 +6,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredMonitors {
-    /// Torque that may be out of balance at a motor that does not turn, N cm. The motor is stalled if the imbalance
-    /// exceeds what this value and `stall_fraction` permit together for 12 ms. The value must exceed the static
+    /// Torque that may be out of balance at a motor that does not turn, N cm. The motor is stalled if, for 12 ms, the
+    /// imbalance exceeds what this value and `stall_fraction` together permit. The value must exceed the static
     /// friction of the motor.
     pub stall_torque: [f64; 4],
     /// Fraction of the pull or of the tension, whichever is larger, that may be out of balance in addition to
     /// `stall_torque`. It covers the error of the torque constant, and friction that is proportional to the tension.
     pub stall_fraction: f64,
-    /// Disagreement of gauges and encoders that is always tolerated, N of mean tension.
+    /// Disagreement of gauges and encoders that is always tolerated, as an error of the mean tension, N. The mean
+    /// weights each tendon in proportion to its pretension and its compliance.
     pub disagreement: f64,
     /// Friction along a tendon, as a fraction of its tension. The monitors expect the larger of this value and of
     /// `friction.conduit` plus `friction.pulley`.

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A named set of defaults for the other keys of `[finger.simulation]`. What the controller assumes stays the same, so
-/// a finger with a set other than `Nominal` differs from its configuration. Calibration measures some of the
+/// A named set of defaults for the other keys of `[finger.simulation]`. The values that the controller assumes do not
+/// change, so a finger with a set other than `Nominal` differs from its configuration. Calibration measures some of the
 /// differences.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

@@ -45,7 +45,7 @@ pub struct ConfiguredSimulation {
     /// Hardening h of the tendons, 0 to 0.9. The local stiffness is (1 - h) `tendon_stiffness` without tension, and
     /// rises in proportion to the tension to (1 + h) `tendon_stiffness` at `tendon.maximum`.
     pub hardening: f64,
-    /// Creep of the tendons: the part of the elastic stretch that is added in the long run.
+    /// Creep of the tendons: the length that creep adds in the long run, divided by the elastic stretch.
     pub creep: f64,
     /// Time constant of the creep, s.
     pub creep_time: f64,

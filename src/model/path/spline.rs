@@ -94,8 +94,8 @@ fn motions_at_inner_knots(start: &Start, knots: &[Knot]) -> Vec<AtKnot> {
         }
         // The matrix is invertible: with the rows (-snap, jerk), the matrix of the whole system has a positive definite
         // symmetric part. Each piece of degree 5 adds to it the second derivative of half the integral of its squared
-        // jerk, which is symmetric and not negative. The first and the last piece, of degree 6, add matrices with
-        // positive definite symmetric parts.
+        // jerk, which is symmetric and positive semidefinite. The first and the last piece, of degree 6, add matrices
+        // with positive definite symmetric parts.
         let inverse = near.try_inverse().unwrap_or_else(Matrix2::zeros);
         offsets.push(inverse * constant);
         factors.push(inverse * -leaving.far);

@@ -24,8 +24,9 @@ pub struct Entries(Vec<Snapshot>);
 /// Copies named fields.
 pub struct Named {
     fields: Fields,
-    /// Name of the type, and index and name of the variant.
+    /// Name of the type.
     name: &'static str,
+    /// Index and name of the variant, if the value is a variant of an enum.
     variant: Option<(u32, &'static str)>,
 }
 

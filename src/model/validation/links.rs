@@ -14,18 +14,20 @@ use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 /// if h^2 k + 2 h c <= 4 m.
 const STABLE: f64 = 4.0;
 
-/// Largest factor on the stiffness of the tendons. A tendon that sticks on its pulleys has only the last fifth of its
-/// compliance, so it is five times as stiff. The factor 2 allows for motion of the motor: the energy of a stretch,
-/// k (a - b)^2 / 2, is at most k a^2 + k b^2.
+/// Largest factor on the stiffness of the tendons. If a tendon sticks on its pulleys, only its section between pulleys
+/// and joint can stretch. This section has a fifth of the compliance, so the tendon is five times as stiff. The factor
+/// 2 allows for motion of the motor: the energy of a stretch, k (a - b)^2 / 2, is at most k a^2 + k b^2, where a and b
+/// are the travels of the two ends of the tendon.
 const STIFFEST: f64 = 2.0 * 5.0;
 
-/// Number of intervals between the stops of a joint, at whose ends the inertia is computed.
+/// Number of equal intervals into which the range of a joint between its stops is divided. The inertia is computed at
+/// the ends of all intervals.
 const INTERVALS: u8 = 8;
 
 impl ConfiguredFinger {
     /// Checks that the links of a simulated finger are heavy enough for its stops and tendons, and for the viscous
-    /// friction of its joints. A finger at a port is not checked, because it has the default values, which need not
-    /// suit its `geometry.links`.
+    /// friction of its joints. A finger at a port is not checked: its simulation values are usually the defaults, which
+    /// need not suit its `geometry.links`.
     pub(super) fn check_simulated_links(&self) -> Result<(), Unusable> {
         let (true, Ok(tendons)) = (self.simulated(), self.true_tendons()) else { return Ok(()) };
         let simulation = &self.simulation;

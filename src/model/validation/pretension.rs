@@ -43,11 +43,11 @@ mod tests {
         };
         assert_eq!(refused(|finger| finger.motor.torque_limit = [0.3; 4]), Err("motor.torque_limit"));
         assert_eq!(refused(|finger| finger.motor.continuous_torque[2] = 0.3), Err("motor.continuous_torque"));
-        let with_friction = |finger: &mut ConfiguredFinger| {
+        let sufficient = |finger: &mut ConfiguredFinger| {
             finger.motor.torque_limit = [0.6; 4];
             finger.motor.continuous_torque = [0.6; 4];
         };
-        assert_eq!(refused(with_friction), Ok(()));
+        assert_eq!(refused(sufficient), Ok(()));
         assert_eq!(
             refused(|finger| {
                 finger.motor.torque_limit = [0.6; 4];

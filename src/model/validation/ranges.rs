@@ -12,10 +12,10 @@ pub(super) fn unusable<T>(key: &'static str, reason: String) -> Result<T, Unusab
 
 pub(super) fn path(key: &'static str, path: &str) -> Result<(), Unusable> {
     if path.len() > LONGEST_PATH {
-        return unusable(key, format!("{} is longer than {LONGEST_PATH} bytes", Shown(path)));
+        return unusable(key, format!("{} is longer than {LONGEST_PATH} bytes: set a shorter path", Shown(path)));
     }
     match path.chars().any(char::is_control) {
-        true => unusable(key, format!("{} contains a control character", Shown(path))),
+        true => unusable(key, format!("{} contains a control character: remove it", Shown(path))),
         false => Ok(()),
     }
 }

@@ -12,8 +12,8 @@ impl ConfiguredFinger {
         self.check_step(keys, [&motor.inertia, &self.tendon.stiffness, &motor.viscous_friction])
     }
 
-    /// Checks the rotors and tendons of a simulated finger. A finger at a port is not checked, because it has the
-    /// default values, which need not suit its `geometry.motor_radius`.
+    /// Checks the rotors and tendons of a simulated finger. A finger at a port is not checked: its simulation values
+    /// are usually the defaults, which need not suit its `geometry.motor_radius`.
     pub(super) fn check_simulated_rotors(&self) -> Result<(), Unusable> {
         if !self.simulated() {
             return Ok(());
@@ -26,8 +26,8 @@ impl ConfiguredFinger {
 
     /// Checks that h^2 k r^2 + 2 h b is at most the inertia of each rotor. h is the step, k the stiffness of the
     /// tendon, r the radius of the motor, and b the viscous friction. A simulation of a rotor diverges if the sum
-    /// exceeds four times the inertia. The observers of state feedback resolve a rotor within the limit too. `keys` are
-    /// the keys of inertia, stiffness and friction, and `values` are their values.
+    /// exceeds four times the inertia. The observers of state feedback, too, can follow the motion of a rotor within
+    /// the limit. `keys` are the keys of inertia, stiffness and friction, and `values` are their values.
     fn check_step(&self, keys: [&'static str; 3], values: [&[f64; 4]; 3]) -> Result<(), Unusable> {
         let ([key, key_of_stiffness, key_of_viscous], [inertia, stiffness, viscous]) = (keys, values);
         for motor in 0..4 {

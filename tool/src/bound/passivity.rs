@@ -19,7 +19,8 @@ const LOWEST: f64 = 1.0;
 const HIGHEST: f64 = 400.0;
 const STEPS: i32 = 26;
 
-/// Difference between anchor and joint angles, rad. It is not 0, because eq. 20 of the report has a kink at zero load.
+/// Difference between the desired joint angles (the anchor of the spring) and the joint angles, rad. It is not 0,
+/// because eq. 20 of the report has a kink at zero load.
 const DEFLECTION: f64 = 0.01;
 
 /// Smallest distance of the tip from the axis of joint 0 in a pose, cm. Nearer poses are nearly singular.

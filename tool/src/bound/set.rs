@@ -80,7 +80,7 @@ fn places(arguments: &Arguments) -> &'static [bool] {
     if arguments.free { &[false] } else { &[false, true] }
 }
 
-/// Searches the bounds of all plants, and returns the least one, N/cm. Except for the nominal plant without walls, a
+/// Finds the bounds of all plants, and returns the least one, N/cm. Except for the nominal plant without walls, a
 /// plant with samples that are unstable at every stiffness does not count: no bound makes it stable.
 ///
 /// # Errors

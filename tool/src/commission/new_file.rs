@@ -1,4 +1,4 @@
-//! A configuration file for a finger that has none: searches for its board.
+//! Creates the configuration file of a finger, after a search for the board of this finger.
 
 use super::port_search::{Answer, search};
 use crate::failure::{Failure, wrong_usage};

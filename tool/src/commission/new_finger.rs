@@ -1,4 +1,4 @@
-//! A further finger in a configuration file: searches for its board.
+//! Adds a further finger to a configuration file, after a search for the board of this finger.
 
 use super::configuration_file::{LARGEST, table, with_layout_of};
 use super::port_search::{Answer, Taken, search};

@@ -82,7 +82,7 @@ fn choose(answers: Vec<Answer>, finger: FingerNumber, taken: &[Taken]) -> Result
         _ => {
             let all = free.iter().map(Answer::text).collect::<Vec<_>>().join("; ");
             return Err(format!(
-                "{} fingers answer: {all}. Connect only one, or name its port with --port",
+                "{} fingers answer: {all}. Connect only one, name its port with --port, or set its address in the file",
                 free.len()
             ));
         }

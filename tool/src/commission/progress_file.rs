@@ -16,12 +16,13 @@ use sun2xp::model::ShownPath;
 /// Largest file that is read, bytes.
 const LARGEST: u64 = 1 << 20;
 
-/// A step that has passed, or has not.
+/// The last attempt of a step, which has passed or has not.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Done {
     /// Date and time, UTC.
     pub when: String,
-    /// What was found, in the words of the tool.
+    /// What was found, in the words of the tool: all findings of a step that has passed, and the errors of one that has
+    /// not.
     pub found: Vec<String>,
 }
 
@@ -195,6 +196,6 @@ mod tests {
         for step in [Step::Zeros, Step::Tendons, Step::Bound, Step::Spring, Step::Tendons] {
             finger.pass(step, &good, &vitals, "today");
         }
-        assert!(!finger.steps.contains_key(&Step::Bound), "the bound of the tendons as they were before");
+        assert!(!finger.steps.contains_key(&Step::Bound), "the bound belongs to the tendons as they were before");
     }
 }

@@ -1,4 +1,4 @@
-//! The first spring, which the person pushes.
+//! Measures the stiffness of the finger as a spring, while the person pushes the tip.
 
 use super::desk::Desk;
 use super::machine::Refused;

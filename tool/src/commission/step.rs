@@ -92,8 +92,8 @@ impl Step {
             Self::Zeros => "The tendons come loose and tight again. Then the finger holds its pose.",
             Self::Tendons => "Slow motions of all joints, then each joint from stop to stop.",
             Self::Bound => {
-                "Nothing moves. The bound can be far below the stiffness that `sun2xp size` computes. The tool then \
-                 says what limits the bound."
+                "Nothing moves. The bound can be far below the stiffness that `sun2xp size` computes. The tool says \
+                 what limits the bound."
             }
             Self::Computer => "Nothing moves.",
             Self::Spring => "The tip gives way under your hand, and returns.",

@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn without_a_person_something_is_tried_again_only_so_often() {
+    fn without_a_person_a_failed_step_is_tried_again_a_limited_number_of_times() {
         let mut terminal = Terminal::new(true, vec![Step::Zeros]);
         terminal.quiet = true;
         assert!(!terminal.again("Do it again.").expect("answered"));

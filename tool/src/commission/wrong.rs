@@ -18,7 +18,7 @@ pub enum Wrong {
     Board(String),
     /// `order[n]` is the encoder that counts when motor n + 1 turns.
     EncodersExchanged([usize; 4]),
-    /// `order[n]` is the motor, with its encoder, that has the cables of motor n + 1.
+    /// `order[n]` is the number at which the cables of motor n + 1 and of its encoder are plugged in.
     MotorsAndEncodersExchanged([usize; 4]),
     MotorsExchanged(usize, usize),
     TendonsExchanged(usize, usize),

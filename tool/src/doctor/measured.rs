@@ -80,6 +80,7 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
     Finding::good(subject, found)
 }
 
+/// `asked` says whether a real-time priority was requested for the thread.
 fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
     let subject = format!("timer slack of servo thread {thread}");
     let (found, short) = match &wake_up.timer_slack {

@@ -1,5 +1,5 @@
-//! The certificate of a client. Zenoh reports only that a connection was refused. Therefore the files are checked
-//! before a connection is opened.
+//! The certificate of a client. Zenoh reports only that a connection was refused. Therefore the files of
+//! `[remote.tls]` are checked before a connection is opened.
 
 use super::RemoteTls;
 use crate::error::RemoteError;

@@ -1,4 +1,4 @@
-//! What is read, and what is refused with which text.
+//! Tests which configurations are read, and with which texts the others are refused.
 
 use super::*;
 

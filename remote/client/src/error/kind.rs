@@ -32,7 +32,7 @@ pub enum RemoteErrorKind {
     NotOwner,
     /// The hand has refused an earlier set point, or a request.
     Refused,
-    /// The server ends.
+    /// The server is shutting down, or cannot make an epoch.
     Closed,
     /// The server does not speak this version of the protocol.
     Protocol,

@@ -1,4 +1,4 @@
-//! Whether a hand can be read and commanded now.
+//! Checks whether a hand can be read and commanded now.
 
 use super::Exchange;
 use crate::admission::{admit, admit_path, by_finger};
@@ -89,7 +89,7 @@ impl Exchange {
     }
 
     /// Refuses to send if the hand is not owned or not heard, if a finger has stopped, or if the hand has refused an
-    /// earlier set point. The last reason is reported once.
+    /// earlier set point. The refusal of an earlier set point is reported only once.
     fn refuse_unless_ready(&mut self, now: u64, fingers: impl IntoIterator<Item = Finger>) -> Result<(), RemoteError> {
         self.owned()?;
         let silence = self.view.silence(now).ok_or_else(|| self.nothing_heard())?;

@@ -1,4 +1,4 @@
-//! What calls report, in simulated time.
+//! Tests what calls return, in simulated time.
 
 mod ownership;
 

@@ -32,7 +32,7 @@ impl RemoteHand {
         self.link.shared.lock().moving(finger, now()).map(|record| record.joints)
     }
 
-    /// Position and force of the tip and tendon tensions of finger 1, 2 or 3.
+    /// Position and force of the tip, and the tendon tensions, of finger 1, 2 or 3.
     ///
     /// # Errors
     /// Returns the errors of [`RemoteHand::position`].

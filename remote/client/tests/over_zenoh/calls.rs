@@ -1,4 +1,4 @@
-//! What a planner sees of a hand, of its loss, and of a server that is gone.
+//! Tests what a planner's calls report: while it owns a hand, after it has lost the hand, and when the server is gone.
 
 use crate::server::{FakeServer, LIMIT, configuration, free_port, until};
 use sun2xp_remote_client::{
@@ -210,7 +210,7 @@ fn hands_are_found_and_commanded_together() {
     let sent: Vec<_> = sent.collect();
     assert_eq!(sent[0].sent, sent[1].sent, "one time stamp");
     let places: Vec<_> = sent.iter().map(|target| (target.parts[0].finger, target.parts[0].place.clone())).collect();
-    assert_eq!(places, [(TWO, Place::Joints([0.75; 3])), (ONE, Place::Joints([0.5; 3]))], "and nothing before it");
+    assert_eq!(places, [(TWO, Place::Joints([0.75; 3])), (ONE, Place::Joints([0.5; 3]))], "refused calls send nothing");
 }
 
 /// Just after a client has connected, Zenoh may not know the way to the server yet.

@@ -1,5 +1,5 @@
-//! How long a call that sends takes, and how long it takes until the server has the Target. Both ends are in this
-//! process, so they have one clock.
+//! Measures how long a call of `send_position` takes, and how long it takes until the server has the Target. Both ends
+//! are in this process, so they have one clock.
 
 use crate::server::{FakeServer, configuration, free_port};
 use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! The client against a small server, over Zenoh on loopback.
+//! Tests the client against a small server, over Zenoh on loopback.
 
 mod calls;
 mod fake_hand;

@@ -43,14 +43,14 @@ impl Watched {
         self.hand.lock().expect("no test panics with the lock")
     }
 
-    /// Waits until the hand has this property.
+    /// Waits until `holds` is true of the hand. `what` names what is waited for.
     pub fn wait_until(&self, what: &str, mut holds: impl FnMut(&mut FakeHand) -> bool) {
         let (_hand, waited) =
             self.changed.wait_timeout_while(self.lock(), LIMIT, |hand| !holds(hand)).expect("no test panics");
         assert!(!waited.timed_out(), "not within {LIMIT:?}: {what}");
     }
 
-    /// Waits until a Target has this property, and returns it.
+    /// Waits until `holds` is true of a Target, and returns this Target.
     pub fn wait_for_target(&self, what: &str, holds: impl Fn(&Target) -> bool) -> Target {
         let mut found = None;
         self.wait_until(what, |hand| {
@@ -181,7 +181,7 @@ fn serve(session: &Session, name: &str) -> Arc<Watched> {
     watched
 }
 
-/// Calls until the result has this property, and returns it.
+/// Repeats `call` until `holds` is true of its result, and returns this result.
 pub fn until<T>(what: &str, mut call: impl FnMut() -> T, holds: impl Fn(&T) -> bool) -> T {
     let begin = Instant::now();
     loop {

@@ -20,7 +20,7 @@ static void *wait_for_events(void *none)
     return none;
 }
 
-/* The configuration of this planner, for a client with another name. */
+/* Reads the configuration of this planner, and changes the client's name in it to "another". */
 static int read_configuration(char *text, size_t size)
 {
     FILE *file = fopen(getenv("SUN2XP_CONFIG"), "r");

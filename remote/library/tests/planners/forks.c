@@ -21,7 +21,7 @@ int main(void)
             printf("child %d: %s\n", child, HandError());
             if (child == 2)
                 execl("/bin/true", "true", (char *)0);
-            /* Handlers of exit run in one child, and not in the other. */
+            /* The exit handlers run in child 0, and do not run in child 1. */
             fflush(stdout);
             child == 0 ? exit(3) : _exit(3);
         }

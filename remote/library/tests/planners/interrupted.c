@@ -1,4 +1,4 @@
-/* Works until Control-C, which the program sends to itself; then it opens the hand again and finishes. */
+/* Works until Control-C, which the program sends to itself, and then closes the hand. It does so twice. */
 #include <signal.h>
 #include <stdio.h>
 #include <unistd.h>

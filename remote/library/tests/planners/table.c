@@ -1,4 +1,4 @@
-/* A state machine over a table of ASCII numbers, with goto, in C99. */
+/* Carries out a table of commands in ASCII: a state machine with goto, in C99. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

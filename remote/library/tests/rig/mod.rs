@@ -143,7 +143,7 @@ impl Rig {
 
 impl Drop for Rig {
     fn drop(&mut self) {
-        // The server is a child for which nothing has waited yet, so no other process can have its number.
+        // The server is a child for which nothing has waited yet, so no other process can have its process id.
         let _ = self.server.kill();
         let _ = self.server.wait();
     }

@@ -25,7 +25,7 @@ pub fn list(values: impl IntoIterator<Item = String>) -> String {
     format!("[{}]", values.join(", "))
 }
 
-/// Writes a number with every bit; NaN, which JSON does not have, as null.
+/// Writes a number with so many digits that no bit is lost. Writes NaN, which JSON does not have, as null.
 pub fn number(number: f64) -> String {
     if number.is_nan() { "null".into() } else { format!("{number:?}") }
 }

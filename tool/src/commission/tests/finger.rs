@@ -110,8 +110,8 @@ impl Machine for Bench {
     }
 }
 
-/// The person at the bench. The person turns motors by not exactly one turn, hangs the weights that `hung` returns, and
-/// may repair the wiring.
+/// The person at the bench. The person turns motors by one turn with an error of up to 6 %, hangs the weights that
+/// `hung` returns, and may repair the wiring.
 pub struct Helper {
     pub world: Rc<RefCell<World>>,
     /// What the tool has shown at the end of each step.

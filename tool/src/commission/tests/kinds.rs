@@ -215,7 +215,8 @@ pub fn same(named: &[Wrong], expected: &[Wrong]) -> bool {
     named.len() == expected.len() && named.iter().zip(expected).all(|(one, other)| alike(one, other))
 }
 
-/// Commissions every kind with these seeds. Prints a table of the kinds, and checks the goals.
+/// Commissions every kind with these seeds. Prints a table of the kinds, and checks the limits of torques, tensions and
+/// joint angles, and that at least 98 % of the cases are named right.
 fn all_kinds(seeds: std::ops::Range<u64>) {
     let (mut right_names, mut all) = (0, 0);
     for (name, change) in KINDS {

@@ -266,7 +266,7 @@ fn the_person_lets_go_once_before_a_finger_is_identified_and_zeroed_at_its_stops
 
 /// The computer is examined before the motors move. Its faults are reported as suspect, and not as harmless notes.
 #[test]
-fn the_computer_is_tried_before_the_motors() {
+fn the_computer_is_examined_before_the_motors_move() {
     assert!(Step::Computer < Step::Encoders && Step::Computer.number() == 2);
     let slow = Wrong::Computer("72 of 1500 replies lost".into());
     assert!(slow.compensated() && slow.suspect());

@@ -142,7 +142,7 @@ impl Wrong {
     }
 }
 
-/// Says which plug belongs where. `order[n]` is the part that is found at number n + 1.
+/// Says which plug belongs where. `order[n]` is the number at which the plug of part n + 1 is found.
 fn moves(part: &str, order: &[usize; 4]) -> String {
     let wrong = order.iter().enumerate().filter(|&(place, &found)| place + 1 != found);
     let text = |(place, found): (usize, &usize)| format!("the plug at {part} {found} belongs to {part} {}", place + 1);
