@@ -40,7 +40,7 @@ def burners(stop: threading.Event) -> list:
 
 
 def configuration(servo_core: Optional[int]) -> str:
-    """Returns the configuration that binds the servos to a core, or none."""
+    """Returns the text of the configuration that binds the servos to a core, or an empty text for None."""
     return "" if servo_core is None else "".join(f"[finger.{finger}]\ncore = {servo_core}\n" for finger in (1, 2, 3))
 
 

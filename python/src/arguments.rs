@@ -33,8 +33,9 @@ pub fn list(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
 
 /// Returns three numbers.
 pub fn vector(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
-    // These two cases are quick. All others become an array first, which shows their shape. PyO3's conversion of a
-    // sequence would also take bytes, and with numpy before 2.4 the column of an array.
+    // These two kinds of objects are converted quickly. numpy converts all others to an array, whose shape is then
+    // checked. PyO3's conversion of a sequence would also accept bytes, and with numpy before 2.4 a column, which is
+    // an array with the shape (3, 1).
     if let Ok(array) = object.cast::<PyArray1<f64>>() {
         if is_regular(array)
             && let (3, [Some(x), Some(y), Some(z)]) = (array.len(), [0, 1, 2].map(|place| array.get_owned(place)))
@@ -102,7 +103,7 @@ pub fn finger(object: &Bound<'_, PyAny>) -> PyResult<i32> {
     in_range(object, object.extract(), refused)
 }
 
-/// Returns the number of a finger; none if it is None.
+/// Returns the number of a finger, or `None` for Python's None.
 pub fn some_finger(object: &Bound<'_, PyAny>) -> PyResult<Option<i32>> {
     if object.is_none() { Ok(None) } else { finger(object).map(Some) }
 }
@@ -119,7 +120,8 @@ pub fn joint(object: &Bound<'_, PyAny>) -> PyResult<usize> {
 
 /// Returns the number of a tactile element.
 pub fn element(object: &Bound<'_, PyAny>) -> PyResult<usize> {
-    in_range(object, object.extract(), || format!("there is no tactile element {object}: elements count from 0"))
+    let refused = || format!("there is no tactile element {object}: elements are numbered from 0");
+    in_range(object, object.extract(), refused)
 }
 
 /// Returns the priority of a reflex.
@@ -127,7 +129,7 @@ pub fn priority(object: &Bound<'_, PyAny>) -> PyResult<u8> {
     in_range(object, object.extract(), || format!("there is no priority {object}: pass a number from 0 to 255"))
 }
 
-/// Returns the number of a reflex; none if it is None.
+/// Returns the number of a reflex, or `None` for Python's None.
 pub fn some_reflex(object: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
     let refused = || format!("there is no reflex {object}: use the number that install_reflex has returned");
     in_range(object, object.extract(), refused)
@@ -148,7 +150,7 @@ fn tuple(shape: &[usize]) -> String {
     if shape.len() == 1 { format!("({sizes},)") } else { format!("({sizes})") }
 }
 
-/// Returns an attribute; none if it is None.
+/// Returns an attribute, or `None` if its value is Python's None.
 pub fn optional<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
     let value = object.getattr(name)?;
     Ok(if value.is_none() { None } else { Some(value) })

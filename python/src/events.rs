@@ -35,8 +35,8 @@ impl Queue {
         self.queue.next().map(|event| record(py, &event)).transpose()
     }
 
-    /// Waits for an event for at most `timeout` s, or without a limit, and takes it. Returns None after this time, and
-    /// if the hand is closed.
+    /// Waits for an event, and takes it. Returns None if no event comes within `timeout` s, or if the hand is closed.
+    /// Without a timeout, waits without a limit.
     #[pyo3(signature = (timeout=None))]
     fn wait<'py>(&self, py: Python<'py>, timeout: Option<f64>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.check(py)?;

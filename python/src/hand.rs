@@ -155,7 +155,7 @@ pub fn close_all(py: Python<'_>) {
         pending::end_openings();
         close_listed();
         pending::wait();
-        // Some openings may have been completed since the first call. This closes their hands.
+        // Openings of other threads may have been completed since the first call. The second call closes their hands.
         close_listed();
     });
 }

@@ -27,7 +27,7 @@ fn state() -> MutexGuard<'static, State> {
     state
 }
 
-/// A hand that is opening or closing, until this is dropped.
+/// Notes that a hand is opening or closing, until this value is dropped.
 pub struct Pending {
     counted: AtomicBool,
     generation: u32,

@@ -212,7 +212,7 @@ impl Hand {
         records::record(py, "ObjectState", &fields)
     }
 
-    /// The newest reading of a tactile element of a finger. Elements count from 0.
+    /// The newest reading of a tactile element of a finger. Elements are numbered from 0.
     fn touch<'py>(
         &self,
         py: Python<'py>,

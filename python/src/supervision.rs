@@ -60,8 +60,9 @@ impl Hand {
         })
     }
 
-    /// Runs a calibration: "signs", "zero" or "identify". Calls `progress` 50 times a second with what is done, 0 to 1,
-    /// and the current activity. If `progress` or the handler of a signal raises an exception, the finger is stopped.
+    /// Runs a calibration: "signs", "zero" or "identify". Calls `progress` 50 times a second with the completed part of
+    /// the calibration, 0 to 1, and the current activity. If `progress` or the handler of a signal raises an exception,
+    /// the finger is stopped.
     fn _calibrate<'py>(
         &self,
         py: Python<'py>,

@@ -22,7 +22,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(1);
 pub fn in_thread<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
     let (sender, mut receiver) = channel();
     let doing = "start a thread for the call";
-    // The thread inherits this mask, so that the threads of the program receive all signals.
+    // The new thread inherits the mask that blocks all signals, so only the threads of the program receive signals.
     let blocked = SignalsBlocked::all();
     let started = Builder::new().name("sun2xp call".into()).stack_size(STACK_BYTES).spawn(move || {
         // If nobody waits any more, the result is dropped here. This closes the hand if the result is a hand.
@@ -60,7 +60,8 @@ pub fn until<T: Send>(py: Python<'_>, mut poll: impl FnMut() -> Result<Option<T>
     }
 }
 
-/// Returns the duration of a time in s; none without a limit. A time that is too long for a `Duration` is no limit.
+/// Converts a time in s. The result is `None`, which means no limit, if there is no time or if the time is too long for
+/// a `Duration`.
 pub fn duration(py: Python<'_>, name: &str, seconds: Option<f64>) -> PyResult<Option<Duration>> {
     match seconds {
         None => Ok(None),

@@ -1,4 +1,4 @@
-"""What several tests use."""
+"""Fixtures that several tests use, and the longest time of a test."""
 
 import signal
 

@@ -51,7 +51,7 @@ def test_the_times_of_a_path_have_one_dimension(shared):
         lambda hand: hand.install_reflex(1, when.other_finger(2**40, EventKind.FAULT), then.hold()),
     ],
 )
-def test_integers_without_sense_are_refused(shared, call):
+def test_integers_out_of_range_are_refused(shared, call):
     with pytest.raises(sun2xp.Refused):
         call(shared)
 
@@ -72,7 +72,7 @@ def test_a_set_point_that_is_valid_for_ever_does_not_expire():
         assert EventKind.EXPIRED not in [event.kind for event in iter(events.take, None)]
 
 
-def test_a_time_limit_that_is_too_long_for_a_clock_is_none(shared):
+def test_a_time_limit_that_is_too_long_for_a_clock_is_no_limit(shared):
     shared.wait(1, "settled", timeout=1e300)
     for limit in (-1.0, math.nan):
         with pytest.raises(sun2xp.Refused, match="pass a time of 0 s or more"):
@@ -97,7 +97,7 @@ def test_an_interrupted_opening_does_not_wait_for_the_log(monkeypatch):
     assert flushed
 
 
-def test_the_page_of_waiting_says_that_an_arrival_stays(hand):
+def test_a_finger_that_was_pushed_away_still_counts_as_arrived(hand):
     assert "has been at the set point" in sun2xp.Hand.wait.__doc__
     hand.send_position(1, HOME)
     hand.wait(1, timeout=30)

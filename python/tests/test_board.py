@@ -30,7 +30,7 @@ class Board:
             [sys.executable, "-c", TOOL, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )
         self.port = self.process.stdout.readline().strip()
-        #: The configuration of a hand at this board, which tests its wiring when it is opened.
+        #: The configuration of a hand at this board. When the hand is opened, it tests its wiring.
         self.configuration = (
             f"[hand]\nrate = {RATE}\nfingers = [2]\nself_test = true\nwatchdog_ms = {WATCHDOG}\n"
             f"[finger.2]\nport = '{self.port}'\n"

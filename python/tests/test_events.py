@@ -62,7 +62,7 @@ def test_asyncio_follows_events_until_the_hand_is_closed(hand):
                 await asyncio.sleep(0.01)
 
         ticking = asyncio.create_task(tick())
-        # The generator `events_async` makes its queue at its first step. This queue exists before the command.
+        # `events_async` would make its queue only at its first step. The queue of `events` exists before the command.
         events = hand.events()
         hand.send_position(1, AWAY)
         async for event in events:

@@ -150,7 +150,7 @@ def test_waiting_leaves_the_interpreter_to_others(hand):
     assert is_shared(lambda one: one.close(), sun2xp.simulated)
 
 
-def test_a_hand_that_got_no_object_is_closed_without_the_interpreter_lock():
+def test_an_opened_hand_that_no_object_has_taken_is_closed_without_the_interpreter_lock():
     opened = _sun2xp.open_simulated("nominal", 1000.0, "")
     counts, done = [], threading.Event()
 
@@ -256,7 +256,7 @@ def test_a_hand_that_nobody_holds_is_closed():
     del hand
     gc.collect()
     assert events.closed
-    # The events that are left, and then the end.
+    # The queue yields the events that are left, and then ends.
     assert all(isinstance(event, sun2xp.Event) for event in events)
     assert events.take() is None and events.wait() is None
 

@@ -42,7 +42,7 @@ def test_the_tool_starts_the_server_beside_it(tmp_path):
 def test_control_c_ends_the_tool(tmp_path):
     arguments = [TOOL, "board", "--link", "unused"]
     process = subprocess.Popen(arguments, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=tmp_path)
-    # The tool runs: a tool that has failed has the exit status 1 too.
+    # The tool must run before it gets the signal, because a tool that has failed has the exit status 1 too.
     assert process.stdout.readline().startswith(b"/dev/pts/") and process.poll() is None
     process.send_signal(2)
     try:
@@ -53,7 +53,7 @@ def test_control_c_ends_the_tool(tmp_path):
 
 
 def test_a_black_box_has_the_last_cycles(hand):
-    # The finger is at its goal and at rest before the stop, at which its black box ends.
+    # The finger arrives at its set point before it is stopped. Its black box ends at the stop.
     hand.send_position(1, [0.1, 0.6, 0.9])
     hand.wait(1, timeout=30)
     events = hand.events()
@@ -106,7 +106,7 @@ def test_a_recording_becomes_a_table(tmp_path):
     assert {"kx_0_1", "stage", "tensions_3"} <= set(table.columns)
 
 
-def test_a_minute_takes_as_much_memory_as_the_page_says(hand):
+def test_a_minute_takes_as_much_memory_as_the_description_says(hand):
     minute = 60_000 * hand.black_box(1).cycles[1].dtype.itemsize
     assert f"takes {minute * 1e-6:.0f} MB" in sun2xp.read_recording.__doc__
 

@@ -1,4 +1,4 @@
-"""What the client of `sun2xp.remote` sends and reports, without a network and without time."""
+"""What the client of `sun2xp.remote` sends and reports, without a network and with a simulated clock of the server."""
 
 import threading
 import time
@@ -98,7 +98,7 @@ def test_a_state_of_an_earlier_epoch_applies_nothing(server, remote):
     server.records["bits"] = EVERYTHING
     server.apply()
     assert holds(remote, condition="arrived")
-    # Command numbers of other clients may be those of this one.
+    # Other clients may use the same command numbers as this one.
     server.records["command"] = 2
     server.state(owner=server.number + 7)
     remote.acquire(take_over=True)
@@ -107,7 +107,7 @@ def test_a_state_of_an_earlier_epoch_applies_nothing(server, remote):
     assert not holds(remote) and not holds(remote, condition="arrived")
 
 
-def test_only_the_own_command_number_counts(server, remote):
+def test_only_command_numbers_of_this_client_count(server, remote):
     remote.send_position(1, HOME)
     server.records["command"], server.records["bits"] = 2, EVERYTHING
     server.state()

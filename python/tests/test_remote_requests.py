@@ -1,4 +1,4 @@
-"""The requests of the client of `sun2xp.remote`, without a network and without time."""
+"""The requests of the client of `sun2xp.remote`, without a network and with simulated clocks."""
 
 import threading
 

@@ -22,7 +22,8 @@ pytestmark = pytest.mark.skipif(SERVER is None, reason="SUN2XP_SERVE does not na
 
 HOME = [0.0, 0.6, 0.9]
 
-#: Allowed age of the data that a client reads, s. The machine may be busy. test_remote.py tests old data.
+#: Allowed age of the data that a client reads, s. It is long because the machine may be busy. test_remote.py tests the
+#: refusal of old data.
 STALE = 1.0
 
 

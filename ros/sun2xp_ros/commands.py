@@ -70,7 +70,7 @@ class Commands:
 
     def _move(self, message: JointTrajectory) -> None:
         if not message.points:
-            # As for other controllers of ROS, an empty trajectory stops the motion.
+            # An empty trajectory stops the motion, as it does with other controllers of ROS.
             self._waiting.forget(self._fingers)
             self._hold(self._fingers)
             return
@@ -108,8 +108,8 @@ class Commands:
             self._hand.send_position(path.finger, path.joints[0])
 
     def _hold(self, fingers: Sequence[int]) -> None:
-        """Sends these fingers the pose that they have. A finger can be slightly beyond a limit, which the hand would
-        refuse. Such a finger gets the limit."""
+        """Sends each of these fingers its present pose. A joint can be slightly beyond a limit, and the hand would
+        refuse its angle. Such a joint gets the limit instead."""
         refused: Optional[sun2xp.Error] = None
         for finger in fingers:
             try:

@@ -47,7 +47,7 @@ class _ToRos(logging.Handler):
 
 
 class HandNode(Node):
-    """A hand, from the start of the node to its end."""
+    """A node with a hand. The constructor opens the hand, and `destroy_node` closes it."""
 
     def __init__(self, **options: Any) -> None:
         """Opens the hand. Options are those of `rclpy.node.Node`.

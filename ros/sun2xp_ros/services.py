@@ -17,14 +17,14 @@ Action = Callable[[int], str]
 
 
 class Services:
-    """Offers zero, recover and stop, for all fingers and for each."""
+    """Offers the services zero, recover and stop, for all fingers together and for each finger."""
 
     def __init__(self, node: Node, hand: sun2xp.Hand, fingers: Sequence[int], stopped: Callable[[int], None]) -> None:
         """Calls `stopped` with each finger that the service `stop` has stopped."""
         self._node = node
         self._stopped = stopped
         self._hand = hand
-        #: A zeroing takes half a minute. It waits in a thread of its own, and the node continues to publish.
+        #: Threads in which zero and recover wait, so that the node continues to publish. A zeroing takes half a minute.
         self._waiting = ThreadPoolExecutor(max_workers=len(fingers) + 1, thread_name_prefix="sun2xp service")
         slow, quick = ReentrantCallbackGroup(), MutuallyExclusiveCallbackGroup()
         for of, prefix in [(fingers, ""), *(((finger,), f"finger{finger}/") for finger in fingers)]:
@@ -35,7 +35,7 @@ class Services:
             node.create_service(Trigger, f"{prefix}stop", stop, callback_group=quick)
 
     def close(self) -> None:
-        """Ends the threads, after the hand is closed."""
+        """Waits until the threads have ended. Close the hand first: this ends the calls for which they wait."""
         self._waiting.shutdown(wait=True)
 
     async def _answer_later(self, fingers: Sequence[int], action: Action, request: Any, response: Any) -> Any:
@@ -72,7 +72,7 @@ class Services:
 
     def _recover(self, finger: int) -> str:
         stage = self._hand.status(finger).stage
-        # Just after a stop the stage may not show the fault yet. The call waits for it.
+        # Just after a stop, the stage may not show the fault yet. The call `recover` waits for the fault.
         self._hand.recover(finger)
         return "has recovered" if stage == "faulted" else "has no fault"
 

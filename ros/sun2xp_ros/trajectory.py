@@ -42,7 +42,7 @@ def begins_in(message: Any, now: float) -> float:
 
 def paths(message: Any, prefix: str, fingers: Sequence[int], now: float, *, waited: bool = False) -> List[Path]:
     """Returns the paths of a trajectory with at least one point. A path begins at once, so a trajectory whose stamp is
-    in the future must be sent at its stamp. The times of its paths are then those from the stamp. If the stamp has
+    in the future must be sent at its stamp. The times of its paths count from the stamp. If the stamp has
     passed, the paths begin now, and the points that have passed are left out.
 
     Args:

@@ -1,4 +1,4 @@
-"""Trajectories that wait for their stamps. This module needs no hand, so tests need none to check all of it."""
+"""Trajectories that wait for their stamps. This module needs no hand, so all of it can be tested without one."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class WaitingTrajectories:
     def add(self, delay: float, fingers: Sequence[int], begin: Callable[[Set[int]], None]) -> None:
         """Calls `begin` after `delay`, s, with the fingers that have got no other command until then.
 
-        If no such finger is left, `begin` is not called. For the trajectories that already wait, this one is another
-        command.
+        If no such finger is left, `begin` is not called. The new trajectory counts as another command for the
+        trajectories that already wait.
         """
         self.forget(fingers)
         one = _Waiting(fingers)

@@ -41,7 +41,7 @@ def trajectory(finger, *points, names=None):
 
 
 def near(finger, angles, tolerance=0.03):
-    """Whether joint states have a finger near these angles."""
+    """Returns the condition that joint states have a finger near these angles."""
 
     def condition(message):
         found = dict(zip(message.name, message.position))
@@ -52,7 +52,7 @@ def near(finger, angles, tolerance=0.03):
 
 
 def refused(*words):
-    """Whether the log has a refusal with these words."""
+    """Returns the condition that a line of the log is a refusal with these words."""
     return lambda line: line.level == 40 and all(word in line.msg for word in words)
 
 

@@ -40,7 +40,8 @@ def test_joint_states_are_complete_and_fresh(planner):
 
 
 def frames(urdf, angles):
-    """Returns the poses of all links in the frame of the root, m, at these angles by joint."""
+    """Returns the poses of all links in the frame of the root, m. `angles` has the angle of each joint, rad, by the
+    name of the joint."""
     robot = ElementTree.fromstring(urdf)
     poses = {f"{PREFIX}palm": numpy.eye(4)}
     joints = list(robot.findall("joint"))
@@ -61,7 +62,7 @@ def frames(urdf, angles):
 
 
 def turned(axis, angle):
-    """Rodrigues' formula."""
+    """Returns the 4 x 4 matrix of the rotation about an axis by an angle, rad (Rodrigues' formula)."""
     x, y, z = axis
     cross = numpy.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     pose = numpy.eye(4)
@@ -160,7 +161,7 @@ def test_a_target_moves_the_tip(planner):
     planner.wait("joint_states", lambda message: not near(1, joints, 0.005)(message))
 
 
-def test_a_stiffness_is_taken_in_newtons_a_metre(planner):
+def test_a_stiffness_is_taken_in_newtons_per_metre(planner):
     planner.stiffnesses.publish(Float64MultiArray(data=numpy.diag([900.0, 300.0, 300.0]).ravel().tolist()))
     # The text of the library is in the library's own unit, N/cm.
     planner.wait("/rosout", refused("stiffness of finger1 refused", "9.000 N/cm"))
@@ -204,7 +205,7 @@ def test_a_node_without_a_hand_destroys_itself(ros):
     try:
         with pytest.raises(sun2xp.Error) as refusal:
             HandNode(namespace="/broken", parameter_overrides=[rclpy.Parameter("simulated", value="broken")])
-        # The traceback of the refusal still refers to the node.
+        # The traceback of `refusal` still refers to the node, so garbage collection has not destroyed the node.
         assert ("sun2xp", "/broken") not in observer.get_node_names_and_namespaces(), refusal
     finally:
         observer.destroy_node()

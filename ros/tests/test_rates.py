@@ -72,7 +72,7 @@ def test_a_new_fault_is_published_at_once_at_every_rate(ros, opened):
     node._diagnostics = types.SimpleNamespace(publish=published.append)
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    # The next joint states come a second after the start of the node, and the next diagnostics ten.
+    # The first joint states come one second after the start of the node, and the first diagnostics after ten seconds.
     (hand,) = opened
     hand.stopped, end = FAULT, time.monotonic() + 0.8
     while not published and time.monotonic() < end:

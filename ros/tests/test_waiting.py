@@ -1,4 +1,4 @@
-"""Trajectories that wait for their stamps, and the times of measurements, without a hand and without nodes."""
+"""Waiting trajectories, services and times of measurements, without a hand and without nodes."""
 
 import time
 import types
@@ -62,7 +62,7 @@ class Hand:
         self.calls = []
         #: The finger that refuses paths; 0 if none does.
         self.refusing = 0
-        #: The pose of every finger, and the last pose that one got.
+        #: The pose of every finger, and the last pose that any finger got.
         self.pose, self.sent = [0.0, 0.0, 0.0], None
 
     def palm_pose(self, _finger):
@@ -183,7 +183,7 @@ def failing():
 
 
 def answer_of(services, action):
-    """What a service that waits in a thread answers."""
+    """Returns the response of a service that waits in a thread."""
     call = services._answer_later((1, 3), action, None, types.SimpleNamespace())
     deadline = time.monotonic() + 20
     while time.monotonic() < deadline:
@@ -205,7 +205,7 @@ def test_a_service_answers_and_does_the_rest_although_one_finger_has_a_defect(fa
 
 def test_a_panic_in_the_thread_of_a_service_reaches_the_node(failing):
     class Panic(BaseException):
-        """As a panic of the library, which is no Exception."""
+        """An exception like a panic of the library, which is not an `Exception`."""
 
     services, _ = failing(Panic())
     with pytest.raises(Panic):

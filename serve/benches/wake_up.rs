@@ -1,9 +1,10 @@
-//! Whether clients delay the servos: the wake-up of the servo threads with two writers and ten readers, against the
-//! server alone, in alternating turns. One writer owns the hand. The other one sends with an epoch that is not in
-//! force. The clients are processes of their own, and take processor time of this machine. A third turn therefore has
-//! the same clients at another server, in a process of its own. Prints Markdown.
+//! Measures whether clients delay the servos: compares the wake-up of the servo threads with two writers and ten
+//! readers to that with the server alone, in alternating turns. One writer owns the hand. The other one sends with an
+//! epoch that is not in force. The clients are processes of their own, and take processor time of this machine. A third
+//! turn therefore has the same clients at another server, in a process of its own. Prints Markdown.
 //!
-//! Real clients are on other machines, and the servos have a core of their own. With two cores:
+//! Real clients are on other machines, and the servos have a core of their own. On a machine with two cores, this
+//! command gives the servos core 1, and everything else core 0:
 //! `taskset --cpu-list 0 cargo bench -p sun2xp-serve --bench wake_up -- --servo-core 1`.
 
 mod common;
@@ -40,7 +41,7 @@ struct Arguments {
     /// Number of readers.
     #[arg(long, default_value_t = 10)]
     readers: usize,
-    /// Core of the servos. With none, the kernel selects it.
+    /// Core of the servos. Without this option, the kernel selects it.
     #[arg(long)]
     servo_core: Option<usize>,
     /// Without TLS.
@@ -113,10 +114,8 @@ fn print(arguments: &Arguments, measured: &[[WakeUp; 3]], attempts: &Attempts) {
     println!("\n{attempts}.");
     if !measured.is_empty() {
         let [alone, elsewhere] = [0, 1].map(|side| middle(measured.iter().map(|turn| turn[2][1] / turn[side][1])));
-        println!(
-            "Median ratio of neighbouring turns, 99.9 %, with the clients: {alone:.2} of the server alone (goal: at"
-        );
-        println!("most {GOAL}), {elsewhere:.2} of the same clients at another server");
+        println!("Ratio of the 99.9 % with the clients to that of the neighbouring turn, as the median of all turns:");
+        println!("{alone:.2} to the server alone (goal: at most {GOAL}), {elsewhere:.2} to clients at another server");
     }
 }
 
@@ -136,7 +135,7 @@ fn measure(offer: &Offer, seconds: f64) -> Result<WakeUp, Failure> {
     Ok([middle(wake.iter().map(|wake| wake.median)), middle(wake.iter().map(|wake| wake.p999))])
 }
 
-/// A server in a process of its own, whose servos are not real-time. Dropping it ends it.
+/// A server in a process of its own, whose servos are not real-time. Dropping this value ends the server.
 struct Other {
     child: Child,
     endpoint: String,
@@ -180,13 +179,13 @@ fn offer_until_input_ends(tls: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The processes of the clients. Dropping them ends them.
+/// The processes of the clients. Dropping this value ends them.
 struct Clients(Vec<Child>);
 
 impl Clients {
     fn start(endpoint: &str, folder: Option<&str>, readers: usize) -> Result<Self, Failure> {
         let mut clients = Self(Vec::new());
-        for role in ["owner", "late"].into_iter().chain(std::iter::repeat_n("reader", readers)) {
+        for role in ["owner", "old-epoch"].into_iter().chain(std::iter::repeat_n("reader", readers)) {
             let mut command = Command::new(std::env::current_exe()?);
             command.args(["--role", role, "--endpoint", endpoint]).stdin(Stdio::null());
             if let Some(folder) = folder {
@@ -231,7 +230,7 @@ fn client(role: &str, endpoint: &str, folder: Option<&str>) -> Result<(), Failur
             }
             Ok(())
         }
-        "late" => late(endpoint, folder),
+        "old-epoch" => send_old_epoch(endpoint, folder),
         _ => {
             let hand = RemoteHand::watch(&configuration(endpoint, "carol", folder)?)?;
             loop {
@@ -244,7 +243,7 @@ fn client(role: &str, endpoint: &str, folder: Option<&str>) -> Result<(), Failur
 }
 
 /// Sends Targets with an epoch that is not in force, 100 times a second.
-fn late(endpoint: &str, folder: Option<&str>) -> Result<(), Failure> {
+fn send_old_epoch(endpoint: &str, folder: Option<&str>) -> Result<(), Failure> {
     let mut config = zenoh::Config::default();
     let mut set = |key: &str, value: String| config.insert_json5(key, &value).expect("a key of zenoh");
     set("mode", "\"client\"".into());

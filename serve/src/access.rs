@@ -128,7 +128,7 @@ mod tests {
         text.iter().map(|(name, permission)| (name.parse().expect("a name"), *permission)).collect()
     }
 
-    /// zenoh reads its configuration, and so checks its syntax and its names.
+    /// Lets zenoh read the access control. This checks the syntax and the names in it.
     fn read(control: &str) {
         let mut config = zenoh::Config::default();
         config.insert_json5("access_control", control).unwrap_or_else(|error| panic!("{error}: {control}"));

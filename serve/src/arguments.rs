@@ -114,7 +114,7 @@ fn names(
     texts.iter().map(name).collect()
 }
 
-/// Returns the server with this name. The names of servers have the characters of the names of clients.
+/// Reads the name of a server. It may have the same characters as the name of a client.
 ///
 /// # Errors
 /// Returns the reason if this is not a name, or if [`check_client`] refuses it.

@@ -41,8 +41,8 @@ pub fn check_folder(folder: &Path, user: u32) -> Result<(), ServeError> {
 /// Reads the key of the authority with this certificate.
 ///
 /// # Errors
-/// Returns an error if the key is not a private file of `user`, if the certificate is not that of this key, or if it is
-/// not an authority that is valid now.
+/// Returns an error if the key is not a private file of `user`, if the certificate does not belong to this key, or if
+/// it is not the certificate of an authority that this command has made and that is valid now.
 pub fn read(certificate: &Path, key: &Path, user: u32) -> Result<KeyPair, ServeError> {
     for (path, other) in [(key, certificate), (certificate, key)] {
         let missing = || format!("but {} exists: restore the missing file, or choose an empty folder", other.display());
@@ -101,7 +101,9 @@ fn check_certificate(text: &str, pair: &KeyPair) -> Result<(), String> {
     }
     // A certificate identifies its authority by the name and the key of the authority.
     if common_name(&found) != Some(NAME) {
-        return Err(format!("is not an authority that this command made (common name `{NAME}`): {remedy}"));
+        return Err(format!(
+            "is not the certificate of an authority that this command made (its common name is not `{NAME}`): {remedy}"
+        ));
     }
     if !found.validity().is_valid() {
         return Err(

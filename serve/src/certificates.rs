@@ -46,7 +46,7 @@ pub struct Wanted {
 /// # Errors
 /// Returns an error if a name cannot be used, if one of the files exists already, if other users can use the authority
 /// or write in the folder, if the files of the authority do not belong together, or if a file cannot be written.
-/// Then the files and folders that it made are removed again.
+/// Before an error is returned, the files and folders that this call has made are removed again.
 pub fn make(folder: &Path, wanted: &Wanted) -> Result<Vec<PathBuf>, ServeError> {
     check_names(folder, wanted)?;
     let absent = |folder: &&Path| !folder.as_os_str().is_empty() && folder.symlink_metadata().is_err();
@@ -86,12 +86,12 @@ fn check_names(folder: &Path, wanted: &Wanted) -> Result<(), ServeError> {
     Ok(())
 }
 
-/// Returns whether there is something with this name, also a link that leads nowhere.
+/// Returns whether something with this name exists, even if it is a link that leads nowhere.
 fn is_there(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
 }
 
-/// Makes the folder and the files. `made` lists the files that have been made, also after an error.
+/// Makes the folder and the files. `made` lists the files that have been made, even if an error is returned.
 fn make_files(folder: &Path, wanted: &Wanted, made: &mut Vec<PathBuf>) -> Result<(), ServeError> {
     let user = effective_user()?;
     let mut builder = DirBuilder::new();

@@ -1,4 +1,4 @@
-//! The cycles of the fingers for States: every cycle once, in its order.
+//! Collects the cycles of the fingers for the States that the server publishes: every cycle once, in order.
 
 use crate::goal::Goal;
 use std::sync::Arc;
@@ -244,7 +244,7 @@ mod tests {
         }
     }
 
-    /// States that come late have more cycles than fit.
+    /// A State that is published late can have more cycles than fit into it.
     #[test]
     fn every_finger_keeps_its_newest_cycles() {
         let of = |finger, count| (0..count).map(move |cycle| record(finger, cycle));

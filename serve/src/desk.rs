@@ -175,7 +175,7 @@ impl Desk {
         true
     }
 
-    /// Returns whether this client owns the hand, and this is its epoch.
+    /// Returns whether this client owns the hand and `epoch` is the epoch in force.
     #[must_use]
     pub fn admits(&self, client: &ClientName, epoch: u64) -> bool {
         self.ownership.admits(client, epoch)
@@ -193,7 +193,7 @@ impl Desk {
     pub fn abandon(&mut self, now: u64) {
         self.ownership.end();
         // The set point of a finger that is still being recovered has no validity that could end. The desk therefore
-        // stops every finger after this time.
+        // stops every finger when the time `end` has passed.
         let end = u64::from(self.limits.end_ms) * MILLISECOND + GRACE;
         (self.silence, self.stop_at) = (None, Some(now + end));
     }

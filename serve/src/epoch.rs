@@ -10,7 +10,7 @@ pub fn new_epoch() -> Result<u64, ServeError> {
     loop {
         let epoch = getrandom::u64().map_err(|error| ServeError::System {
             doing: "get a random number for an epoch",
-            reason: format!("{error}: permit the server the system call getrandom and reading /dev/urandom"),
+            reason: format!("{error}: permit the server to use the system call getrandom and to read /dev/urandom"),
         })?;
         if epoch != 0 {
             return Ok(epoch);

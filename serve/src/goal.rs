@@ -7,7 +7,7 @@ use sun2xp_remote_protocol::{Part, Place};
 /// Where the owner wants a finger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Destination {
-    /// Nowhere: the owner has not commanded its place.
+    /// Nowhere: the owner has not commanded a place for the finger.
     #[default]
     None,
     /// At these joint angles, rad.
@@ -93,7 +93,7 @@ impl Goal {
     }
 
     /// Returns whether a finger at `joints`, rad, is where the owner wants it, within `tolerance`, rad. Returns true
-    /// if the owner has not commanded its place.
+    /// if the owner has not commanded a place for the finger.
     #[must_use]
     pub fn is_reached(&self, joints: &Vector3<f64>, tolerance: f64) -> bool {
         match self.destination {

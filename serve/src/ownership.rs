@@ -41,7 +41,7 @@ impl Ownership {
         self.owner.as_ref().map_or(0, |owner| owner.number)
     }
 
-    /// Returns whether this client owns the hand, and this is its epoch.
+    /// Returns whether this client owns the hand and `epoch` is the epoch in force.
     #[must_use]
     pub fn admits(&self, client: &ClientName, epoch: u64) -> bool {
         self.owner.as_ref().is_some_and(|owner| owner.client == *client && owner.epoch == epoch)
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn an_owner_that_acquires_again_fences_its_earlier_self() {
+    fn an_owner_that_acquires_again_ends_its_earlier_epoch() {
         let alice = name("alice");
         let mut ownership = Ownership::new(40);
         ownership.acquire(&alice, false, 7).expect("free");

@@ -46,10 +46,10 @@ impl Publishing {
     pub fn new(shared: &Arc<Shared>, session: &Session) -> Result<Self, ServeError> {
         let declare = |key: String| {
             let publisher = session.declare_publisher(key.clone()).congestion_control(CongestionControl::Drop);
-            publisher
-                .express(true)
-                .wait()
-                .map_err(|error| ServeError::Network { doing: format!("declare {key}"), reason: error.to_string() })
+            publisher.express(true).wait().map_err(|error| ServeError::Network {
+                doing: format!("declare the Zenoh key {key}"),
+                reason: error.to_string(),
+            })
         };
         let events = shared.hand.events();
         events.clear();
@@ -120,7 +120,7 @@ impl Publishing {
         let index = event.finger.index();
         let tolerance = self.shared.hand.configuration().fingers[index].events.arrived_degrees.to_radians();
         let [first, second, third, _] = event.values;
-        // The goal is read after the event, because the owner may have sent a new destination since the State.
+        // The goal is read after the event, because the owner may have sent a new destination since the State was made.
         let goal = self.shared.desk.lock().goals()[index];
         // The bound of the lead can make set points that are nearly at the destination.
         (goal.whole || !goal.is_commanded()) && goal.is_reached(&Vector3::new(first, second, third), tolerance)

@@ -103,7 +103,7 @@ impl Server {
         self.shared.desk.lock().take_target(client, payload, now())
     }
 
-    /// Returns the Status of now, for tests in the same process.
+    /// Returns the present Status, for tests in the same process.
     #[must_use]
     pub fn status(&self) -> Status {
         status(&self.shared.hand, &self.shared.settings.limits, &self.shared.desk.lock(), now())
@@ -129,7 +129,7 @@ impl Server {
 }
 
 fn refused(what: &'static str) -> impl Fn(zenoh::Error) -> ServeError {
-    move |error| ServeError::Network { doing: format!("declare {what}"), reason: error.to_string() }
+    move |error| ServeError::Network { doing: format!("declare the Zenoh key {what}"), reason: error.to_string() }
 }
 
 /// Advances set points and checks the silence of the owner, until the server ends.

@@ -1,5 +1,5 @@
 //! The session of zenoh: where it listens and connects, TLS, and access control. Multicast scouting and gossip are off:
-//! the server speaks only to what is configured. The threads of zenoh are ordinary ones, also if this process was
+//! the server speaks only to what is configured. The threads of zenoh are ordinary ones, even if this process was
 //! started with a real-time priority, because they are started by an ordinary thread.
 
 use crate::ServeError;
@@ -23,8 +23,8 @@ pub const LARGEST_OF_ROUTER: u16 = u16::MAX;
 /// waits.
 const LONGEST_WAIT: &str = "50000";
 
-/// Opens a session for these settings, with this access control if there is TLS. It receives messages of at most
-/// `largest` bytes, [`LARGEST_OF_HAND`] or [`LARGEST_OF_ROUTER`].
+/// Opens a session for these settings, with this access control if there is TLS. The session receives messages of at
+/// most `largest` bytes, [`LARGEST_OF_HAND`] or [`LARGEST_OF_ROUTER`].
 ///
 /// # Errors
 /// Returns an error if a file of TLS is missing, or if the server cannot listen. A router that cannot be reached is no

@@ -192,7 +192,7 @@ impl Settings {
     }
 }
 
-/// Returns the client with this name.
+/// Reads the name of a client.
 ///
 /// # Errors
 /// Returns the reason if this is not a name, or if [`check_client`] refuses it.

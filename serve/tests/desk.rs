@@ -44,10 +44,10 @@ fn a_part_with_a_path_and_a_stiffness_is_applied_as_a_whole() {
     assert_eq!(rig.report(1).set_point.stiffness[(0, 0)], STIFF[0][0]);
 }
 
-/// The hand admits the rounding error of the larger limit of a joint at both limits. At the lower limit of joint 2,
-/// 5 degrees, this is more than the rounding error of the limit itself as `float`.
+/// At both limits of a joint, the hand tolerates the rounding error that the larger limit has as `float`. At the lower
+/// limit of joint 2, 5 degrees, this tolerance is more than the rounding error of the lower limit itself.
 #[test]
-fn the_lead_bounds_the_force_of_a_limit_that_was_rounded() {
+fn the_lead_bounds_the_force_toward_a_limit_that_was_rounded() {
     let mut rig = Rig::new("lead_force = 1.0");
     rig.acquire("alice");
     let limits = rig.hand.limits(1).expect("finger 1");
@@ -65,7 +65,7 @@ fn the_lead_bounds_the_force_of_a_limit_that_was_rounded() {
 
 /// The owner commands Kx only. A push moves the finger away from where it was caught.
 #[test]
-fn a_stiffness_that_comes_back_pulls_with_the_force_of_the_lead_only() {
+fn a_stiffness_that_is_restored_after_a_catch_pulls_with_the_force_of_the_lead_only() {
     let mut rig = Rig::new("lead_force = 1.0");
     rig.acquire("alice");
     let stiff = Part { stiffness: Some(STIFF), ..kept(1, 1) };

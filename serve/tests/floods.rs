@@ -8,7 +8,8 @@ use std::time::Instant;
 use sun2xp_remote_protocol::{Action, Code};
 use zenoh::Wait;
 
-/// Number of queries of a flood. It exceeds the places of a client and the length of the queue of Answers.
+/// Number of queries of a flood. It exceeds the number of queries of one client that may wait, and the capacity of the
+/// queue of Answers.
 const MANY: usize = 500;
 
 #[test]
@@ -19,7 +20,7 @@ fn a_query_without_an_answer_ends_at_once() {
     let begun = Instant::now();
     // A key with a wildcard belongs to no client.
     assert!(alice.ask("sun2xp/hand/acquire/*", request(Action::Acquire).encode().expect("a Request")).is_none());
-    assert!(begun.elapsed() < PATIENCE / 2, "the end arrived, and not only the time limit");
+    assert!(begun.elapsed() < PATIENCE / 2, "the query ended before its time limit");
     rig.server.end();
 }
 
@@ -43,8 +44,8 @@ fn a_flood_of_one_client_leaves_answers_for_another() {
     for replies in floods {
         while replies.recv().is_ok() {}
     }
-    assert!(begun.elapsed() < PATIENCE / 2, "the ends arrived, and not only the time limit");
-    assert!(carol.status().is_some(), "its places are free again");
+    assert!(begun.elapsed() < PATIENCE / 2, "the queries ended before their time limits");
+    assert!(carol.status().is_some(), "the queries of carol do not wait any more");
     let goal = [0.1, 0.5, 0.9];
     alice.repeat_until(&[part(1, goal)], "set point", |_| (rig.set_point() == goal).then_some(()));
     assert_eq!(carol.request(request(Action::Stop)).code, Code::Done);

@@ -61,13 +61,13 @@ fn is_caught(name: NamedHand, near: f64) {
 }
 
 #[test]
-fn a_worn_hand() {
+fn a_worn_hand_follows_its_owner_and_is_caught() {
     follows(NamedHand::Worn, 0.05);
     is_caught(NamedHand::Worn, 0.03);
 }
 
 #[test]
-fn a_sheathed_hand() {
+fn a_sheathed_hand_follows_its_owner_and_is_caught() {
     follows(NamedHand::Sheathed, 0.03);
     is_caught(NamedHand::Sheathed, 0.03);
 }
@@ -75,7 +75,7 @@ fn a_sheathed_hand() {
 /// The errors of the gauges of this hand act like a force of 0.3 N at the tip. This force moves the tip by 1 mm with
 /// the default Kx of 3 N/cm, and by 3 mm with the soft Kx of 1 N/cm of a catch.
 #[test]
-fn a_cheap_hand() {
+fn a_cheap_hand_follows_its_owner_and_is_caught() {
     follows(NamedHand::Cheap, 0.12);
     is_caught(NamedHand::Cheap, 0.2);
 }

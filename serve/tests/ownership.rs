@@ -33,7 +33,7 @@ fn one_client_owns_the_hand_until_it_releases_it() {
 }
 
 #[test]
-fn a_take_over_fences_the_owner_before() {
+fn a_take_over_ends_the_epoch_of_the_previous_owner() {
     let rig = Rig::new("");
     let (mut alice, mut bob) = (rig.connect("alice"), rig.connect("bob"));
     let number = alice.acquire_with(request(Action::Acquire)).number;
@@ -134,7 +134,7 @@ fn every_hand_is_found_by_its_status() {
     rig.server.end();
 }
 
-/// The owner falls silent during the calibration, so the times are long.
+/// The owner falls silent during the calibration, so `catch_ms` and `end_ms` are long.
 #[test]
 fn a_client_whose_calibration_the_end_of_the_server_interrupts_gets_an_answer() {
     let rig = Rig::new("catch_ms = 10000\nend_ms = 60000");

@@ -95,7 +95,7 @@ fn clients_that_come_and_go_leave_nothing_behind() {
     (0..3).for_each(|_| come_and_go());
     let before = used();
     (0..10).for_each(|_| come_and_go());
-    wait_for("the threads and descriptors of before", || {
+    wait_for("as few threads and descriptors as before", || {
         let after = used();
         (after.0 <= before.0 && after.1 <= before.1).then_some(())
     });

@@ -75,7 +75,7 @@ fn one_client_finds_and_commands_two_hands() {
 }
 
 #[test]
-fn a_hand_cannot_play_another_one() {
+fn a_hand_cannot_impersonate_another_one() {
     let folder = tempfile::tempdir().expect("a folder");
     let (router, endpoint) = router(folder.path());
     // This server has the certificate of the right hand, and says that it is the left one.

@@ -125,7 +125,7 @@ fn a_hand_is_not_taken_over_while_a_finger_is_calibrated() {
 }
 
 #[test]
-fn a_client_that_is_not_listed_is_told() {
+fn a_client_that_may_only_read_is_told_how_to_get_permission() {
     let rig = Rig::new("");
     let error = RemoteHand::open(&configuration(&rig, "carol")).map(drop).expect_err("carol only reads");
     assert_eq!(error.kind(), RemoteErrorKind::NotOwner);

@@ -91,7 +91,7 @@ fn a_client_is_stopped() {
 }
 
 #[test]
-fn an_owner_that_never_commands_is_ended_too() {
+fn the_ownership_of_an_owner_that_never_commands_ends_too() {
     let rig = Rig::new("");
     let mut alice = rig.connect("alice");
     alice.acquire_with(request(Action::Acquire));
@@ -105,7 +105,7 @@ fn an_owner_that_never_commands_is_ended_too() {
 }
 
 #[test]
-fn an_owner_that_returns_leads_its_finger_on() {
+fn a_caught_finger_follows_an_owner_that_returns() {
     let rig = Rig::new("end_ms = 20000");
     let mut alice = rig.connect("alice");
     alice.acquire_with(request(Action::Acquire));
@@ -118,7 +118,7 @@ fn an_owner_that_returns_leads_its_finger_on() {
     };
     alice.repeat_until(&[wanted.clone()], "set point", |_| in_force(&rig));
     wait_for("catch", || report(&rig).expired.then_some(()));
-    wait_for("State that says so", || {
+    wait_for("State in which the finger is caught", || {
         let state = alice.state()?;
         state.records.iter().any(|record| record.finger.number() == 1 && record.caught).then_some(())
     });
@@ -149,7 +149,8 @@ fn a_far_target_pulls_with_the_force_of_the_lead_only() {
     rig.server.end();
 }
 
-/// The lead is shorter than the tolerance of an arrival, so the finger is at each set point as soon as it is sent.
+/// The lead is shorter than the tolerance of an arrival, so the finger counts as arrived at each set point as soon as
+/// the set point is sent.
 #[test]
 fn only_the_arrival_at_the_destination_is_published() {
     let rig = Rig::new("lead_force = 0.5\nend_ms = 20000");
@@ -201,7 +202,10 @@ fn a_stiffness_alone_pulls_with_the_force_of_the_lead_only() {
         Some(bob.states().into_iter().filter(|state| state.owner == taken.number).collect::<Vec<_>>())
             .filter(|states| states.len() > 3)
     });
-    assert!(of_bob.iter().flat_map(|state| &state.records).all(|record| record.command == 0), "alice used number 1");
+    assert!(
+        of_bob.iter().flat_map(|state| &state.records).all(|record| record.command == 0),
+        "command number 1 was that of alice"
+    );
     let mut stiff = part(1, far);
     (stiff.place, stiff.stiffness) = (Place::Kept, Some([[5.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 5.0]]));
     bob.repeat_until(&[stiff.clone()], "stiffness", |_| {

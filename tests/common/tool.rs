@@ -1,8 +1,11 @@
 //! The tool `sun2xp` is a package of its own. Each test program of the library builds it at most once, in the same way
 //! as cargo builds it for the tool's own tests.
 
+#[path = "cargo.rs"]
+mod cargo;
+
+use cargo::cargo;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::OnceLock;
 
 /// Builds the tool if it is out of date, and returns its path.
@@ -12,7 +15,7 @@ pub fn tool() -> &'static Path {
         let test = std::env::current_exe().expect("the test has a path");
         // Test programs are in `deps` of the profile's folder.
         let folder = test.parent().and_then(Path::parent).expect("the profile's folder");
-        let mut cargo = Command::new(env!("CARGO"));
+        let mut cargo = cargo();
         cargo.args(["build", "--quiet", "--locked", "--manifest-path"]);
         cargo.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"));
         match std::env::var_os("CI") {

@@ -43,7 +43,7 @@ class Events(_sun2xp.Queue):
 
     async def _ready(self, loop: asyncio.AbstractEventLoop, timeout: Optional[float]) -> None:
         descriptor = self.fileno()
-        # A loop calls one function for a descriptor, so all tasks that wait for this queue share it.
+        # A loop calls only one function for each descriptor, so `_wake` wakes all tasks that wait for this queue.
         every: Dict[asyncio.AbstractEventLoop, Set[asyncio.Event]] = self.__dict__.setdefault("_waiting", {})
         tasks = every.setdefault(loop, set())
         ready = asyncio.Event()

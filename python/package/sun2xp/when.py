@@ -10,7 +10,7 @@ Condition = Tuple[Any, ...]
 
 
 def event(kind: EventKind) -> Condition:
-    """An event of this finger."""
+    """An event of the finger that has the reflex."""
     return ("event", int(kind))
 
 

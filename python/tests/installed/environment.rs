@@ -1,5 +1,6 @@
 //! The wheel, and virtual environments in which it is installed.
 
+use crate::cargo::without_package;
 use crate::tools;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -32,6 +33,7 @@ fn wheel(python: &Path) -> &'static Path {
         let maturin = python.with_file_name("maturin");
         let mut build = Command::new(format!("{ROOT}/packaging/wheel"));
         build.arg(&folder).env("MATURIN", maturin).env("PROFILE", "dev").env("CARGO_NET_OFFLINE", "true");
+        without_package(&mut build);
         run(&mut build);
         let files = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
         let wheels: Vec<PathBuf> = files.filter(|path| path.extension().is_some_and(|end| end == "whl")).collect();
@@ -42,7 +44,7 @@ fn wheel(python: &Path) -> &'static Path {
 
 /// A virtual environment with the wheel.
 pub struct Environment {
-    /// Away from the sources, so that the installed package is tested.
+    /// The folder of the environment. It is not the folder of the sources, so that the installed package is tested.
     pub folder: PathBuf,
     /// The downloaded packages.
     wheels: PathBuf,

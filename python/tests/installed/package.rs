@@ -1,5 +1,6 @@
 //! The tests of the package: python/tests.
 
+use crate::cargo::cargo;
 use crate::environment::{Environment, ROOT, run};
 use std::path::PathBuf;
 use std::process::Command;
@@ -24,7 +25,7 @@ fn the_wheel_works_in_an_empty_environment() {
 /// another package. The build includes an example, because Cargo then selects the same features as for
 /// `cargo test --workspace`. With these features Zenoh is compiled already.
 fn server() -> PathBuf {
-    let mut build = Command::new(env!("CARGO"));
+    let mut build = cargo();
     build.args(["build", "--quiet", "--offline", "--workspace", "--bin", "sun2xp-serve"]);
     build.args(["--example", "spring"]).current_dir(ROOT);
     run(&mut build);

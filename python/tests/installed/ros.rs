@@ -4,10 +4,12 @@ use crate::environment::{Environment, ROOT, run};
 use std::path::Path;
 use std::process::Command;
 
-/// Runs the arguments that follow in a network namespace with nothing but the loopback interface.
+/// Arguments of `unshare`. It runs the program that follows them in a network namespace with only the loopback
+/// interface.
 const ALONE: [&str; 4] = ["--net", "sh", "-c", "ip link set lo up && exec \"$0\" \"$@\""];
 
-/// Returns a command that runs a program alone, or beside the other nodes of this machine if that is not permitted.
+/// Returns a command that runs a program in a network namespace of its own. If that is not permitted, the command runs
+/// the program beside the other nodes of this machine.
 fn command(program: &Path) -> Command {
     // Root keeps its own user namespace. In another one the servos would not get real-time priorities, and a busy
     // machine would stop the fingers.

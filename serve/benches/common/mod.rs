@@ -66,7 +66,7 @@ impl Offer {
     /// Checks that all fingers are under control.
     ///
     /// # Errors
-    /// Names the first finger that is not, and why.
+    /// Returns an error that names the first finger that is not under control, with the reason.
     pub fn check(&self) -> Result<(), Failure> {
         for finger in 1..=3 {
             under_control(finger as usize, &self.hand().report(finger)?.stage)?;

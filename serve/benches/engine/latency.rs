@@ -46,8 +46,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         print(name, busy, &measured);
     }
     println!(
-        "\nRound trips of {LENGTH} bytes, one every {} us. Medians over {} repeats of {} s. The ratio is to the same \
-         protection without Zenoh.\n",
+        "\nRound trips of {LENGTH} bytes, one every {} us. Medians over {} repeats of {} s. The ratio is to the engine \
+         without Zenoh that protects the messages in the same way.\n",
         arguments.period_us, arguments.repeats, arguments.seconds
     );
     Ok(())

@@ -64,15 +64,16 @@ fn main() -> ExitCode {
     let failures = Failure::ALL.into_iter().filter(wanted);
     let measured: Vec<_> = failures.map(|failure| repeated(failure, repetitions)).collect();
     println!(
-        "| failure | caught, median | longest | end state, median | longest | held off | pause, missing | within |"
+        "| failure | caught, median | longest | end state, median | longest | distance of the held set point, largest \
+         | observed pause, longest, and cycles missing | within the goals |"
     );
     println!("|---|---|---|---|---|---|---|---|");
     for one in &measured {
         println!("{}", one.row());
     }
-    println!("\nThe server, before and after, in {} s:", begin.elapsed().as_secs());
+    println!("\nWhat the server used before and after the failures ({} s in all):", begin.elapsed().as_secs());
     for Measured { failure, before, after, freed, .. } in &measured {
-        println!("{failure:?}: {before:?}, {after:?} after {} s", freed.as_secs());
+        println!("{failure:?}: before {before:?}, after {after:?} ({} s after the last failure)", freed.as_secs());
     }
     if measured.iter().all(Measured::is_good) { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

@@ -29,8 +29,8 @@ impl LedPlace {
 }
 
 impl Fingers {
-    /// Returns the goal of a finger that is about to get a command. If the owner has not commanded its place, the set
-    /// point in force is kept. A finger that was caught returns to the set point from before the catch.
+    /// Returns the goal of a finger that is about to get a command. If the owner has not commanded a place for the
+    /// finger, the set point in force is kept. A finger that was caught returns to the set point from before the catch.
     pub(super) fn keeping(&self, number: i32, goal: Goal, report: &FingerReport) -> Result<Goal, HandError> {
         let mut keeping = goal;
         if goal.destination == Destination::None {

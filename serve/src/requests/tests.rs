@@ -45,9 +45,9 @@ fn an_acquire_that_the_owner_prevents_does_not_hold_up_a_recovery() {
     let recovering = Request { recover: true, ..ACQUIRE };
     assert_eq!(ask(&shared, "bob", recovering).code, Code::Owned);
     assert!(!shared.busy.load(Ordering::Acquire));
-    // The owner recovers a finger.
+    // `busy` is set while the owner recovers a finger.
     shared.busy.store(true, Ordering::Release);
-    assert_eq!(ask(&shared, "bob", recovering).code, Code::Owned, "not because of the recovery");
+    assert_eq!(ask(&shared, "bob", recovering).code, Code::Owned, "refused because of the owner, not of the recovery");
     assert!(shared.busy.load(Ordering::Acquire));
     let taking = Request { take_over: true, ..recovering };
     assert_eq!(ask(&shared, "bob", taking).code, Code::InProgress);
@@ -70,7 +70,8 @@ fn stop_and_expire(shared: &Shared) {
     shared.hand.keep_valid(2, soon).expect("finger 2");
 }
 
-/// The servo of a finger may count the silence of the previous owner a moment later than the server.
+/// The servo of a finger measures the silence of the previous owner itself. So the set point of the finger may expire a
+/// moment after the server has ended the ownership.
 #[test]
 fn a_finger_whose_set_point_expires_while_an_acquire_recovers_another_is_recovered_too() {
     let shared = shared();
@@ -81,7 +82,7 @@ fn a_finger_whose_set_point_expires_while_an_acquire_recovers_another_is_recover
     join(&shared);
 }
 
-/// The owner may have fallen silent since its request.
+/// Such a finger is not recovered, because the owner may have fallen silent since its request.
 #[test]
 fn a_finger_whose_set_point_expires_during_a_recovery_for_the_owner_stays_stopped() {
     let shared = shared();
@@ -136,7 +137,8 @@ fn a_server_that_ends_carries_out_stops_only() {
     assert_eq!(ask(&shared, "bob", Request { action: Action::Stop, ..ACQUIRE }).code, Code::Done);
 }
 
-/// A filter of system calls holds for one thread, and for those that it starts. Here it cannot start any.
+/// Runs `body` in a thread that cannot start threads, because a filter of system calls (seccomp) refuses this. A filter
+/// holds only for the thread that sets it, and for the threads that this thread starts.
 #[allow(unsafe_code, reason = "a filter of system calls")]
 fn without_threads<T: Send>(body: impl FnOnce() -> T + Send) -> T {
     let code = |code: u32, yes, no, k: u32| libc::sock_filter { code: code as u16, jt: yes, jf: no, k };
@@ -184,9 +186,10 @@ fn a_request_for_which_no_thread_can_be_started_is_answered() {
     join(&shared);
 }
 
-/// Without the code of the end, the client would be told to calibrate the finger again.
+/// With the code of the interrupted calibration in place of [`Code::Closed`], the client would be told to calibrate the
+/// finger again.
 #[test]
-fn a_calibration_that_the_end_of_the_server_interrupts_has_the_code_of_the_end() {
+fn a_calibration_that_the_end_of_the_server_interrupts_is_answered_with_closed() {
     let shared = shared();
     let epoch = ask(&shared, "alice", ACQUIRE).epoch;
     let request = Request { action: Action::Calibrate, finger: Finger::new(1), epoch, ..ACQUIRE };

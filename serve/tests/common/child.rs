@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-/// The variable with the endpoint, for the process of the client.
+/// The environment variable that gives the endpoint to the process of the client.
 const ENDPOINT: &str = "SUN2XP_TEST_CLIENT";
 
 /// The joint angles that the client commands for finger 1, rad.

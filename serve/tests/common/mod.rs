@@ -84,7 +84,7 @@ pub fn wait_for<T>(what: &str, mut found: impl FnMut() -> Option<T>) -> T {
         if let Some(found) = found() {
             return found;
         }
-        assert!(begun.elapsed() < PATIENCE, "no {what} in time");
+        assert!(begun.elapsed() < PATIENCE, "waited too long for: {what}");
         std::thread::sleep(Duration::from_millis(2));
     }
 }

@@ -75,7 +75,7 @@ impl Rig {
         refusal
     }
 
-    /// Lets the desk look until `found` returns something.
+    /// Calls [`Desk::look`] until `found` returns something.
     pub fn wait_for<T>(&mut self, what: &str, mut found: impl FnMut(&mut Self) -> Option<T>) -> T {
         let begun = Instant::now();
         loop {

@@ -31,14 +31,17 @@ const WINDOW: u64 = 20_000_000;
 struct Seen {
     /// The set points of joint 1 while the finger followed the planner, one for each cycle, rad.
     set_points: Vec<f64>,
-    /// Largest velocity over a window before the end state, rad/s, and the joint angles in the window with their times.
+    /// Largest velocity over a window before the end state, rad/s.
     velocity: f64,
+    /// The times, ns, and the joint angles, rad, of the cycles in the newest window.
     recent: VecDeque<(u64, [f64; 3])>,
-    /// How often it was caught.
+    /// How often the finger was caught.
     caught: usize,
-    /// Whether it has reached the last set point, and whether it went to its end state.
+    /// Whether the last set point of the ramp is in force.
     arrived: bool,
+    /// Whether the finger has gone to its end state.
     ended: bool,
+    /// Whether the finger followed the planner in the newest cycle.
     follows: bool,
 }
 
@@ -91,8 +94,8 @@ fn ramp(line: Line, name: &str, catch_ms: u32, spoil: impl FnOnce(&Line)) -> See
 /// Checks that the planner has sent every set point that was applied, that the set points are in order, and that the
 /// finger moves smoothly.
 fn assert_ordered(seen: &Seen, name: &str) {
-    // When the line is spoiled, the finger follows the planner. It is caught `catch_ms`, 100 ms or more,
-    // after the newest Target.
+    // At the moment at which the line is spoiled, the finger follows the planner. It is caught only when the newest
+    // Target is `catch_ms`, 100 ms or more, old.
     assert!(seen.set_points.len() >= 20, "{name}: only {} cycles followed the planner", seen.set_points.len());
     for pair in seen.set_points.windows(2) {
         assert!(pair[1] >= pair[0], "{name}: {} follows {}", pair[1], pair[0]);
@@ -124,8 +127,8 @@ fn a_line_that_delays_packets_applies_no_wrong_set_point() {
         let conditions = Conditions::jittering(jitter, reorders);
         let seen = ramp(line, name, CATCH_MS, |line| _ = line.set(Direction::Left, conditions));
         assert_ordered(&seen, name);
-        // With jitter in both directions, up to 100 ms pass before a Target is there. The hand then needs a longer
-        // `catch_ms`.
+        // With jitter in both directions, a Target can be 100 ms old when it arrives, because the age includes the
+        // delays of both directions. The hand then needs a longer `catch_ms`.
         let Some(line) = permitted_line(23) else { return };
         let seen = ramp(line, name, 4 * CATCH_MS, |line| _ = line.set_both(conditions));
         assert_ordered(&seen, name);

@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Longest time after which the relay notices that it shall end, or that its conditions are new.
+/// Longest time after which the relay notices that it must end, or that the conditions have changed.
 const POLL: Duration = Duration::from_millis(2);
 
 /// Largest IP packet of the interfaces.

@@ -27,7 +27,8 @@ fn offer_all(shaper: &mut Shaper, start: Instant) -> Instant {
     start + Duration::from_millis((PACKETS - 1).into())
 }
 
-/// Four standard deviations: a correct line is outside once in 16000 seeds, and the seeds are fixed.
+/// Checks that the lost fraction is within four standard deviations of the expected one. A correct line fails this
+/// check with one seed in 16000, and the seeds are fixed.
 fn assert_loss(lost: u64, expected: f64) {
     let fraction = lost as f64 / f64::from(PACKETS);
     let deviation = (expected * (1.0 - expected) / f64::from(PACKETS)).sqrt();

@@ -29,8 +29,8 @@ impl Noise {
         Self { random: Random(seed), command: 1_000_000 }
     }
 
-    /// Returns the next payload. `next` is a Target that the server would take: in force, fresh, without parts.
-    /// `newest` is the sequence number of the newest one that the server has taken.
+    /// Returns the next payload. `next` is a Target that the server would take: fresh, without parts, and with the
+    /// epoch in force. `newest` is the sequence number of the newest Target that the server has taken.
     pub fn payload(&mut self, next: &Target, newest: u64) -> Vec<u8> {
         match self.random.below(5) {
             0 => self.bytes(700),
@@ -88,7 +88,7 @@ impl Noise {
         payload
     }
 
-    /// A Target in force with one field that the protocol or the hand does not allow.
+    /// A Target with the epoch in force and one field that the protocol or the hand does not allow.
     fn spoiled(&mut self, next: &Target) -> Vec<u8> {
         let mut payload = self.good(next);
         let number = |payload: &mut Vec<u8>, at: usize, value: f64| {

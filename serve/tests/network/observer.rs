@@ -47,7 +47,7 @@ impl Observer {
         while !self.samples(Duration::ZERO).is_empty() {}
     }
 
-    /// Reads until a cycle shows something, for at most `timeout`.
+    /// Reads cycles until `find` returns something, for at most `timeout`.
     pub fn until<Found>(&mut self, timeout: Duration, mut find: impl FnMut(&Sample) -> Option<Found>) -> Option<Found> {
         let deadline = Instant::now() + timeout;
         while Instant::now() < deadline {

@@ -18,7 +18,7 @@ pub const END_GOAL: f64 = 1100.0;
 /// Longest time until the fingers follow a new planner.
 const FOLLOWS: Duration = Duration::from_secs(15);
 
-/// The age of a target at which the servers of these tests catch the fingers, if the test says nothing else, ms.
+/// The age of a Target at which the servers of these tests catch the fingers, unless a test sets another age, ms.
 pub const CATCH_MS: u32 = 100;
 
 /// What fails.
@@ -48,7 +48,8 @@ pub struct Outcome {
     pub caught: f64,
     /// From the outage to the first cycle in which the finger was no spring any more.
     pub ended: f64,
-    /// Largest distance of the held set point from the joint angles of the cycle, rad.
+    /// Largest distance of the set point of a finger from its joint angles in the first cycle in which the finger is
+    /// held softly, rad.
     pub distance: f64,
     /// Longest time between two observed cycles of a finger, ms. Pauses of the machine and lost telemetry prolong it.
     pub pause: f64,
@@ -56,7 +57,7 @@ pub struct Outcome {
     pub lost: u64,
 }
 
-/// A hand, its line, and what happens to them.
+/// A hand, its line, and an observer of the hand.
 pub struct Rig {
     pub line: Line,
     pub served: Served,
@@ -71,7 +72,7 @@ impl Rig {
         Self { line, served, observer }
     }
 
-    /// Starts a planner, and waits until every finger has its stiffness.
+    /// Starts a planner, and waits until every finger has the stiffness of this planner.
     pub fn planner(&mut self, motion: Motion) -> Planner {
         let planner = Planner::start(&self.line, &self.served.remote("planner"), motion);
         self.follows();
@@ -88,8 +89,10 @@ impl Rig {
         }
     }
 
-    /// Lets something fail while a planner moves the hand. Observes the hand until every finger is in its end state,
-    /// and repairs what has failed. Then the next planner must get the hand.
+    /// Lets `failure` happen while a planner moves the hand. Observes the hand until every finger is in its end state,
+    /// and repairs the line. After [`Failure::Stopped`], the next planner must get the hand, and the planner that
+    /// continues must not disturb it. After the other failures, the next call starts the next planner, which must get
+    /// the hand.
     pub fn fail(&mut self, failure: Failure) -> Outcome {
         let planner = self.planner(Motion::Swing);
         self.observer.skip();
@@ -137,7 +140,7 @@ impl Rig {
             }
             outcomes.iter().all(|(_, ended)| ended.is_some()).then_some(())
         });
-        // A finger that was not caught, or did not end, is later than every goal.
+        // A finger that was not caught, or did not go to its end state, is later than every goal.
         let last = |a: f64, b: Option<f64>| a.max(b.unwrap_or(f64::INFINITY));
         let caught = outcomes.iter().fold(0.0, |latest, (caught, _)| last(latest, *caught));
         let ended = outcomes.iter().fold(0.0, |latest, (_, ended)| last(latest, *ended));

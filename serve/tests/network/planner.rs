@@ -83,7 +83,7 @@ impl Planner {
         while !said.last().is_some_and(|line: &String| line.contains("planner moves")) {
             said.push(lines.next().unwrap_or_else(|| panic!("the planner has ended: {said:?}")));
         }
-        // Somebody must read what it says later.
+        // A thread reads what the planner prints later, so that the planner never waits at a full pipe.
         std::thread::spawn(move || lines.for_each(drop));
         planner
     }
@@ -113,7 +113,7 @@ fn watch(configuration: &str) {
     }
 }
 
-/// Opens the hand. On a busy machine, a new connection may not give an answer yet. Then this tries again.
+/// Opens the hand. On a busy machine, a new connection may not give an answer yet. Then the function tries again.
 fn opened(configuration: &str) -> RemoteHand {
     let deadline = Instant::now() + OPENS;
     loop {
@@ -146,7 +146,8 @@ fn run(configuration: &str, motion: Motion) {
             println!("planner moves");
             let _ = std::io::stdout().flush();
         }
-        // The planner keeps real time. The tests measure what the hand does, and not what the planner does.
+        // Each set point has a fixed time after `begin`, even if earlier calls took long. The tests measure what the
+        // hand does, and not what the planner does.
         std::thread::sleep((begin + time + INTERVAL).saturating_duration_since(Instant::now()));
     }
 }

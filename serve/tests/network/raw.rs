@@ -82,7 +82,7 @@ impl Raw {
         self.states.load(Ordering::Acquire)
     }
 
-    /// Asks for something under the key of a client. Returns none if nobody answers.
+    /// Sends a Request under the key of `client`. Returns none if nobody answers.
     pub fn ask_as(&self, client: &ClientName, request: Request) -> Option<Answer> {
         let payload = request.encode().expect("a good Request");
         let get = self.session.get(self.keys.request(request.action, client)).payload(payload).timeout(ANSWERS);
@@ -92,7 +92,7 @@ impl Raw {
         Some(answer)
     }
 
-    /// Asks for something, with the epoch.
+    /// Sends a Request with the epoch of this client, under its own key. Returns none if nobody answers.
     pub fn ask(&self, action: Action, finger: Option<Finger>) -> Option<Answer> {
         let request = Request { action, finger, take_over: false, recover: false, epoch: self.epoch };
         self.ask_as(&self.client, request)
@@ -144,7 +144,8 @@ impl Raw {
         Some(Status::decode(&reply.result().ok()?.payload().to_bytes()).expect("a good Status"))
     }
 
-    /// Waits until the Status shows something, and keeps the ownership meanwhile.
+    /// Asks for the Status until `holds` returns true for it. If this client has acquired the hand, it sends a Target
+    /// without parts before each question, so that its ownership does not end.
     pub fn until(&mut self, mut holds: impl FnMut(&Status) -> bool) -> Status {
         let deadline = Instant::now() + 2 * ANSWERS;
         loop {

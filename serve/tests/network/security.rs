@@ -25,7 +25,7 @@ pub fn clients_of(names: &[&str]) -> String {
     names.iter().map(|name| format!("{name} = \"command\"\n")).collect()
 }
 
-/// Opens a simulated hand for a server with these settings. `name` is unique in this process. With a folder of
+/// Opens a simulated hand for a server with these settings. `name` must be unique in this process. With a folder of
 /// certificates, the server has TLS.
 pub fn simulated(name: &str, clients: &str, endpoint: &str, certificates: Option<&Path>) -> (Hand, Settings) {
     let tls = certificates.map_or(String::new(), |folder| {

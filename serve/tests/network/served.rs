@@ -88,7 +88,7 @@ fn started(file: &Path) -> Child {
     let mut lines = BufReader::new(output).lines();
     let ready = lines.by_ref().map_while(Result::ok).any(|line| line == "ready");
     assert!(ready, "the server has ended: {:?}", process.wait());
-    // Somebody must read what it says later.
+    // A thread reads what the server prints later, so that the server never waits at a full pipe.
     std::thread::spawn(move || lines.for_each(drop));
     process
 }

@@ -78,7 +78,7 @@ impl Shaper {
         self.under_way.peek().map(|Reverse((arrival, ..))| *arrival)
     }
 
-    /// Loses every packet that is under way, as a cable does that is pulled.
+    /// Loses every packet that is under way, as a cable does when it is unplugged.
     pub fn clear(&mut self) {
         self.lost += self.under_way.len() as u64;
         self.under_way.clear();

@@ -118,7 +118,7 @@ pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -
     let stiffness = least.bound;
     let near = Search { samples, seed: arguments.seed, walls: least.walls }
         .near_axis(finger, rate, &Variant::NOMINAL, stiffness)
-        .map_err(|unusable| format!("{} {}", unusable.key, unusable.reason))?;
+        .map_err(|unusable| format!("finger {number}: {} {}", unusable.key, unusable.reason))?;
     progress.step();
     let near_axis = NearAxis { samples: near.samples, unstable: near.unstable, distance: near.distance };
     Ok((stiffness, SetBound { plants, limited_by, near_axis }))

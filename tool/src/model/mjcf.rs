@@ -1,5 +1,6 @@
-//! A hand as MJCF, the format of MuJoCo: <https://mujoco.readthedocs.io/en/stable/XMLreference.html>. Tendons are fixed
-//! tendons with the moment arms R, so the torques of the joints are R t (eq. 13) for the controls t, N.
+//! A hand as MJCF, the format of MuJoCo: <https://mujoco.readthedocs.io/en/stable/XMLreference.html>. Each tendon is an
+//! element `fixed`: a linear combination of joint angles, whose coefficients are the moment arms R. So the controls t,
+//! N, cause the joint torques R t (eq. 13).
 
 use super::geometry::{Finger, Geometry, Link, Object};
 use super::shape::{Form, Shape};
@@ -170,7 +171,8 @@ fn object(xml: &mut Xml, object: &Object) {
     }
 }
 
-/// Writes the tendons with what the rotors add at the tendon: inertia, viscous and dry friction.
+/// Writes the tendons, and an actuator for each tendon. The attributes of a tendon contain the inertia, the viscous
+/// friction and the dry friction of its rotor.
 fn tendons(xml: &mut Xml, geometry: &Geometry, configuration: &Configuration) {
     let each = || geometry.fingers.iter().flat_map(|finger| (0..4).map(move |tendon| (finger, tendon)));
     xml.open("tendon", &[]);
@@ -201,7 +203,7 @@ fn tendons(xml: &mut Xml, geometry: &Geometry, configuration: &Configuration) {
     xml.close();
 }
 
-/// Writes the pose at the start, in which every finger has its homing pretension.
+/// Writes the keyframe `start`: the pose at the start, and as controls the homing pretension of every finger.
 fn start(xml: &mut Xml, geometry: &Geometry, configuration: &Configuration) -> Result<(), TendonsError> {
     let mut pose: Vec<f64> = geometry.fingers.iter().flat_map(|finger| finger.start).collect();
     if let Some(object) = &geometry.object {

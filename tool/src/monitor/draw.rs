@@ -123,7 +123,7 @@ fn draw_fingers(frame: &mut Frame, area: Rect, view: &View, palette: &Palette, h
     let is_selected =
         |number: i32| view.selected == Some(number) || view.jog.as_ref().is_some_and(|jog| jog.finger == number);
     let areas = if area.width >= SIDE_BY_SIDE || count <= 1 {
-        // Columns of the same width have the same labels.
+        // All columns get the same width, so that the labels are abbreviated in all of them or in none.
         Layout::horizontal(vec![Constraint::Length(area.width / count.max(1)); count.into()]).split(area)
     } else if area.height >= count * (FRAME + finger::COMPACT) {
         Layout::vertical(vec![Constraint::Fill(1); count.into()]).split(area)

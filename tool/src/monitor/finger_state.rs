@@ -19,7 +19,7 @@ const HISTORY_INTERVAL: u64 = 100_000_000;
 /// Number of intervals in the history, which is 20 s long.
 const HISTORY: usize = 200;
 
-/// A finger.
+/// What is known of a finger.
 #[derive(Clone, Debug, Serialize)]
 pub struct FingerState {
     /// Number of the finger.
@@ -35,7 +35,7 @@ pub struct FingerState {
     pub stage: &'static str,
     /// The fault that has stopped the finger.
     pub fault: Option<FaultState>,
-    /// The newest warning.
+    /// The newest warning, if it was noted within the second before the newest status.
     pub warning: Option<FaultState>,
     /// Lower limits of the joints, degrees.
     pub joint_minimum_degrees: [f64; 3],
@@ -51,11 +51,12 @@ pub struct FingerState {
     pub contact_force_in_palm: [f64; 3],
     /// Measured rate of the last second, Hz.
     pub rate: f64,
-    /// Wake-up times since the hand was opened or the planner restarted the statistics (sun2xp_reset_timing), us.
+    /// Wake-up delays since the hand was opened or the planner restarted the statistics (sun2xp_reset_timing), us. A
+    /// wake-up delay is the time from the scheduled beginning of a cycle to its first instruction.
     pub wake_up: Distribution,
-    /// Wake-up times of the last ten seconds.
+    /// Wake-up delays of the last ten seconds.
     pub wake_up_histogram: Histogram,
-    /// Counts since the hand was opened.
+    /// Numbers of cycles and of their errors since the hand was opened.
     pub losses: Losses,
     /// Cycles that were lost on the way to this reader.
     pub lost_samples: u64,

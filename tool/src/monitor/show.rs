@@ -1,4 +1,4 @@
-//! The loop: news of the hand, keys, pictures.
+//! The loop of `sun2xp monitor` and `sun2xp jog`: it takes the news of the hand, handles keys and draws pictures.
 
 use super::draw::{Palette, draw};
 use super::snapshot;
@@ -36,7 +36,7 @@ pub struct Controls<Keys, Tick, Urgent> {
     pub urgent: Urgent,
 }
 
-/// Shows the hands of `source` until a key or a signal ends it. Snapshots are written into `folder`.
+/// Shows the hands of `source` until a key or a signal ends the program. Snapshots are written into `folder`.
 ///
 /// # Errors
 /// Returns an error if the terminal or a thread fails.
@@ -97,7 +97,7 @@ fn take_news(view: &mut View, source: &Source) {
 
 fn take_snapshot(view: &mut View, screen: &mut Screen, palette: &Palette, folder: &Path) -> Result<(), Failure> {
     let Some((hand, _)) = view.shown() else {
-        view.notify("there is no hand to write".into());
+        view.notify("no snapshot was written, because this view has not found a hand yet".into());
         return Ok(());
     };
     let picture = screen.terminal.draw(|frame| draw(frame, view, palette))?.buffer;

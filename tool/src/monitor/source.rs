@@ -60,7 +60,7 @@ impl Source {
         let thread = {
             let ended = ended.clone();
             thread::Builder::new().name("telemetry".into()).spawn(move || {
-                // The receiver is gone only when this value is dropped.
+                // `run` fails only when the receiver is gone. The `Source` is dropped then, and nobody needs the error.
                 let _ = run(&wanted, &sender, &ended);
             })?
         };
@@ -71,7 +71,7 @@ impl Source {
 impl Drop for Source {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
-        // The thread may wait for room. Without a receiver it does not.
+        // The thread may be waiting for room in the channel. This statement drops the receiver, which ends the wait.
         self.news = sync_channel(0).1;
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
@@ -94,7 +94,7 @@ impl Wanted {
             match Reader::attach(Some(&name)) {
                 Ok(reader) if reader.description().process == process => return Ok(reader),
                 Ok(_) => {}
-                // The hand may be that of the process.
+                // This hand may be that of the process. If no other hand is, the caller gets this error.
                 Err(error) => refusal = error,
             }
         }
@@ -143,7 +143,7 @@ mod tests {
     use sun2xp::Hand;
     use sun2xp::model::configuration::{Configuration, RealTime};
 
-    /// Opens a hand that is watched. Returns when it has run for two seconds and nobody has taken the news.
+    /// Opens a hand, and starts a source that reads it. Returns after two seconds, in which nobody has taken the news.
     fn watched(name: &str) -> (Hand, Source) {
         let mut configuration = Configuration::default();
         configuration.telemetry.name = format!("source-{}-{name}", std::process::id());

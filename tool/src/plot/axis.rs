@@ -20,7 +20,7 @@ impl Axis {
         Self { low, high, logarithmic: false }
     }
 
-    /// An axis from a power of ten to another one.
+    /// A logarithmic axis that contains `low` and `high`. Both ends are powers of ten.
     pub fn logarithmic(low: f64, high: f64) -> Self {
         let power = |exponent: f64| 10f64.powf(exponent);
         let (low, high) = (power(low.log10().floor()), power(high.log10().ceil()));

@@ -27,7 +27,7 @@ const LINE: f64 = 23.0;
 const MOST_LINES: usize = 18;
 
 /// Width of a text in the list, pixels, and the largest number of its lines. The texts of faults and warnings may have
-/// more lines than one.
+/// more than one line.
 const TEXT: f64 = 880.0;
 const LINES_OF_FAULT: usize = 4;
 const LINES_OF_WARNING: usize = 3;
@@ -203,7 +203,8 @@ fn stage_colour(stage: &str) -> Colour {
     }
 }
 
-/// Breaks a text at spaces into lines of the list. The last one ends with an ellipsis if the text is longer.
+/// Breaks the text of a mark at spaces into lines of the list. If the text needs more lines than the list gives it, the
+/// last line ends with an ellipsis.
 fn lines(mark: &Happened) -> Vec<String> {
     let (most, bold) = match mark.kind {
         MarkKind::Fault => (LINES_OF_FAULT, 1.15),

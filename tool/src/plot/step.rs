@@ -23,7 +23,8 @@ const AROUND: (f64, f64) = (-0.2, 1.3);
 /// A step of the set point is at least this large, degrees.
 const SMALLEST: f64 = 0.5;
 
-/// A joint has settled when it stays within this fraction of the step for this time, s. Later pushes do not count.
+/// A joint has settled when it stays within this fraction of the step for this time, s. Later deviations do not count,
+/// for example because somebody pushes the finger.
 const SETTLED: f64 = 0.05;
 const STAYS: f64 = 0.2;
 
@@ -124,7 +125,8 @@ impl Step {
     }
 }
 
-/// Describes the response to the only step of a set point. The text is empty if there are none or several.
+/// Describes the response of a joint to the only step of its set point. The text is empty if there is no step, if there
+/// are several, or if the step is smaller than [`SMALLEST`].
 fn response(measured: &[[f64; 2]], set_point: &[[f64; 2]]) -> String {
     let is_step = |pair: &[[f64; 2]]| (pair[1][1] - pair[0][1]).abs() > 1e-9;
     let mut steps = (1..set_point.len()).filter(|&index| is_step(&set_point[index - 1..=index]));

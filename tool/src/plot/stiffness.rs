@@ -30,7 +30,7 @@ pub struct Stiffness {
     newest: Option<Newest>,
 }
 
-/// The last cycle of a finger that is a spring.
+/// The last cycle in which the finger is a spring.
 struct Newest {
     time: f64,
     sent: Matrix3<f64>,

@@ -51,7 +51,7 @@ impl Progress {
         self
     }
 
-    /// Names what is done now, for example the plant that is searched.
+    /// Names what is done now, for example the plant whose bound is searched.
     pub fn now(&self, now: impl Into<String>) {
         let now = now.into();
         self.change(|lines| {
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pipe_receives_a_line_after_a_second_and_then_every_five() {
+    fn a_pipe_receives_a_line_after_a_second_and_then_every_five_seconds() {
         let mut lines = Lines::new(8);
         let began = lines.began;
         let printed: Vec<(u64, String)> = (0..80)

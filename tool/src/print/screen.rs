@@ -12,7 +12,7 @@ pub struct Screen {
     /// Number of columns of the terminal. It is `None` if the output is not a terminal, or if the terminal is narrower
     /// than [`NARROWEST`]. Lines then have any length.
     pub width: Option<usize>,
-    /// Whether tables have lines.
+    /// Whether a table has a horizontal line below its header.
     pub lines: bool,
     /// Whether the output shows colours. They are off if the environment has NO_COLOR, and for dumb terminals.
     pub coloured: bool,

@@ -1,4 +1,5 @@
-//! The progress of a recording on standard error: a line that is updated on a terminal, and lines in a pipe.
+//! The progress of a recording on standard error: on a terminal one line that is updated, and in a pipe a new line
+//! every five seconds.
 
 use super::counts::Counts;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};

@@ -105,7 +105,7 @@ fn a_recording_in_another_version_of_the_format_is_refused_with_the_library_to_u
 }
 
 #[test]
-fn a_recording_that_ends_between_two_records_has_no_end() {
+fn a_recording_that_is_cut_between_two_records_is_incomplete() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("hand.mcap");
     let (reader, messages) = messages("between", Duration::from_millis(200));
@@ -132,7 +132,7 @@ fn a_recording_that_ends_between_two_records_has_no_end() {
 }
 
 #[test]
-fn a_recording_that_ends_anywhere_is_readable_up_to_its_last_chunk() {
+fn a_recording_that_is_cut_anywhere_is_readable_up_to_its_last_whole_chunk() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("hand.mcap");
     let (reader, messages) = messages("cut", Duration::from_millis(400));
@@ -171,7 +171,7 @@ fn run(hand: &Hand) {
 }
 
 #[test]
-fn the_times_of_a_black_box_do_not_depend_on_that_of_its_file() {
+fn the_times_of_a_black_box_do_not_depend_on_the_time_of_its_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("black-box.jsonl");
     let hand = open("times");

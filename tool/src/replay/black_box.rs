@@ -16,7 +16,7 @@ pub fn replay(file: &Path) -> Result<Report, Failure> {
     drop(progress);
     let replayed = replayed.map_err(|error| in_file(file, format_args!("{error}{}", or_by(&recording.library))))?;
     if replayed.cycles == 0 {
-        return Err(in_file(file, "it contains no cycles that can be replayed"));
+        return Err(in_file(file, "it contains no cycles in which a controller has run, so none can be replayed"));
     }
     let mut finger = FingerReport::new(recording.origin.finger, recording.origin.hand.rate);
     recording.cycles.iter().for_each(|cycle| finger.contents.add(cycle));

@@ -92,9 +92,9 @@ pub fn replay(file: &Path) -> Result<Report, Failure> {
             "it does not describe the controllers of its cycles, so none can be replayed: the descriptions were lost \
              during the recording, or the file was altered. Record again, or copy the file again"
         } else if reports.iter().any(|report| report.without_state > 0) {
-            "it has no recorded state before any of its cycles, so none can be replayed: record for a second"
+            "it has no recorded state before any of its cycles, so none can be replayed: record for at least a second"
         } else {
-            "it contains no cycles in which a controller has run"
+            "it contains no cycles in which a controller has run: record while a finger is running"
         };
         return Err(in_file(file, reason));
     }

@@ -77,7 +77,7 @@ pub struct FirstDifference {
     /// Whether the recorded state before the cycle differs, and not what the cycle computed.
     state: bool,
     motors: Vec<Motor>,
-    /// The whole reports as text, if they differ: recorded, computed.
+    /// The reports of the controller in this cycle as text, recorded and replayed, if they differ.
     reports: Option<[String; 2]>,
 }
 

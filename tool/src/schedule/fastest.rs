@@ -9,8 +9,8 @@ use sun2xp::model::configuration::{Configuration, RATES};
 pub struct Fastest {
     /// The highest whole rate that can be configured and at which every deadline is met, Hz. `None` if there is none.
     pub rate: Option<u32>,
-    /// What is missed above that rate, or at the lowest rate if `rate` is `None`. `None` if every deadline is met at
-    /// the highest rate that can be configured.
+    /// The condition that may be violated at the next whole rate, or at the lowest rate if `rate` is `None`. `None` if
+    /// every deadline is met at the highest rate that can be configured.
     pub limit: Option<Limit>,
 }
 
@@ -25,8 +25,8 @@ impl Fastest {
     pub fn of(hand: &Configuration, costs: &Costs, sensor: &Sensor) -> Self {
         let limit = |rate: u32| limit(&off_line_schedule(hand, rate.into(), costs, sensor));
         let (lowest, highest) = (RATES.start().ceil() as u32, RATES.end().floor() as u32);
-        // A slower rate leaves time for more tactile events, which may exceed a deadline that a faster rate meets. So
-        // bisection is not valid.
+        // A lower rate leaves time for more tactile events. With them, a thread may miss a deadline that it meets at a
+        // higher rate. So bisection is not valid.
         let rate = (lowest..=highest).rev().find(|&rate| limit(rate).is_none());
         let missed_at = rate.map_or(lowest, |rate| rate + 1);
         Self { rate, limit: if missed_at > highest { None } else { limit(missed_at) } }

@@ -29,7 +29,7 @@ pub struct Access {
 pub enum Refusal {
     /// `Host` is missing, or it is not a name of this server.
     Host,
-    /// `Origin` is another page.
+    /// `Origin` names another page, or it occurs more than once.
     Origin,
     /// The token is missing or wrong.
     Token,
@@ -56,7 +56,7 @@ impl Access {
             return Err(Refusal::Host);
         }
         if !headers.contains_key(ORIGIN) {
-            // This is no request with which a foreign page could read data. A browser sends `Origin` with every
+            // A foreign page cannot read data with a request without `Origin`: a browser sends `Origin` with every
             // WebSocket, and with every request whose response a page of another origin could read.
             return Ok(());
         }

@@ -77,7 +77,8 @@ impl Control {
     /// Carries a command out, and sends the result to `answers`.
     pub fn order(&self, command: Command, answers: UnboundedSender<Answer>) {
         if command == Command::Stop {
-            // A stop waits for nothing, and drops the commands that wait, also those of other pages.
+            // A stop waits for nothing. It drops the commands that wait, also those of other pages, except the ends of
+            // pushes.
             self.stopper.stop();
             // The page may have left.
             let _ = answers.send(Answer::new(command, true, "all fingers are stopped".into()));

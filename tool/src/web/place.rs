@@ -4,10 +4,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use tokio::sync::OwnedSemaphorePermit;
 
-/// Time from its acceptance within which a connection must have sent the header of its request.
+/// Longest time from the acceptance of a connection until it has sent the header of its request.
 pub const HEADER: Duration = Duration::from_secs(10);
 
-/// Time from its acceptance within which a connection must have taken its answer, unless it is the WebSocket of a page.
+/// Longest time from the acceptance of a connection until it has taken its answer. The WebSocket of a page has no such
+/// limit.
 const ANSWER: Duration = Duration::from_secs(60);
 
 /// The place of a connection among the limited number of them.

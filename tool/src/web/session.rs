@@ -14,8 +14,8 @@ use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
-/// Number of batches that a page may have received without an acknowledgement: one second. A page with this many
-/// unacknowledged batches gets no further batch until it acknowledges one.
+/// Largest number of batches that are sent to a page without an acknowledgement. The hand publishes this number in a
+/// second. A page with this many unacknowledged batches gets no further batch until it acknowledges one.
 const AHEAD: u64 = 20;
 
 /// Largest message from a page, bytes. Commands have some 200.
@@ -45,7 +45,7 @@ struct Received {
 }
 
 /// The session of a page. It ends when the page leaves, breaks a rule or takes no more messages. Its two directions do
-/// not wait for each other, so that a stop is carried out while a message cannot be written.
+/// not wait for each other, so that a stop is carried out even while a message cannot be written.
 pub struct Session {
     reader: Reader,
     writer: Writer,
@@ -127,8 +127,8 @@ impl Batches {
 }
 
 impl Reader {
-    /// Takes what the page sends until the page leaves. Returns the rule that the page has broken, if it has broken
-    /// one.
+    /// Takes what the page sends until the page leaves or breaks a rule. If the page breaks a rule, returns a
+    /// description of the message that breaks it.
     async fn serve(&mut self) -> Option<&'static str> {
         loop {
             let text = match self.socket.next().await {

@@ -134,7 +134,7 @@ impl<'a> Translation<'a> {
     }
 
     fn status(&mut self, status: &Status) {
-        // A finger that had stopped before this reader was attached has no new cycles.
+        // A finger that had stopped before this reader was attached has no new cycles, so its last cycle is shown.
         if let Some(record) = status.last.as_ref().filter(|_| self.fingers[status.finger.index()].state.is_none()) {
             self.show(status.finger, record);
         }
@@ -226,7 +226,8 @@ fn state(sample: &Sample) -> StateMessage {
     }
 }
 
-/// Returns whether the page must get a new state. `due`: a stiffness that changes with the pose may be sent again.
+/// Returns whether the page must get a new state. `due` tells whether the last state is so old that a changed stiffness
+/// may be sent.
 fn differs(last: &StateMessage, now: &StateMessage, due: bool) -> bool {
     let without = |state: &StateMessage| StateMessage { stiffness: None, ..state.clone() };
     if without(last) != without(now) || last.stiffness.is_some() != now.stiffness.is_some() {

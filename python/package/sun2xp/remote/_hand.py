@@ -145,8 +145,7 @@ class RemoteHand(Reading):
         self.send_group([SetPoint(finger, damping=ratio)])
 
     def send_group(self, set_points: Sequence[SetPoint]) -> None:
-        """Sends set points of several fingers, which change in the same cycle. Errors are those of
-        `send_position`."""
+        """Sends set points of several fingers, which change in the same cycle. Errors are those of `send_position`."""
         self._send(self.parts(set_points))
 
     def send_path(self, finger: int, times: numpy.typing.ArrayLike, joints: numpy.typing.ArrayLike) -> None:
@@ -235,7 +234,8 @@ class RemoteHand(Reading):
         """Zeros gauges and encoders of a finger. Its joints may move between their stops. Waits up to ten minutes.
 
         Raises:
-            Error: the calibration failed. The new one is in force if storing it failed or a fault followed it.
+            Error: the calibration failed, or its results could not be stored. They are in force if they could not be
+                stored, or if the finger faulted after they had been found.
         """
         self._check(finger)
         self._request("calibrate", finger, self._epoch(), timeout=_CALIBRATION_TIME)

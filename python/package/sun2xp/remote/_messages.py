@@ -102,7 +102,7 @@ class Target:
 
 @dataclasses.dataclass
 class State:
-    """The cycles since the State before. A finger that has stopped has one record, with its newest cycle."""
+    """The cycles since the previous State. A finger that has stopped has one record, with its newest cycle."""
 
     missing: int
     number: int
@@ -289,7 +289,7 @@ def read_answer(data: bytes) -> Optional[Answer]:
 
 
 def _begins(data: bytes, kind: int, least: int, most: Optional[int] = None) -> bool:
-    """Returns whether the bytes begin a message of this type, and have a length from least to most."""
+    """Returns whether the bytes begin with this type and the version, and have a length from `least` to `most`."""
     return least <= len(data) <= (len(data) if most is None else most) and data[0] == kind and data[1] == VERSION
 
 

@@ -197,7 +197,7 @@ class Network:
     def put(self, key: str, payload: bytes) -> None:
         """Sends a Target. If the line is full, the Target is dropped: the next Target repeats it.
 
-        A declared publisher would send nothing until it is told of a subscriber.
+        The Target is not sent by a declared publisher, which would send nothing before Zenoh knows of a subscriber.
         """
         self.session.put(
             key,

@@ -253,6 +253,7 @@ class Receiver:
         return taken
 
     def wait_for(self, holds: Callable[[], object], timeout: Optional[float]) -> bool:
-        """Waits until `holds` returns a true value, or the hand is closed. Returns whether it holds."""
+        """Waits until `holds` returns a true value, the hand is closed, or `timeout` s have passed. Returns whether
+        `holds` then returns a true value."""
         with self.changed:
             return bool(self.changed.wait_for(lambda: holds() or self.closed, timeout)) and bool(holds())

@@ -2,9 +2,12 @@
 
 #![allow(dead_code, reason = "each test program uses a part")]
 
+#[path = "../../../../tests/common/cargo.rs"]
+mod cargo;
 #[path = "../../../../tests/common/free_port.rs"]
 mod free_port;
 
+use cargo::cargo;
 use free_port::free_port;
 use std::env;
 use std::fs;
@@ -178,7 +181,7 @@ fn program() -> &'static Path {
     PROGRAM.get_or_init(|| {
         let deps = deps();
         let folder = deps.parent().expect("the profile's folder");
-        let mut cargo = Command::new(env!("CARGO"));
+        let mut cargo = cargo();
         cargo.args(["build", "--quiet", "--locked", "--workspace", "--bin", "sun2xp-serve"]);
         cargo.args(["--example", "spring", "--manifest-path"]);
         cargo.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../Cargo.toml"));

@@ -85,7 +85,7 @@ fn parts() -> Vec<String> {
             ("finger 4", PART, &[4]),
             ("place 4", PART + 1, &[4]),
             ("bit 2", PART + 2, &[7]),
-            ("poses without a path", PART + 3, &[1]),
+            ("a number of poses without their bytes", PART + 3, &[1]),
             ("command number 0", PART + 4, &[0; 4]),
             ("a joint angle is NaN", PART + 16, &NAN),
             ("Kx is infinite", PART + 96, &INFINITY),

@@ -11,7 +11,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, BorderType, Padding, Paragraph};
 use sun2xp::telemetry::Sample;
 
-/// Height of the panel with its frame. All values need 15 lines, of which the frame takes two.
+/// Height of the panel with its frame. The values need 13 lines, the frame takes two, and one line is spare.
 pub const HEIGHT: u16 = 16;
 
 /// Width of the numbers at the right.

@@ -17,7 +17,7 @@ const WIDE: usize = 32;
 /// Smallest width at which the frame has an inner margin.
 const PADDED: u16 = 38;
 
-/// Smallest inner width at which there is one more column between numbers.
+/// Smallest inner width at which there is one more space between numbers.
 const SPACIOUS: usize = 36;
 
 /// Width of a number with its sign and two decimals.
@@ -60,7 +60,7 @@ pub fn draw(frame: &mut Frame, area: Rect, palette: &Palette, finger: &FingerSta
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-/// The lines in place of the values of a finger of which no cycle is known in which the controller ran.
+/// Returns the lines that replace the values of a finger while no cycle is known in which its controller ran.
 pub fn no_cycle(palette: &Palette, finger: &FingerState) -> Vec<Line<'static>> {
     let reason = match finger.known {
         true => ["controller has not run", "since this view began"],
@@ -134,7 +134,8 @@ fn tensions(rows: &mut Rows, palette: &Palette, finger: &FingerState, sample: &S
     }
 }
 
-/// The matrix if there is room for it, otherwise its diagonal, with a plus sign if there are further entries.
+/// Appends the matrix Kx if there is room for it, and otherwise its diagonal. The label of the diagonal has a plus sign
+/// if the matrix has entries off its diagonal.
 fn stiffness(rows: &mut Rows, palette: &Palette, kx: &[[f64; 3]; 3], width: usize, height: usize) {
     if height >= usize::from(COMPACT) + 8 {
         for (row, label) in kx.iter().zip(["Kx", "", ""]) {
@@ -176,7 +177,7 @@ fn history(palette: &Palette, finger: &FingerState, width: usize) -> Line<'stati
 /// A label and three numbers, with the unit if there is room.
 pub fn three(palette: &Palette, label: &str, values: [f64; 3], unit: &str, width: usize) -> Line<'static> {
     let label_width = if width >= WIDE { 10 } else { 3 };
-    // Without the minus sign of zero, which would flicker.
+    // Values that are rounded to zero have no minus sign, because the sign would flicker.
     let rounded = values.map(|value| if value.abs() < 0.005 { 0.0 } else { value });
     let number = if width >= SPACIOUS { NUMBER + 1 } else { NUMBER };
     let numbers: String = rounded.iter().map(|value| format!("{value:number$.2}")).collect();

@@ -1,4 +1,4 @@
-//! Rate, wake-up times and losses of the fingers, and the histogram of the wake-ups.
+//! Rate, wake-up delays and losses of the fingers, and the histogram of the wake-up delays.
 
 use super::bars;
 use super::palette::Palette;
@@ -18,7 +18,7 @@ const TALL: u16 = 13;
 /// Width of the labels.
 const LABEL: usize = 10;
 
-/// Part of a period above which a wake-up is late.
+/// A wake-up is late if its delay is longer than this part of a period.
 const LATE: f64 = 0.5;
 
 /// Draws the panel.
@@ -75,7 +75,8 @@ impl Table<'_> {
     }
 }
 
-/// The wake-ups of all fingers in the last seconds. The heights are logarithmic, so that single late ones are visible.
+/// The wake-up delays of all fingers in the last seconds. The heights are logarithmic, so that single late wake-ups are
+/// visible.
 fn histogram(rows: &mut Rows, palette: &Palette, hand: &HandState, area: Rect) {
     let mut sum = Histogram::default();
     hand.fingers.iter().for_each(|finger| sum.add(&finger.wake_up_histogram));

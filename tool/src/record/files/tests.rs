@@ -6,7 +6,7 @@ use sun2xp::finger::{CycleRecord, Stage};
 use sun2xp::model::configuration::Configuration;
 use tempfile::TempDir;
 
-/// Every call of [`Files::turn`] begins a new file.
+/// With these limits, every call of [`Files::turn`] begins a new file.
 const AT_ONCE: Limits = Limits { bytes: Some(0), age: None, keep: Some(2) };
 
 fn description() -> Description {
@@ -33,7 +33,7 @@ fn names(folder: &TempDir) -> Vec<String> {
     names
 }
 
-/// The times of the entries of a file, ns of the monotonic clock.
+/// For each entry of a file: whether it marks lost cycles, and its time, ns of the monotonic clock.
 fn times(folder: &TempDir, name: &str) -> Vec<(bool, u64)> {
     let recording = Recording::open(&folder.path().join(name)).expect("a recording");
     let entries = recording.map(|entry| entry.expect("an entry"));
@@ -71,7 +71,7 @@ fn an_old_file_that_cannot_be_deleted_does_not_end_the_recording() {
 }
 
 #[test]
-fn a_file_that_cannot_be_deleted_is_deleted_later() {
+fn a_file_that_cannot_be_deleted_at_first_is_deleted_later() {
     let folder = tempfile::tempdir().expect("a folder");
     let first = folder.path().join("hand.mcap");
     let mut files = begin(&folder);

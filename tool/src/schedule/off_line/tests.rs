@@ -89,7 +89,7 @@ fn touch_takes_the_time_that_the_line_has_left() {
     assert_eq!(Fastest::of(&hand, &COSTS, &sensor).rate, Some(1126));
 }
 
-/// Times that exceed the range of the nanoseconds must not become short times.
+/// Times that are too long for a 64-bit number of nanoseconds must not become short times.
 #[test]
 fn endless_costs_have_no_schedule() {
     let hand = Configuration::default();
