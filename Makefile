@@ -8,7 +8,7 @@
 #   make deb                 builds a Debian package, target/dist/sun2xp_VERSION_ARCHITECTURE.deb
 #   make wheel               builds the Python wheel in target/wheels; the same source gives the same bytes
 #   make check-installed     installs into an empty folder, and uses the result with every compiler and build system
-#   make clean               removes what was built
+#   make clean               removes the folder target/dist
 #
 # Variables: prefix (default /usr/local), exec_prefix, bindir, libdir, includedir, datarootdir, mandir, docdir, DESTDIR;
 # CARGOFLAGS for cargo, such as --offline. `make install` does not build, so that root needs no cargo.

@@ -18,7 +18,8 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=RUSTFLAGS");
     println!("cargo::rerun-if-env-changed=CARGO_ENCODED_RUSTFLAGS");
-    // Without a soname, a program that is linked by path stores the path of the build.
+    // If the library had no soname, a program that is linked with the path of the library would store this path, which
+    // is in the folder of the build.
     println!("cargo::rustc-cdylib-link-arg=-Wl,-soname,libsun2xp.so.{ABI}");
     // Servo threads run code of the library, so dlclose must not unmap it.
     println!("cargo::rustc-cdylib-link-arg=-Wl,-z,nodelete");
@@ -36,7 +37,7 @@ fn main() {
     }
 }
 
-/// Whether the loader of the C library knows packed addresses. The loader of glibc knows them since version 2.36. A
+/// Whether the loader of the C library knows packed addresses. The loader of glibc knows them from version 2.36 on. A
 /// library for another system is not packed.
 fn loader_unpacks() -> bool {
     let native = env::var("TARGET").is_ok_and(|target| Ok(target) == env::var("HOST"));

@@ -3,13 +3,14 @@
 
        CanDrives INTERFACE | FOLDER
 
-   INTERFACE is a CAN interface. Where the machine has none, FOLDER is an empty folder, given with a slash in its path.
-   The frames then go through Unix datagram sockets in this folder.
+   INTERFACE is the name of a CAN interface. On a machine without one, give the path of an empty folder, FOLDER, with a
+   slash in it. The frames then go through Unix datagram sockets in this folder.
 
    When a frame starts or stops a drive, the program answers with encoder counts and tensions. When a frame of torques
-   reaches a started drive, the program answers in the same way, and then advances that finger by 1 ms. Each drive has a
-   watchdog. The frame that starts the drive sets the watchdog's time. If no torques arrive for this time, the drive
-   releases its motors and sends an emergency frame. The program ends after 10 s without a frame. */
+   reaches a started drive, the program answers in the same way, and then advances the physics of this drive's finger by
+   1 ms. Each drive has a watchdog. The frame that starts the drive sets the watchdog's time. If no torques arrive for
+   this time, the drive releases its motors and sends an emergency frame. The program ends after 10 s without a
+   frame. */
 
 #define _GNU_SOURCE
 #include <errno.h>

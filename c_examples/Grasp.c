@@ -197,7 +197,7 @@ int main(void)
     back = fabs(object().position[2] - Start[2]);
     sun2xp_close(hand);
     success = expect(tightened > 1.05 * grasped, "the grasp tightens by more than 5 %");
-    success &= expect(lifted > LIFT - 0.3, "the ball is lifted to less than 0.3 cm below its height LIFT");
+    success &= expect(lifted > LIFT - 0.3, "the ball rises by more than LIFT - 0.3 cm");
     success &= expect(crept < 0.01, "the ball moves by less than 0.01 cm while it is held");
     success &= expect(back < 0.1, "the ball is less than 0.1 cm from the table at the end");
     return success ? 0 : 1;

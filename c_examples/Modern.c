@@ -11,7 +11,7 @@
 
 enum { FINGER = 2, STEPS = 100, STEP_MS = 10, REST_MS = 2000 };
 
-/* Reports why the last call was refused, stops the hand and ends the program. */
+/* Reports why the last call was refused, closes the hand and ends the program. */
 static _Noreturn void give_up(const char *doing)
 {
     fprintf(stderr, "while %s: %s\n", doing, HandError());

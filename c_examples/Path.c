@@ -25,12 +25,12 @@ static double ramp(double seconds)
 /* Returns the number of turns that the tip has made at the given time, s. The motion begins and ends at rest. */
 static double turns(double seconds)
 {
-    double length = TURNS + RAMP;
+    double duration = TURNS + RAMP;
 
     if (seconds < RAMP)
         return ramp(seconds);
-    if (seconds > length - RAMP)
-        return TURNS - ramp(length - seconds);
+    if (seconds > duration - RAMP)
+        return TURNS - ramp(duration - seconds);
     return seconds - 0.5 * RAMP;
 }
 

@@ -15,7 +15,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Identifiers: these numbers plus the number of the finger, 1 to 3. Numbers of 16 bits are little-endian. */
+/* An identifier is one of these numbers plus the number of the finger, 1 to 3. Numbers of 16 bits are little-endian. */
 #define CAN_CONTROL 0x100               /* to the drives: action (1 start, 2 stop); watchdog time, ms (16 bits each) */
 #define CAN_TORQUES 0x200               /* to the drives: four torques in TORQUE_UNIT (16 bits each, signed) */
 #define CAN_ENCODERS 0x180              /* from the drives: low 16 bits of four encoder counts */
@@ -74,8 +74,8 @@ static int can_open(struct can_bus *bus, const char *place, int finger)
     return bind(bus->socket, (struct sockaddr *)&can, sizeof can);
 }
 
-/* Sends four numbers of 16 bits without waiting. The argument to is the finger for which Can.c receives the frame, or 0
-   if CanDrives.c receives it. */
+/* Sends four numbers of 16 bits without waiting. If Can.c receives the frame, the argument `to` is the number of the
+   finger. If CanDrives.c receives it, `to` is 0. */
 static int can_send(const struct can_bus *bus, int to, unsigned identifier, const int numbers[4])
 {
     struct can_frame frame = {.can_id = identifier, .can_dlc = 8};

@@ -39,8 +39,8 @@ static int count_of(const struct finger_physics *finger, int motor)
     return (int)floor(finger->motor[motor] * COUNTS);
 }
 
-/* Sets the initial state of the built-in simulated hand: joint angles of 0, 30 and 60 degrees, the tendons at the
-   homing pretension (the member home), and the motors braked. */
+/* Puts the finger into the state in which a finger of the built-in simulated hand starts: joint angles of 0, 30 and 60
+   degrees, the tendons at the homing pretension (the member home), and the motors braked. */
 static void begin_physics(struct finger_physics *finger)
 {
     static const double Pose[3] = {0, 0.5235987755982988, 1.0471975511965976};
@@ -60,8 +60,8 @@ static void begin_physics(struct finger_physics *finger)
     finger->braked = 1;
 }
 
-/* Returns the speed that remains after dry friction has reduced it by loss. Dry friction can stop a motion but not
-   reverse it. */
+/* Returns the speed that remains after dry friction has reduced it by the amount `loss`. Dry friction can stop a motion
+   but not reverse it. */
 static double rubbed(double speed, double loss)
 {
     return fabs(speed) <= loss ? 0 : speed - (speed > 0 ? loss : -loss);

@@ -23,9 +23,9 @@ struct sensors {
 uint32_t hal_microseconds(void);
 
 /* UART input: takes at most `room` bytes that have arrived and returns their number, or 0 if there are none. It
-   stops after the first zero byte. If the last byte taken is zero, `arrived_at` must be set to when it arrived. An
-   interrupt or DMA must record that instant, so that a Command that arrived in time counts no matter how late the main
-   loop reads it. */
+   stops after the first zero byte. If the last byte taken is zero, `arrived_at` must be set to the time at which this
+   byte arrived. An interrupt or DMA must record that time, so that a Command that arrived in time counts no matter how
+   late the main loop reads it. */
 size_t hal_receive(unsigned line, uint8_t *bytes, size_t room, uint32_t *arrived_at);
 
 /* UART output: queues a whole frame and returns at once. A frame that does not fit is dropped as a whole. The queue

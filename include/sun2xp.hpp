@@ -57,8 +57,8 @@ public:
     int system_errno() const noexcept { return system_errno_; }
     /// Name of the C call.
     const std::string &call() const noexcept { return call_; }
-    /// C calls that help, separated by commas: only calls that open, close, recover, zero or stop, and sun2xp_status.
-    /// It may be empty although a call helps. what() always has the whole remedy.
+    /// C calls that help, separated by commas. The list names only calls that open, close, recover, zero or stop, and
+    /// sun2xp_status, so it may be empty although another call helps. what() always has the whole remedy.
     const std::string &remedy() const noexcept { return remedy_; }
 
 private:
@@ -121,7 +121,7 @@ public:
         return last_;
     }
 
-    /// Removes a function. Its function object is destroyed when no call of it is running any more.
+    /// Removes the callback with this number. Its function object is destroyed when no call of it is running any more.
     void remove(std::uintptr_t number)
     {
         std::shared_ptr<event_callback> removed;
@@ -134,7 +134,7 @@ public:
         callbacks_.erase(found);
     }
 
-    /// The function with this number; null if it was removed.
+    /// The callback with this number; null if it was removed.
     std::shared_ptr<event_callback> find(std::uintptr_t number)
     {
         const std::lock_guard<std::mutex> lock(mutex_);

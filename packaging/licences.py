@@ -3,7 +3,7 @@
 package contain. Writes packaging/third-party-licences-remote.txt: those of the other crates that the server and the
 library of remote hands contain.
 
-Run it after a change of Cargo.lock. tool/tests/third_party.rs compares the lists of crates.
+Run it after a change of Cargo.lock. tool/tests/third_party.rs checks that the files list exactly these crates.
 """
 
 import json

@@ -33,7 +33,7 @@ unsafe impl GlobalAlloc for Counting {
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         count();
-        // SAFETY: as above.
+        // SAFETY: the caller satisfies the contract of this same function.
         unsafe { System.dealloc(pointer, layout) }
     }
 }

@@ -57,7 +57,7 @@ proptest! {
         let mut decoder = Decoder::default();
         // One in four thousand million random frames passes the checksum. None does here.
         prop_assert!(decoded(&mut decoder, &rubbish, chunk).is_empty());
-        // One frame may be lost, because the rubbish did not end with a delimiter.
+        // The first frame may be lost, because the rubbish need not end with a delimiter.
         let stream = [sealed(&content), sealed(&content)].concat();
         let found = decoded(&mut decoder, &stream, chunk);
         prop_assert_eq!(found.last(), Some(&content));

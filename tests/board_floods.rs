@@ -14,7 +14,8 @@ const READ: u64 = 10_000;
 /// More reads than any call may need. Without this bound a failing test would never end.
 const MOST_READS: u32 = 100_000;
 
-/// Largest overrun of a call, ns: one read may begin before the deadline and end after it.
+/// Largest overrun of a call, ns: one read may begin before the deadline and end after it, and one more read may
+/// follow.
 const LATE: u64 = 2 * READ;
 
 /// A simulated board that at some point begins to send one frame without end, and nothing else.

@@ -76,7 +76,7 @@ fn noise_costs_the_periods_that_it_hits_and_no_wrong_value_passes() {
     let terms = Terms::new(&ConfiguredHand { watchdog_ms: 1000, ..Default::default() }, &finger);
     let (_, configured) = link.shake_hands(1, &terms, 500 * MS).unwrap();
 
-    // A cycle has 45 bytes and one byte in 450 is disturbed, so about every tenth cycle is.
+    // A cycle has 45 bytes, and one byte in 450 is disturbed, so about every tenth cycle is disturbed.
     link.transport().one_in = 450;
     let (mut hit_before, mut unanswered, mut hit_cycles) = (false, 0, 0);
     for cycle in 0..50_000u64 {

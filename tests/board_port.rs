@@ -142,7 +142,7 @@ fn pseudo_terminal() -> (OwnedFd, PathBuf) {
     }
 }
 
-/// Only root gets as far as the lock of a port that is marked for exclusive use.
+/// The system refuses to open a port that is marked for exclusive use, except to root. Root is refused by the lock.
 #[test]
 fn a_refused_open_leaves_the_port_to_its_user() {
     let (control, path) = pseudo_terminal();
@@ -211,7 +211,7 @@ fn the_end_of_the_board_is_an_error_and_not_a_silence() {
 }
 
 #[test]
-fn a_hand_that_cannot_be_opened_names_the_reason() {
+fn a_port_that_cannot_be_opened_names_the_reason() {
     let errno = |path: &str| Port::open(Path::new(path), 1_000_000).unwrap_err().errno();
     assert_eq!(errno("/nonexistent/port"), libc::ENOENT);
     assert_eq!(errno("/dev/null"), libc::ENOTTY);

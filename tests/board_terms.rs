@@ -85,8 +85,8 @@ fn a_limit_beyond_the_boards_is_refused() {
 }
 
 /// docs/board-protocol.md allows a shortest watchdog time of up to 20 ms. A board that needs more than the configured
-/// time gets its shortest time, and every other board gets the configured time. Beyond 20 ms, the configuration must
-/// permit it.
+/// time gets its shortest time, and every other board gets the configured time. The configuration must permit a
+/// shortest time of more than 20 ms.
 #[test]
 fn a_board_gets_the_shortest_watchdog_that_it_can_keep() {
     let terms = terms(4.75, 1.0, 2.34);

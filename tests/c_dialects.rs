@@ -65,7 +65,7 @@ fn the_layout_is_complete() {
     for (name, members) in structs {
         assert!(layout.contains(&format!("BYTES({name}, ")), "tests/c/layout.c should have {name}");
         let members = members.split_once("\n};").expect("a struct ends").0;
-        // Other lines continue a comment, and are indented further.
+        // Lines that continue a comment are indented further.
         let declares = |line: &&str| line.strip_prefix("    ").is_some_and(|rest| !rest.starts_with(' '));
         for member in members.lines().filter(declares).filter_map(|line| line.split_once(';')).map(|(member, _)| member)
         {
@@ -152,7 +152,7 @@ const WRONG: &[&str] = &[
     "GetPos(1, -1);",
 ];
 
-/// Statements that fail by the size of an element, for compilers without `_Generic`.
+/// Statements that must not compile even without `_Generic`, where the header can check only the size of an element.
 const WRONG_BY_SIZE: &[&str] = &[
     "SendPos(1, (void *)5);",
     "static void *Wrong; GetPos(1, Wrong);",

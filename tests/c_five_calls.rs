@@ -31,7 +31,7 @@ fn all_later_names_have_the_prefix() {
 }
 
 #[test]
-fn its_own_names_compile_in_every_dialect() {
+fn the_names_of_the_planner_compile_in_every_dialect() {
     let bench = Bench::new();
     for compiler in c_compilers() {
         for standard in C_STANDARDS {
@@ -41,7 +41,7 @@ fn its_own_names_compile_in_every_dialect() {
 }
 
 #[test]
-fn the_shared_library_does_not_take_them_for_its_own() {
+fn the_shared_library_does_not_call_functions_of_the_planner() {
     Bench::new().succeed(STRICT, &["five_calls.c"]);
     // If the library called one of its own exported functions by name, the dynamic linker would bind this call to the
     // planner's function with the same name.
@@ -54,7 +54,7 @@ fn the_shared_library_does_not_take_them_for_its_own() {
 }
 
 #[test]
-fn the_static_library_links_beside_them() {
+fn the_static_library_links_beside_functions_of_the_planner() {
     let bench = Bench::new();
     let program = bench.path().join("static");
     let mut compiler = Command::new(c_compiler());

@@ -133,7 +133,8 @@ int planner(int finger)
 }
 ";
 
-/// The header must compile while all of these are macros with useless definitions, and must restore each of them.
+/// The header must compile while all `names` are macros with useless definitions, and must restore each of these
+/// macros.
 fn may_be_macros<'a>(names: impl Iterator<Item = &'a str> + Clone, modes: &[&[&str]]) {
     let mut planner = String::new();
     for name in names.clone() {
@@ -164,7 +165,8 @@ fn a_planner_with_a_window_and_handles_compiles() {
     compiles_with_a_window("x11_handles");
 }
 
-/// Compiles a planner whose macros come before the header, and after it.
+/// Compiles a planner that includes macros like those of X11 before the headers of the library, and again with the
+/// macros after these headers.
 fn compiles_with_a_window(planner: &str) {
     let bench = Bench::new();
     let folder = root().join("tests/c");

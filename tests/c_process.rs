@@ -1,5 +1,5 @@
-//! Effects of the library on the process of a planner, and things that a planner may do to it: signals, cancellation,
-//! floating-point environments, stacks, locked memory and the end of the process.
+//! Effects of the library on the process of a planner, and things that a planner may do in its process: signals,
+//! cancellation, floating-point environments, stacks, locked memory and the end of the process.
 
 #[path = "common/attempts.rs"]
 mod attempts;
@@ -57,13 +57,13 @@ fn a_planner_may_have_much_thread_local_data() {
 
 #[test]
 fn a_process_out_of_memory_keeps_its_hand_and_gets_enomem() {
-    // glibc offers its allocator under a second name, for a planner that replaces the first.
+    // The program replaces malloc and calls the original by a second name, which only glibc offers.
     if cfg!(target_env = "gnu") {
         succeed(&["no_memory.c"]);
     }
 }
 
-/// A recovery asks a board every 50 ms, and gives it 300 ms to answer. A shorter pause leaves enough time.
+/// A recovery asks a board every 50 ms, and gives it 300 ms to answer. A pause of less than 100 ms leaves enough time.
 const TOLERATED_PAUSE: Duration = Duration::from_millis(100);
 
 #[test]

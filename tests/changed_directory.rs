@@ -1,6 +1,6 @@
 //! A planner may change its working directory, as a daemon does. Calibrations and black boxes must still be written
-//! where the configuration says, and its ports must still be found. The tests have a process of their own, because they
-//! change the working directory.
+//! where the configuration says, and the ports that it names must still be found. The tests have a process of their
+//! own, because they change the working directory.
 
 #[path = "common/attempts.rs"]
 mod attempts;
@@ -80,7 +80,7 @@ fn relative_paths_keep_the_working_directory_of_the_opening() {
     let begun = Instant::now();
     let boxes = || fs::read_dir(folder.path().join("boxes")).expect("there").flatten();
     while boxes().filter(|file| file.path().extension().is_some_and(|name| name == "jsonl")).count() < 3 {
-        assert!(begun.elapsed() < LIMIT, "no black box was written");
+        assert!(begun.elapsed() < LIMIT, "fewer than three black boxes were written");
         std::thread::sleep(Duration::from_millis(10));
     }
 }

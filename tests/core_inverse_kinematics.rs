@@ -109,7 +109,7 @@ fn borders_of_the_workspace_belong_to_it() {
 }
 
 #[test]
-fn a_tip_on_the_axis_of_joint_0_leaves_it_where_it_is() {
+fn a_tip_on_the_axis_of_joint_0_leaves_joint_0_where_it_is() {
     let theta = Vector3::new(0.4, 1.6, 2.2);
     let tip = Vector3::new(0.0, -4.0, 0.0);
     let found = unlimited().joints(&tip, &theta).expect("within reach");

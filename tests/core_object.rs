@@ -41,7 +41,7 @@ fn an_untouched_object_falls() {
 #[test]
 fn a_tumbling_box_keeps_its_energy() {
     let mut object = FreeObject::new(&brick(), Vector3::zeros());
-    // A rotation close to the middle axis tumbles.
+    // A rotation about an axis close to that of the middle moment of inertia is unstable, so the box tumbles.
     object.put(Vector3::zeros(), Vector3::zeros(), Vector3::new(0.1, 8.0, 0.1));
     let energy = object.kinetic_energy();
     let mut slowest: f64 = 8.0;
@@ -80,7 +80,7 @@ fn a_box_on_a_table_rests_where_its_corners_carry_its_weight() {
     );
 }
 
-/// Returns the motion of a flat box along three fingertips, on which it lies like on a table. Gravity leans by this
+/// Returns the motion of a flat box along three fingertips, on which it lies as on a table. Gravity leans by this
 /// angle against the normal of the tips.
 fn slides_on_three_tips(degrees: f64) -> Vector3<f64> {
     let plate = ObjectShape::Box { size: [8.0, 8.0, 1.0] };
@@ -181,7 +181,7 @@ proptest! {
             board.advance(time);
             energies(&mut board, &hand)
         };
-        // The fastest contact has 2000 rad/s, which gives 0.1.
+        // The fastest contact has 2000 rad/s, which gives an error of 0.1.
         assert_gains_no_energy(start, step, 0.1, steps);
     }
 

@@ -161,7 +161,7 @@ proptest! {
         plant.set_external_force(Vector3::zeros());
         // The stiffest mode is that of the last link, 2.1e-5 kg m^2 with the tip, between the wall (16 N m/rad at
         // 4 cm), the tendons and a stop: 1100 rad/s with the other links fixed. With free links it is faster, but below
-        // 2000 rad/s, which gives 0.1.
+        // 2000 rad/s, which gives an error of 0.1.
         let start = (plant.energy(), plant.kinetic_energy());
         let step = || {
             plant.step([0.0; 4]);
@@ -172,7 +172,7 @@ proptest! {
 }
 
 #[test]
-fn surfaces_push_along_their_normal_as_deep_as_the_tip_is() {
+fn surfaces_push_along_their_normal_in_proportion_to_the_depth_of_the_tip() {
     let mut plant = Plant::new(&frictionless(), Vector3::zeros()).unwrap();
     let tip = plant.tip();
     let point = (tip + Vector3::new(0.0, 0.02, 0.0)).into();
@@ -188,7 +188,7 @@ fn surfaces_push_along_their_normal_as_deep_as_the_tip_is() {
 }
 
 #[test]
-fn stops_hold_a_motor_at_its_limit() {
+fn stops_hold_the_joints_against_a_motor() {
     let mut plant = Plant::new(&ConfiguredFinger::default(), Vector3::zeros()).unwrap();
     plant.release_brake();
     for _ in 0..20_000 {

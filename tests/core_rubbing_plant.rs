@@ -284,7 +284,8 @@ proptest! {
         plant.release_brake();
         plant.set_external_force(Vector3::zeros());
         // See `passive_parts_never_create_energy` in core_plant.rs. A section between pulley and joint is five times as
-        // stiff as the whole tendon, and hardening adds 60 %. The stiffest mode is below 4000 rad/s, which gives 0.2.
+        // stiff as the whole tendon, and hardening adds 60 %. The stiffest mode is below 4000 rad/s, which gives an
+        // error of 0.2.
         let start = (plant.energy(), plant.kinetic_energy());
         let step = || {
             plant.step([0.0; 4]);

@@ -64,7 +64,7 @@ fn spin() -> bool {
 }
 
 #[test]
-fn the_example_of_the_report_deadlocks_and_not_with_the_exchange_of_this_library() {
+fn the_example_of_the_report_deadlocks_but_not_with_the_exchange_of_this_library() {
     if spin() {
         assert_eq!(check("occam.pml", ""), Found::Deadlock);
         assert_eq!(check("occam.pml", "-DBUFFERED"), Found::Nothing);

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 const PACKAGES: [&str; 8] =
     ["", "models", "python", "remote/client", "remote/library", "remote/protocol", "serve", "tool"];
 
-/// The folders whose pages are read. CHANGELOG.md is left out, because it names what was there at the time.
+/// The folders whose pages are read. CHANGELOG.md is left out, because it may name tests that exist no more.
 const FOLDERS: [&str; 10] =
     ["", "docs", "firmware", "firmware/stm32f405", "models", "protocol", "python", "remote", "serve", "tool"];
 
@@ -138,7 +138,7 @@ fn every_command_that_runs_tests_runs_at_least_one() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The test above would find a program, a filter or an ignored test that is missing.
+/// Shows that the test above can fail: it finds a command whose program, filter or ignored test does not exist.
 #[test]
 fn a_command_that_runs_no_test_is_found() {
     let runs = |page: &str| {

@@ -60,7 +60,7 @@ fn every_quoted_error_is_reported() {
     for (quote, error) in quotes.iter().zip(&errors) {
         let error = squeezed(error);
         match quote.strip_suffix(" ...") {
-            // The error lists all keys.
+            // The page leaves out the end of this error, which lists all keys.
             Some(begin) => assert!(error.starts_with(begin), "{quote}\n{error}"),
             None => assert_eq!(*quote, error),
         }

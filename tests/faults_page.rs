@@ -20,7 +20,7 @@ fn remedy(kind: FaultKind) -> String {
     let text = unsafe { CStr::from_ptr(sun2xp_fault_text(kind.number().into())) }.to_str().expect("UTF-8");
     let row = kind.description();
     let before = format!("{}: {}. Likely cause: {}. ", row.name, row.text, row.cause);
-    text.strip_prefix(&before).unwrap_or_else(|| panic!("{before} does not begin {text}")).to_string()
+    text.strip_prefix(&before).unwrap_or_else(|| panic!("{text:?} does not begin with {before:?}")).to_string()
 }
 
 fn table() -> String {
@@ -62,7 +62,8 @@ fn the_page_has_the_table_of_the_library() {
     assert!(written == generated, "the table is stale: run SUN2XP_WRITE_FAULTS=1 cargo test --test faults_page");
 }
 
-/// sun2xp_fault_text promises a cause and a remedy. A reader who has only this text cannot follow another one.
+/// sun2xp_fault_text promises a cause and a remedy. A reader who has only this text cannot follow a reference to
+/// another text.
 #[test]
 fn causes_and_remedies_are_not_only_references_to_another_text() {
     for kind in FaultKind::ALL {

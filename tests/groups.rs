@@ -34,7 +34,7 @@ impl Random {
     }
 }
 
-/// The planner. It sends a group whenever a servo reads its clock and the random number says so.
+/// The planner. It sends a group when a servo reads its clock or its port and the random number says so.
 struct Planner {
     gate: GroupGate,
     mailboxes: RefCell<Vec<Mailbox>>,
@@ -82,7 +82,7 @@ impl Planner {
     }
 }
 
-/// Calls the planner at every reading of the clock, and makes some cycles late.
+/// Calls the planner whenever the servo reads the clock or the port, and makes some cycles late.
 struct Moments {
     planner: Rc<Planner>,
     late: bool,
@@ -172,7 +172,7 @@ fn ten_thousand_groups_take_effect_in_the_same_period() {
     assert!(compared > 1000, "{compared} periods");
     assert_eq!(first[..compared], second[..compared]);
     assert!(first.windows(2).all(|pair| pair[1].0 == pair[0].0 + 1 && pair[1].1 >= pair[0].1));
-    // The newest group of almost every period differs from that of the period before.
+    // In most periods the newest group differs from that of the period before.
     let changes = first.windows(2).filter(|pair| pair[1].1 != pair[0].1).count();
     assert!(changes * 10 > compared * 7, "{changes} changes in {compared} periods");
 }
@@ -189,7 +189,7 @@ fn a_finger_whose_servo_skips_the_period_follows_in_its_next_cycle() {
     let skipped = late.windows(2).filter(|pair| pair[1].0 > pair[0].0 + 1).count();
     assert!(skipped > 20, "{skipped} skips");
     for &(period, group) in late {
-        // In every period that both have, both have the same group.
+        // In every period in which both servos ran, both fingers have the same group.
         if let Ok(index) = punctual.binary_search_by_key(&period, |entry| entry.0) {
             assert_eq!(punctual[index].1, group, "period {period}");
         }

@@ -125,7 +125,7 @@ fn a_refused_calibration_leaves_the_finger_limp_and_says_why() {
 
 /// Nothing switches the motors of a limp finger on, so it does not help to wait.
 #[test]
-fn a_limp_finger_is_refused_with_the_calls_that_end_this() {
+fn calls_to_a_limp_finger_are_refused_without_the_advice_to_wait() {
     let hand = Hand::open_limp(read_default(), None, Fingers::ALL).expect("open");
     let pose = PathPose { time: 3.0, pose: Pose::Joints([0.2, 0.6, 1.1]), stiffness: None };
     let waiting = hand.wait(&[1], Until::Settled, Duration::from_secs(10));

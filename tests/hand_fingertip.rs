@@ -117,7 +117,7 @@ fn an_adjustment_takes_effect_completely_or_not_at_all() {
     ];
     let errnos = refused.map(|result| result.expect_err("refused").errno());
     assert_eq!(errnos, [libc::EINVAL, libc::EINVAL, libc::EBUSY, libc::EINVAL, libc::ERANGE]);
-    // An unusable value is refused with its line, or with its key alone if it is not one of the keys to adjust.
+    // The refusal of an unusable value names its line, or its key alone if this key is not one of the keys to adjust.
     for (keys, place) in [
         ("tendon.minimum = 4\ntendon.maximum = 0.01", "finger 1, line 2 of the keys to adjust: tendon.maximum: "),
         ("tendon.minimum = 900", "finger.1.tendon.maximum: "),
@@ -200,7 +200,7 @@ fn damping_is_checked_against_the_stiffest_kx_of_a_path() {
     assert!((set_point.stiffness[(0, 0)] - 1.0).abs() < 1e-9 && set_point.damping == 1.5, "{set_point:?}");
 }
 
-/// Sends a path whose joint 1 goes to 1.2 rad, and then to 0.5 rad.
+/// Sends a path on which joint 1 goes to 1.2 rad, and then to 0.5 rad.
 fn send_path_beyond_its_end(hand: &Hand) {
     let pose = |time, angle| PathPose { time, pose: Pose::Joints([0.0, angle, 1.0]), stiffness: None };
     hand.send_path(1, &[pose(2.0, 1.2), pose(4.0, 0.5)], None).expect("sent");
@@ -225,7 +225,7 @@ fn an_adjustment_checks_the_whole_path() {
     send_softening_path(&hand, (5.0, 1.0), 40.0);
     let refused = hand.adjust(1, "tendon.stiffness = [150, 150, 150, 150]");
     assert!(is_refused_damping(&refused), "{refused:?}");
-    // A lower bound of Kx ends the change of Kx along the path, whatever the Kx of the path is.
+    // An adjustment that lowers the bound of Kx ends the change of Kx along the path, whatever the Kx of the path is.
     hand.adjust(1, "tendon.stiffness = [150, 150, 150, 150]\nstiffness.bound = 3").expect("adjusted");
     hand.send_damping(1, 1.5).expect("only the end of the path counts");
 }

@@ -88,7 +88,7 @@ fn a_group_with_a_refused_command_changes_no_finger() {
     while !matches!(hand.report(2).expect("a report").stage, Stage::Faulted(_)) {
         std::thread::yield_now();
     }
-    // The fault is reported before a damping that does not fit, whichever finger has it.
+    // The fault is reported rather than a damping that does not fit, whichever finger the damping is for.
     let bad = good.damping(99.0);
     for others in [FingerCommand::new(2), FingerCommand::new(2).damping(99.0)] {
         for first in [good, bad] {
@@ -213,7 +213,7 @@ fn kinematics_agree_with_each_other_and_with_the_tip() {
 }
 
 /// The planner turns the palm a little in every call, as an arm does. The fingers keep their poses, because they
-/// compensate the gravity that acts on them, and their recordings can be replayed.
+/// compensate the gravity that acts on them. Their recordings can be replayed.
 #[test]
 fn gravity_turns_while_the_hand_is_open() {
     let hand = open();

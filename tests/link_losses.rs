@@ -253,7 +253,7 @@ fn a_finger_whose_board_falls_silent_is_held_faded_and_faulted_within_20_ms() {
         let after = rig.report().last - good;
         let strongest = torques(&rig).amax();
         if after < 4 * MS {
-            assert!((torques(&rig) - before).amax() < 0.1 * before.amax(), "held after {after} ns");
+            assert!((torques(&rig) - before).amax() < 0.1 * before.amax(), "not held after {after} ns");
         }
         if strongest == 0.0 {
             at_rest.get_or_insert(after);

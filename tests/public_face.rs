@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use syn::{Item, UseTree, Visibility};
 
-/// The committed list.
+/// The file with the committed list of the exported names.
 const LIST: &str = "docs/abi/rust-names";
 
 /// Largest number of names that the crate exports without the feature `internals`.
@@ -70,13 +70,13 @@ fn exported() -> (Vec<String>, Vec<String>) {
 }
 
 #[test]
-fn the_face_is_small() {
+fn the_public_interface_is_small() {
     let (at_root, _) = exported();
     assert!((20..=NAMES).contains(&at_root.len()), "{} names", at_root.len());
 }
 
 #[test]
-fn the_face_is_the_listed_one() {
+fn the_public_interface_is_the_listed_one() {
     let (at_root, of_topics) = exported();
     let mut names = [at_root, of_topics].concat();
     names.sort_unstable();

@@ -129,7 +129,7 @@ fn most_locked_while<T>(open: impl FnOnce() -> T) -> usize {
 }
 
 #[test]
-fn a_planner_without_rtprio_is_warned_by_get_fault() {
+fn a_planner_without_rtprio_gets_a_warning_from_sun2xp_fault() {
     let (status, output, printed) =
         run_without((libc::RLIMIT_RTPRIO, CAP_SYS_NICE), "[hand]\nrate = 500\n", "realtime_refused.c");
     assert_eq!(status, Some(0), "{output}{printed}");

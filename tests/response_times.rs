@@ -20,10 +20,11 @@ struct Running<'a> {
 
 #[derive(Clone, Copy, PartialEq)]
 enum Doing {
-    /// Until the wake-up.
+    /// Time of the wake-up.
     Sleeping(u64),
     /// Time left to compute before the wait.
     Before(u64),
+    /// Time at which the wait ends.
     Waiting(u64),
     /// Time left to compute after the wait.
     After(u64),
@@ -129,7 +130,8 @@ fn no_cycle_takes_longer_than_its_bound() {
         Ok(())
     });
     found.unwrap_or_else(|failure| panic!("{failure}"));
-    // An analysis that finds no bound would never be wrong. At most half of the time of a core is needed on average.
+    // An analysis that finds no bound would never be wrong. On average, the threads of a set need at most half of the
+    // time of a core, so many of them must have a bound.
     let (all, bounded) = (all.get(), bounded.get());
     assert!(4 * bounded > all, "only {bounded} of {all} threads have a bound");
 }

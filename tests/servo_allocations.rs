@@ -102,7 +102,7 @@ fn send_paths(hand: &Hand, end: u64) -> usize {
 #[test]
 fn a_servo_thread_allocates_nothing_while_it_runs() {
     let hand = open();
-    // This thread waits for events, so the servos wake it.
+    // The thread of the listener waits for events, so the servos wake it.
     let _listener = hand.on_event(note).expect("a thread");
     assert!(BY_SERVOS.load(Relaxed) > 0, "starting a thread allocates: the counter must see it");
     let before = BY_SERVOS.load(Relaxed);

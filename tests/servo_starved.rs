@@ -1,5 +1,5 @@
-//! A servo and its simulated board on a machine that delays the servo, the board and the carrier of their bytes. The
-//! machine's clock is simulated too.
+//! A servo and its simulated board on a machine that delays the servo, the board and the carrier: the part of the
+//! system that moves bytes between them. The machine's clock is simulated too.
 
 #[allow(dead_code)]
 #[path = "common/finger_on_a_cable.rs"]

@@ -1,4 +1,4 @@
-//! The paths of the source and of the folder for what is built may contain spaces.
+//! The paths of the source folder and of the build folder may contain spaces.
 
 #[allow(dead_code)]
 #[path = "common/tools.rs"]
@@ -11,7 +11,7 @@ use std::process::Command;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::TempDir;
 
-/// A program in place of cargo and of maturin. It prints the flags for rustc, one in a line, as cargo splits them.
+/// A program in place of cargo and of maturin. It prints the flags for rustc, one on each line, as cargo splits them.
 const CARGO: &str = "#!/bin/sh
 if [ -n \"${CARGO_ENCODED_RUSTFLAGS+set}\" ]; then
     printf '%s\\n' \"$CARGO_ENCODED_RUSTFLAGS\" | tr '\\037' '\\n'
@@ -51,7 +51,8 @@ impl Source {
         Self { folder, root, _turn: turn }
     }
 
-    /// Runs a program that finds this cargo. Returns whether it succeeded, and what it said.
+    /// Runs a program that finds [`CARGO`] in place of cargo and of maturin. Returns whether the program succeeded, and
+    /// what it printed.
     fn run(&self, command: &mut Command) -> (bool, String) {
         let path = std::env::var("PATH").unwrap_or_default();
         command.env("PATH", format!("{}:{path}", self.folder.path().display())).env("HOME", self.folder.path());

@@ -142,7 +142,7 @@ fn other_fingers(scheme: Scheme) -> Vec<(&'static str, ConfiguredFinger)> {
     ]
 }
 
-/// Each finger is limited by its tendons, not by the loop, because the gains of state feedback follow from the
+/// The tendons of each finger limit its stiffness, not the loop, because the gains of state feedback follow from the
 /// configuration. The gains of Figure 10 do not: with them, at least half of these fingers are unstable in some pose.
 #[test]
 fn state_feedback_is_made_for_the_finger_that_is_configured() {

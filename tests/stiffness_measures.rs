@@ -212,7 +212,8 @@ fn a_controller_without_damping_is_detected() {
     }
 }
 
-/// The eigenvalue must predict how fast a loaded finger comes to rest after a nudge, measured separately over time.
+/// The eigenvalue must predict how fast a loaded finger comes to rest after a nudge. The test measures this separately,
+/// from the motion of the tip over time.
 #[test]
 fn the_largest_eigenvalue_predicts_how_a_finger_comes_to_rest() {
     let case = case(Scheme::Figure10);

@@ -7,8 +7,8 @@ use nalgebra::Vector3;
 use std::error::Error;
 use sun2xp::model::configuration::ConfiguredContact;
 
-/// The fastest joint rates of the set points, rad/s. Infinity is a set point that jumps from pose to pose, which the
-/// controller follows as fast as it can. A run spends the same time at each of these speeds.
+/// The fastest joint rates of the set points, rad/s. At an infinite rate, the set point jumps from pose to pose, and
+/// the controller follows it as fast as it can. A run spends the same time at each of these speeds.
 pub const SPEEDS: [f64; 3] = [1.0, 3.0, f64::INFINITY];
 
 /// The result of a run.

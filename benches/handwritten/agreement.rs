@@ -5,8 +5,8 @@ pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }
 
-/// Returns by how much the torques of a motor differ at most, relative to the largest of `theirs`. Returns NaN if a
-/// torque is NaN.
+/// Returns the largest difference between the two torques of a motor, relative to the largest torque in `theirs`.
+/// Returns NaN if a torque is NaN.
 pub fn apart(ours: &[f64; 4], theirs: &[f64; 4]) -> f64 {
     let apart = ours.iter().zip(theirs).map(|(ours, theirs)| (ours - theirs).abs()).fold(0.0, larger);
     let largest = theirs.iter().map(|torque| torque.abs()).fold(0.0, larger);

@@ -84,7 +84,8 @@ static double largest_eigenvalue(const double m[JOINTS][JOINTS])
     return third + 2.0 * root * cos(acos(clamp(cubic / (spread * root), -1.0, 1.0)) / 3.0);
 }
 
-/* Joint 0 needs more stiffness than J^T K J when the tip is near the axis of joint 0. Returns this addition. */
+/* When the tip is near the axis of joint 0, joint 0 needs more stiffness than J^T K J gives it. Returns the stiffness
+ * to add. */
 static double hold(const double k[TIP][TIP], const double j[TIP][JOINTS])
 {
     double lacking = LEAST_LEVER * LEAST_LEVER - (j[0][0] * j[0][0] + j[1][0] * j[1][0] + j[2][0] * j[2][0]);

@@ -6,7 +6,7 @@
 //!
 //! The benchmark fails if the number is more than 2 % above the recorded number. With another compiler or C library,
 //! the code and its number of instructions differ. In that case nothing is compared, and a line on standard error says
-//! so. Record again when such a version becomes the usual one, or when an increase is intended.
+//! so. Record again when another compiler or C library becomes the usual one, or when an increase is intended.
 
 #[allow(dead_code, reason = "only the comparison with C uses all of it")]
 #[path = "../recorded_run/mod.rs"]
@@ -137,7 +137,7 @@ fn compare(now: &Record, recorded: &Record) -> Result<(), Box<dyn Error>> {
     if (&now.rustc, &now.libc) != (&recorded.rustc, &recorded.libc) {
         eprintln!(
             "NOT COMPARED: the recorded counts are of another compiler or C library ({}; {}). \
-             {HOW_TO_RECORD}",
+             To record the counts of this one: {HOW_TO_RECORD}",
             recorded.rustc, recorded.libc
         );
         return Ok(());
@@ -154,7 +154,7 @@ fn compare(now: &Record, recorded: &Record) -> Result<(), Box<dyn Error>> {
 }
 
 const HOW_TO_RECORD: &str =
-    "cargo bench --bench instructions -- --record, and commit benches/instructions/recorded.toml";
+    "run cargo bench --bench instructions -- --record, and commit benches/instructions/recorded.toml";
 
 fn first_line(program: &str) -> Result<String, Box<dyn Error>> {
     let output = Command::new(program).arg("--version").output().map_err(|error| format!("{program}: {error}"))?;

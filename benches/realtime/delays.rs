@@ -2,7 +2,7 @@
 
 use crate::explain::Pauses;
 
-/// The first command that reacts to a contact.
+/// The delay from a contact to the first command that reacts to it.
 pub struct Delay {
     pub periods: u64,
     /// Beginning of the period of the contact, and end of the period of the command, ns.

@@ -10,8 +10,9 @@ use sun2xp::finger::{Mailbox, Servo};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Priority, now, spawn};
 
-/// Runs three fingers at 1000 Hz for a long time and classifies every late cycle by its cause. Exit status 1: the
-/// library's own computation made a cycle late, or a pause of a core that was too short to be detected.
+/// Runs three fingers at 1000 Hz for a long time and classifies every late cycle by its cause. Exit status 1: a cycle
+/// was late because of the library's own computation, or because of a pause of a core that was too short to be
+/// detected.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Duration, minutes.

@@ -166,7 +166,7 @@ pub fn read(arguments: &ReaderArguments) -> Result<(), Failure> {
             write(&mut file, || message.encode())?;
         }
     }
-    if reader.lost() == [0; FINGERS] { Ok(()) } else { Err(format!("lost: {:?}", reader.lost()).into()) }
+    if reader.lost() == [0; FINGERS] { Ok(()) } else { Err(format!("cycles were lost: {:?}", reader.lost()).into()) }
 }
 
 fn write(file: &mut Option<BufWriter<File>>, bytes: impl FnOnce() -> io::Result<Vec<u8>>) -> io::Result<()> {

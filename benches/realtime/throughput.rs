@@ -88,7 +88,7 @@ impl Drop for Phase {
     }
 }
 
-/// The result of one finger: cycles per second with a reply, lost replies, and what ended the measurement early. The
+/// The result of one finger: cycles with a reply per second, lost replies, and what ended the measurement early. The
 /// error says why nothing was measured.
 pub type Row = Result<(f64, u64, Option<String>), String>;
 

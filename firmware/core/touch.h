@@ -7,12 +7,14 @@
 
 enum { TOUCH_ELEMENTS_MOST = 16, TOUCH_QUEUE = 16 };
 
-/* The properties of the elements that are fixed when the board is built, in counts of their converter. */
+/* The properties of the elements that are fixed when the board is built, in counts of their converter. The excess of an
+   element is its count minus its count at power-up. */
 struct touch_traits {
     uint16_t elements; /* 0 to TOUCH_ELEMENTS_MOST. */
-    uint16_t made;     /* An element is pressed when its count exceeds its count at power-up by more than this. */
-    uint16_t lost;     /* It is released when its count exceeds that count by less than this. Below `made`. */
-    uint16_t step;     /* A change by this much since the last event causes a pressure event. */
+    uint16_t made;     /* An element becomes pressed when its excess is above this value. */
+    uint16_t lost;     /* A pressed element is released when its excess is below this value. Less than `made`. */
+    uint16_t step;     /* A pressed element causes a pressure event when its count has changed by at least this value
+                          since its last event. */
 };
 
 struct touch_element {

@@ -36,7 +36,7 @@ void systick_interrupt(void)
     rounds++;
 }
 
-/* SysTick preempts every other interrupt, so the rounds stay correct when an interrupt calls this. */
+/* SysTick preempts every other interrupt, so the rounds stay correct when an interrupt calls this function. */
 uint32_t time_microseconds(void)
 {
     static volatile uint32_t latest;

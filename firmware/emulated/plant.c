@@ -18,7 +18,7 @@ struct answer {
     uint16_t unused;
 };
 
-/* How old the plant's last answer may become before plant_poll queries it, us. */
+/* How old the plant's last answer may become before plant_poll queries the plant again, us. */
 enum { REFRESH = 5000 };
 
 static struct {

@@ -16,8 +16,8 @@ struct fake_hardware {
     uint8_t output[4096];
     size_t output_length;
     uint16_t faults;
-    uint16_t short_faults;        /* Faults that end before the next call of hal_faults. */
-    unsigned calls_without_short; /* Number of calls of hal_faults before the short faults. */
+    uint16_t short_faults;        /* Faults that only one call of hal_faults reports. */
+    unsigned calls_without_short; /* Number of calls of hal_faults before the one that reports the short faults. */
     int32_t currents[FAKE_FINGERS][MOTORS];
     struct sensors sensors;
     uint16_t touch[TOUCH_ELEMENTS_MOST];

@@ -1,5 +1,5 @@
-/* Tests that no test vector can express. The watchdog restarts at the time at which a Command arrives, and not at the
-   time at which the main loop reads it. A fault that the hardware reports only once is not lost. */
+/* Tests two rules that no test vector can express. The watchdog restarts at the time at which a Command arrives, and
+   not at the time at which the main loop reads it. A fault that the hardware reports only once is not lost. */
 
 #include "fake_hardware.h"
 #include "../core/protocol.h"
@@ -60,7 +60,7 @@ static void enable(uint32_t now)
     board_start(&board, 0, &finger, 1);
     configure();
     command();
-    expect(finger.state == FINGER_ENABLED, "not enabled");
+    expect(finger.state == FINGER_ENABLED, "a Command did not enable the finger");
 }
 
 /* The emergency stop begins after the check at the arrival of a Configure, and ends before the next check. */

@@ -13,8 +13,8 @@ static const double gauge_range = 100.0, gauge_counts = 4096.0, counts_a_revolut
 static const double start_degrees[JOINTS] = {0.0, 30.0, 60.0};
 static const double stop_degrees[JOINTS][2] = {{-63.0, 63.0}, {-33.0, 103.0}, {2.0, 123.0}};
 
-/* Moment arms: joint torque for each tendon's tension, m. A motor that pulls its tendon shortens it and so turns the
-   joints in this direction. */
+/* Moment arms, m: the torque of each tendon at each joint, divided by the tension. A motor that pulls its tendon
+   shortens the tendon, and so turns each joint in the direction of the sign of the moment arm. */
 static const double R[JOINTS][MOTORS] = {
     {-0.0109, 0.0062, 0.0062, -0.0109},
     {0.0109, 0.0062, -0.0062, -0.0109},

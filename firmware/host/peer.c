@@ -155,7 +155,7 @@ int main(int count, char **arguments)
         number++;
     }
     if (number == 0 || !open_line()) {
-        fprintf(stderr, "usage: peer ADDRESS..., up to three of 1 to 15 in rising order\n");
+        fprintf(stderr, "usage: peer ADDRESS..., with one to three addresses from 1 to 15 in rising order\n");
         return 1;
     }
     board_start(&board, 0, fingers, number);

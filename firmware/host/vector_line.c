@@ -9,7 +9,7 @@ char conversation[LINE_MOST];
 
 void fail(const char *what)
 {
-    fprintf(stderr, "line %u: %s\n    %s", line_number, what, current_line);
+    fprintf(stderr, "line %u: failed check: %s\n    %s", line_number, what, current_line);
     if (conversation[0] != 0)
         fprintf(stderr, "    in: %s", conversation);
     failures++;

@@ -44,7 +44,7 @@ uint32_t clock_start(void)
     FLASH_ACR = FLASH_ACR_LATENCY_5 | FLASH_ACR_ICEN | FLASH_ACR_DCEN;
     RCC->CFGR = RCC_CFGR_PPRE1_DIV4 | RCC_CFGR_PPRE2_DIV2;
     RCC->CFGR = RCC_CFGR_PPRE1_DIV4 | RCC_CFGR_PPRE2_DIV2 | RCC_CFGR_SW_PLL;
-    /* The frequency is unknown if this fails. The watchdog then resets the processor. */
+    /* If the switch to the PLL fails, the frequency is unknown. The watchdog then resets the processor. */
     if (!becomes(&RCC->CFGR, RCC_CFGR_SWS_MASK, RCC_CFGR_SWS_PLL))
         for (;;)
             ;

@@ -5,8 +5,8 @@
 #include "pins.h"
 #include "registers.h"
 
-/* 168 MHz / 4200 is 40 kHz. A step is 500 uA, so the full duty stands for 2.1 A. Change MICROAMPERES_PER_STEP with the
-   scale of the drivers. */
+/* 168 MHz / 4200 is 40 kHz. A step is 500 uA, so the full duty stands for 2.1 A. If your drivers have another scale,
+   change MICROAMPERES_PER_STEP. */
 enum { STEPS = 4200, MICROAMPERES_PER_STEP = 500 };
 
 enum { ALL_OUTPUTS = TIM_CCER_CC1E | TIM_CCER_CC2E | TIM_CCER_CC3E | TIM_CCER_CC4E };

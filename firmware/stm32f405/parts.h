@@ -41,7 +41,8 @@ void gauges_confirm(void);
 /* Waits for the end of the conversion and reads the result. This takes 6 to 11 us in all. */
 void gauges_read(uint16_t counts[MOTORS]);
 
-/* Whether a gauge could not be read in the last three conversions. */
+/* Whether each of the last three conversions failed: the converter did not answer, or a gauge was at an end of its
+   range. */
 bool gauges_failed(void);
 
 /* `crystal_runs` is false if the clock is not accurate. The board then reports a sensor fault. */

@@ -217,8 +217,8 @@ returned:
     atomic { unread(hand); callers-- }
 }
 
-/* `close_at_exit` in src/capi/hand_table.rs. The exit can come from a signal handler that has interrupted a call in
- * its own thread, and then that call keeps its lock. */
+/* `close_at_exit` in src/capi/hand_table.rs. A signal handler may call exit. If the handler has interrupted a call in
+ * the same thread, that call keeps its lock. */
 proctype Exiter()
 {
     byte i;

@@ -1,6 +1,7 @@
 /* A slow call from C: the planner's thread waits on a futex word for the thread that does the work
  * (src/realtime/delegated_call.rs). The model leaves out the check that the planner's thread makes every 100 ms. So the
- * thread must wake up without this check. -DWAKE_FIRST is a mutant that wakes the planner before it stores the result.
+ * planner's thread must wake up without this check. -DWAKE_FIRST is a mutant that wakes the planner before it stores
+ * the result.
  */
 bool done;
 bool sleeping;

@@ -81,7 +81,7 @@ bool fault_recorded[FINGERS];
 
 /* src/finger/link_handover.rs: rings with one place. */
 bool released[PORTS], repaired[PORTS];
-/* A finger whose handshake was relayed, while the servo has kept the link. */
+/* Whether the handshake of a finger was relayed while the servo kept the link. */
 bool restored[FINGERS];
 bool link_held[PORTS];
 bool servo_dropped[PORTS];

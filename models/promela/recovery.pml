@@ -23,7 +23,7 @@ proctype Recoverer(byte f)
         i = 0;
         unread(hand)
     };
-    /* Recovering::reconnect, without the hand */
+    /* Recovering::reconnect, without the lock of the hand */
     do
     :: lock(repair[p]);
        atomic {

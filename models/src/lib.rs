@@ -159,11 +159,11 @@ use std::sync::Arc;
 /// 2 or 3.
 const PREEMPTIONS: usize = 3;
 
-/// Size of the stack of a thread, in machine words, as loom's generators count it although loom's documentation says
-/// bytes. Loom gives 4096 words, which copies of a finger's report fill.
+/// Size of the stack of a thread, in machine words. Loom's documentation says bytes, but its generators count words.
+/// Loom gives 4096 words, which copies of a finger's report fill.
 const STACK_WORDS: usize = 32 * 1024;
 
-/// Runs `check` in every order of its threads.
+/// Runs `check` in every order of its threads that has at most `PREEMPTIONS` preemptions.
 pub fn explore(check: impl Fn() + Send + Sync + 'static) {
     let mut builder = Builder::new();
     builder.preemption_bound = Some(PREEMPTIONS);

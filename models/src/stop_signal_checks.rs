@@ -4,7 +4,7 @@ use super::FaultKind;
 use super::stop_signal::{StopCounts, StopSignal, stop_all, stop_calls};
 use crate::spawn;
 
-/// Returns the calls and faults that a recovery answers if it begins now.
+/// Returns the numbers of stop calls and faults so far. A recovery that begins now clears these, and no later ones.
 fn answered(signal: &StopSignal) -> StopCounts {
     StopCounts { calls: stop_calls(), of_finger: 0, faults: signal.faults() }
 }

@@ -27,7 +27,10 @@ fn holds_and_fails_without_its_orderings(message: &str, check: impl Fn() + Send 
     let mut test = Command::new(std::env::current_exe().expect("the test's own program"));
     let run = test.args(["--exact", name, "--nocapture"]).env(WEAKENED, "1").output().expect("the test starts");
     let output = String::from_utf8_lossy(&run.stderr);
-    assert!(!run.status.success() && output.contains(message), "no ordering is checked: {output}");
+    assert!(
+        !run.status.success() && output.contains(message),
+        "without its orderings, the check must fail with {message:?}: {output}"
+    );
 }
 
 #[test]
@@ -85,7 +88,7 @@ fn a_log_has_no_later_event_before_its_horizon() {
     holds_and_fails_without_its_orderings("before the horizon", check);
 }
 
-/// The gate passes the decision itself, and no other data.
+/// The gate passes the decision itself, and no other data, so this check needs no ordering.
 #[test]
 fn a_group_takes_effect_in_one_period() {
     explore(group_checks::a_group_takes_effect_in_one_period);
@@ -96,7 +99,7 @@ fn a_posted_group_has_its_set_points() {
     explore(group_checks::a_posted_group_has_its_set_points);
 }
 
-/// The request to close passes no other data.
+/// The request to close passes no other data, so this check needs no ordering.
 #[test]
 fn a_request_to_close_is_answered() {
     explore(mailbox_checks::a_request_to_close_is_answered);

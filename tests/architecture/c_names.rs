@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// This name is also a type of the Rust library.
+/// A function of the C interface whose name is also the name of a type of the Rust library.
 const SHARED: &str = "HandError";
 
 /// The prefixes of constants in the C header.

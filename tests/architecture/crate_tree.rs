@@ -36,7 +36,8 @@ impl CrateTree {
     }
 
     /// Resolves re-exports and returns the module that defines the item at a path from the crate's root. A path to
-    /// another crate resolves to the module of the file that has it (see [`from_root`]), or, in the root, to `None`.
+    /// another crate resolves to the module of the file that contains the path (see [`from_root`]). If this file is the
+    /// crate's root, the path resolves to `None`.
     pub fn resolve(&self, path: &[String]) -> Option<Vec<String>> {
         let depth = (0..=path.len()).rev().find(|&depth| self.0.contains_key(&path[..depth]))?;
         let file = &self.0[&path[..depth]];

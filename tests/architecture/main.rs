@@ -16,7 +16,7 @@ use std::fs;
 use std::path::Path;
 
 /// The folders of the library from the top down. A file imports from its own folder and from lower ones.
-const FLOORS: [&[&str]; 10] = [
+const LAYERS: [&[&str]; 10] = [
     &["capi"],
     &["hand"],
     &["telemetry"],
@@ -34,10 +34,10 @@ fn library() -> CrateTree {
 }
 
 #[test]
-fn every_folder_has_a_floor() {
+fn every_folder_is_in_a_layer() {
     let tree = library();
     let folders: BTreeSet<&str> = tree.files().filter_map(|file| file.module.first().map(String::as_str)).collect();
-    assert_eq!(folders, FLOORS.concat().into_iter().collect());
+    assert_eq!(folders, LAYERS.concat().into_iter().collect());
 }
 
 #[test]
@@ -52,12 +52,12 @@ fn only_the_c_interface_uses_its_names() {
 
 #[test]
 fn imports_run_downward() {
-    let floor = |folder: &str| FLOORS.iter().position(|floor| floor.contains(&folder)).expect("it has a floor");
+    let layer = |folder: &str| LAYERS.iter().position(|layer| layer.contains(&folder)).expect("it is in a layer");
     let upward: Vec<String> = imports::all(&library())
         .into_iter()
         .filter_map(|import| {
             let (from, to) = (import.from.split("::").next()?, import.to.split("::").next()?);
-            let allowed = from.is_empty() || to.is_empty() || from == to || floor(from) < floor(to);
+            let allowed = from.is_empty() || to.is_empty() || from == to || layer(from) < layer(to);
             (!allowed).then(|| import.to_string())
         })
         .collect();
@@ -159,8 +159,8 @@ fn no_field_is_left_out_of_a_message() {
     assert!(found.is_empty(), "skip_serializing in {found:?}");
 }
 
-/// Otherwise `tests/run` does not install a program that a test needs, and the test fails on a bare machine. Benchmarks
-/// may need more programs.
+/// `tests/run` installs only the programs that are listed. A test that needs another program fails on a bare machine.
+/// Benchmarks may need more programs.
 #[test]
 fn every_program_that_a_test_starts_is_listed() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -52,8 +52,8 @@ fn throughput_measures_every_finger_beside_other_work() {
     assert_eq!(rows.len(), 3);
 }
 
-/// Only servos with real-time priority keep the system from the transport of bytes. The test above does not find this
-/// defect where that priority is not permitted, and this test does.
+/// A servo that never sleeps prevents the system from transporting bytes only if it has real-time priority. The test
+/// above does not find this defect where that priority is not permitted, and this test does.
 #[test]
 fn the_servos_sleep_until_the_fingers_are_under_control() {
     let clock = UnlimitedClock { phase: Arc::new(AtomicU8::new(OPEN)) };

@@ -40,7 +40,7 @@ fn a_truncated_frame_costs_only_its_own_cycle() {
 }
 
 #[test]
-fn a_refused_handshake_frame_that_comes_late_is_no_fault() {
+fn a_late_refusal_of_a_handshake_frame_is_no_fault() {
     let refusal = |request| {
         let frame = Frame::Refused(Refused { request, reason: Reason::Running, detail: 0 });
         WireFrame::new(&Message { address: 1, sequence: 3, frame }).as_bytes().to_vec()

@@ -110,7 +110,7 @@ fn a_failed_handshake_names_its_reason() {
 
 /// docs/board-protocol.md permits a shortest watchdog time of up to 20 ms, and the configured time is 18 ms.
 #[test]
-fn a_board_with_a_longer_shortest_watchdog_gets_this_time() {
+fn a_board_whose_shortest_watchdog_is_longer_than_configured_gets_its_shortest() {
     let shake_hands = |shortest| {
         let answer = good_but(move |message| {
             if let Frame::Identity(identity) = &mut message.frame {

@@ -27,7 +27,7 @@ fn three_fingers_on_one_port_answer_in_the_order_of_their_commands() {
 }
 
 #[test]
-fn duplicates_are_answered_and_damage_is_not_but_shows() {
+fn duplicates_are_answered_and_damaged_frames_are_only_reported() {
     let mut board = board(&[1]);
     let mut answers = Vec::new();
     let mut send = |board: &mut SimulatedBoard, bytes: &[u8]| {
@@ -51,8 +51,8 @@ fn duplicates_are_answered_and_damage_is_not_but_shows() {
     assert!(!status(&send(&mut board, &command)).has(Status::DAMAGED_INPUT));
     // Half a frame, followed by a delimiter and a whole frame.
     assert_eq!(send(&mut board, &[&command[..9], &[0], &command[..]].concat()).len(), 1);
-    // The board ignores the type of an answer, the address of another finger, and address 0 with a type other than
-    // Hello.
+    // The board ignores a frame of a type that only boards send, a frame for another finger, and a frame for address 0
+    // that is not a Hello.
     assert!(send(&mut board, &wire(1, Frame::Stopped(Stopped::default()))).is_empty());
     let to = |address, frame| WireFrame::new(&Message { address, sequence: 1, frame }).as_bytes().to_vec();
     assert!(send(&mut board, &to(2, Frame::Stop(Stop))).is_empty());

@@ -44,7 +44,7 @@ pub fn listed() -> Vec<String> {
         .collect()
 }
 
-/// Checks that this is the answer to a request with this sequence number.
+/// Checks that `message` is the expected `answer` to a request with the sequence number `sequence`.
 fn check_answer(place: &str, answer: &Answer, sequence: u8, message: &Message) {
     assert_eq!((message.address, message.sequence), (1, sequence), "{place}");
     let known = |status: Status| Status(status.0 & !Status::ZERO_VALID.0);
@@ -103,7 +103,7 @@ fn the_simulated_board_passes_every_conversation() {
     }
 }
 
-/// A Hello changes nothing, so it can be sent between any two steps.
+/// Returns the answer to a Hello. A Hello changes nothing, so it can be sent between any two steps.
 fn identity(address: u8, board: &mut SimulatedBoard) -> Frame {
     let mut answers = Vec::new();
     let hello = Frame::Hello(Hello { lowest_version: 1, highest_version: 1 });

@@ -19,7 +19,7 @@ fn damaged() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     wrong_check[content.len()] ^= 0x80;
     let swapped: Vec<u8> = content.iter().copied().chain(check(&content).to_be_bytes()).collect();
     let unfinished = |initial: u32| {
-        // The checksum of a CRC without the final exclusive-or.
+        // The CRC without its final exclusive-or.
         let frame: Vec<u8> = content.iter().copied().chain((check(&content) ^ initial).to_le_bytes()).collect();
         stuffed(&frame)
     };
@@ -56,7 +56,7 @@ pub fn bad() -> Vec<String> {
     damaged().into_iter().map(line).collect()
 }
 
-/// For a board that has finger 1 only.
+/// Frames that a board with finger 1 only must ignore.
 fn not_for_finger_1() -> Vec<(&'static str, Vec<u8>)> {
     vec![
         ("a Stop for finger 2", sealed(&[0x42, 1])),
@@ -78,7 +78,7 @@ pub fn ignored() -> Vec<String> {
 }
 
 #[test]
-fn bad_frames_are_dropped_and_counted_and_cost_no_other() {
+fn bad_frames_are_dropped_and_counted_and_cost_no_other_frame() {
     let next = Message { address: 1, sequence: 8, frame: Frame::Stop(Stop) };
     for (name, _, wire) in damaged() {
         let mut decoder = Decoder::default();

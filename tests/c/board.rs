@@ -13,7 +13,8 @@ pub struct Board {
 }
 
 impl Board {
-    /// Starts a board with finger 1 and configures the bench for it. Both sides tolerate a busy machine.
+    /// Starts a board with finger 1 and configures the bench for it. The board and the configured watchdog tolerate a
+    /// busy machine.
     pub fn start(bench: &Bench) -> Self {
         let mut command = Command::new(super::tool());
         command

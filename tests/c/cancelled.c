@@ -16,8 +16,8 @@
 
 static double Pos[3] = {0.0, 0.5, 0.8}, Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}};
 
-/* The call that a thread makes, whether the thread has come so far, and the result; 2 while the call has not
-   returned. */
+/* The call that a thread makes, whether its cancellation is asynchronous, whether the thread has begun the call, and
+   the result of the call. The result is 2 while the call has not returned. */
 struct job {
     int (*call)(void);
     int asynchronous;
@@ -183,7 +183,7 @@ int main(void)
         complete_in_cancelled_thread(CloseHand, asynchronous, 5);
         CHECK(GetPos(1, Measured) == -1 && errno == ENODEV);
     }
-    /* Identifying takes a minute: CloseHand ends it. */
+    /* An identification takes a minute. CloseHand ends it early. */
     CHECK(OpenHand() == 0);
     CHECK(pthread_create(&thread, NULL, work, &identifying) == 0);
     PAUSE_MS(300);

@@ -1,4 +1,5 @@
-/* Events: taken, waited for, by callback and by descriptor. CloseHand ends every wait, also in the callback. */
+/* A planner takes events, waits for them, and gets them by a callback and by a descriptor. CloseHand ends every wait,
+   also if the callback calls it. */
 #include <poll.h>
 #include <pthread.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
-/* Exit handlers of a planner that leaves its hand open. One registered after OpenHand runs while the hand is open. One
-   registered before runs after the library has closed the hand. In this second handler, calls that read still work,
-   and calls that would move or open a hand are refused. Each handler prints a line, so that a handler that does not
-   run is noticed. */
+/* Exit handlers of a planner that leaves its hand open. A handler that was registered after OpenHand runs while the
+   hand is open. A handler that was registered before OpenHand runs only after the library has closed the hand. In
+   this second handler, calls that read still work, and calls that would move or open a hand are refused. Each handler
+   prints a line, so that a handler that does not run is noticed. */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>

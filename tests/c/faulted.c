@@ -1,5 +1,5 @@
-/* The board of finger 1 dies: its calls are refused with EIO and a reason, its outputs stay unchanged, and the hand
-   can be closed. The argument is the process number of the board. */
+/* If the board of finger 1 dies, calls for this finger are refused with EIO and a reason, they leave their outputs
+   unchanged, and the hand can be closed. The argument is the process number of the board. */
 #include <errno.h>
 #include <signal.h>
 #include <string.h>

@@ -9,7 +9,7 @@
 #include "sun2xp.h"
 #include "check.h"
 
-/* A test of the manual reads the lines that begin with REFUSED or WORKS, and misses no call among them. */
+/* A test of the manual reads the lines with REFUSED or WORKS, and checks that no call of the library is missing. */
 #define REFUSED(Call) (errno = 0, check_refused(#Call, (Call)))
 #define WORKS(Condition) \
     do { \
@@ -20,7 +20,7 @@
 static sun2xp_hand *Opened;
 static double Pos[3] = {0.0, 0.5, 0.9};
 
-/* The refusal is that of this call, and has the errno and the number of a forked child. */
+/* Checks that the last refusal is that of `call`, and that it has the errno and the number of a forked child. */
 static void check_refused(const char *call, int result)
 {
     int number = errno;

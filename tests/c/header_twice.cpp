@@ -1,4 +1,4 @@
-// The header, twice, in C++.
+// Includes the header twice, in C++.
 #include "Sun2Xp.h"
 #include "Sun2Xp.h"
 

@@ -1,5 +1,5 @@
-/* A library with one function. If work unwinds, call releases its lock on the way. Compiled with -fexceptions, the
-   frame of call therefore has a landing pad. */
+/* A library with the function call(), which holds a lock while it calls work(). If work() unwinds the stack, call()
+   releases the lock. So the frame of call() has a landing pad if this file is compiled with -fexceptions. */
 void work(void);
 void call(void);
 

@@ -56,7 +56,7 @@ static void is_called_late()
     hand.on_event(nullptr);
     callback(&event, context);
     CHECK(calls == 1);
-    // The function replaces itself, and is called again after that.
+    // The function removes itself, and must not run when the library calls the callback again.
     hand.on_event([&hand, &calls](const sun2xp_event &) {
         int *const counted = &calls;
         hand.on_event(nullptr);
@@ -84,7 +84,7 @@ static void is_refused()
     CHECK(hand.handle() == nullptr);
 }
 
-// A hand that is replaced is closed at once, and not when the variable ends from which the other hand comes.
+// If a variable gets another hand, its previous hand is closed at once, and not only when the other variable ends.
 static void is_replaced()
 {
     sun2xp::hand kept = sun2xp::hand::named("nominal"), other = sun2xp::hand::named("nominal");
@@ -98,7 +98,8 @@ static void is_replaced()
     CHECK(closed == before + 1 && kept.handle() != nullptr);
 }
 
-// For the C calls, a negative time would be no limit, or an error.
+// sun2xp.hpp passes 0 instead of a negative time. With a negative time, sun2xp_wait_event would wait without a limit,
+// and sun2xp_wait would refuse the call.
 static void does_not_wait_after_a_deadline()
 {
     sun2xp::hand hand = sun2xp::hand::named("nominal");

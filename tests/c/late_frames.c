@@ -1,4 +1,4 @@
-/* receive_sample of c_examples/Can.c, with late frames of the exchange before. */
+/* Tests receive_sample of c_examples/Can.c with late frames of the previous exchange. */
 #define main main_of_the_example
 #include "Can.c"
 #undef main

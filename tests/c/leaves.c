@@ -1,5 +1,6 @@
-/* Ends with the hand open and the status 3: by "return" from main, "exit", "handler", which calls exit in a signal
-   handler, or "thread", with other threads inside calls. With "killed" the process ends by a signal. */
+/* Ends with the hand open and the status 3. The argument selects how: "return" returns from main, "exit" calls exit,
+   "handler" calls exit in a signal handler, and "thread" returns from main while other threads make calls. With
+   "killed" the process ends by a signal. */
 #include <pthread.h>
 #include <signal.h>
 #include <string.h>

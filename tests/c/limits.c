@@ -112,7 +112,7 @@ static void refuse_descriptors(void)
         refused++;
     }
     CHECK(CloseHand() == 0);
-    printf("%d times too few descriptors\n", refused);
+    printf("%d openings were refused for lack of descriptors\n", refused);
     CHECK(refused >= 9);
 }
 

@@ -1,5 +1,6 @@
-/* Locked memory: while a hand is open it is at most the first argument, in mebibytes, and none after CloseHand,
-   whichever threads open and close the hand. Memory that the planner has locked stays locked. */
+/* While a hand is open, the library locks at most as much memory as the first argument says, in mebibytes. After
+   CloseHand it has none locked, whichever threads open and close the hand. Memory that the planner has locked stays
+   locked. */
 #include <pthread.h>
 #include <string.h>
 #include <sys/mman.h>

@@ -106,7 +106,7 @@ impl Bench {
 
     fn compiler(&self, compiler: &str, flags: &[&str]) -> Command {
         let mut command = Command::new(compiler);
-        // Keeps POSIX names visible under -ansi.
+        // _DEFAULT_SOURCE keeps POSIX names visible under -ansi.
         command.args(flags).args(["-O1", "-g", "-D_DEFAULT_SOURCE", "-I"]).arg(root().join("include"));
         command
     }
@@ -159,7 +159,7 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// An absolute path is used as it is.
+/// Returns the path of a source file of this folder. An absolute path is returned as it is.
 fn source_file(source: &str) -> PathBuf {
     root().join("tests/c").join(source)
 }

@@ -79,7 +79,7 @@ static void quick_calls(void)
 #define TURNS 2000
 static volatile int go;
 
-/* The threads wait for the same locks. */
+/* Runs in several threads at once, so that they wait for the same locks. */
 static void *another_thread(void *own)
 {
     int turn;

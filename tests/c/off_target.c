@@ -1,4 +1,4 @@
-/* is_there of c_examples/Can.c: a finger that rests away from its target is reported. */
+/* Tests that is_there of c_examples/Can.c reports a finger that does not rest at its target. */
 #define main main_of_the_example
 #include "Can.c"
 #undef main

@@ -1,5 +1,6 @@
-/* Calls with several errors at once. Each call has one error less than the call before it. Prints a line
-   for each call: its name and the errno of its refusal. Finger 1 is on a real port, the others are simulated. */
+/* Makes calls with several errors at once. Each call has one error fewer than the previous call of the same function.
+   Prints a line for each call: its name and the errno of its refusal. Finger 1 is on a real port, the others are
+   simulated. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-// parts.cpp - events, groups, paths, reflexes, kinematics and ownership of sun2xp.hpp.
+// parts.cpp - tests sun2xp.hpp: events, groups, paths, reflexes, kinematics, and which variable owns a hand.
 #include <atomic>
 #include <cmath>
 #include <future>

@@ -1,4 +1,4 @@
-// A planner in what C++98 to C++17 have in common, with float and double side by side.
+// A planner in the common subset of C++98 to C++17, with float and double side by side.
 #include <cerrno>
 #include <cstddef>
 #include "Sun2Xp.h"

@@ -1,7 +1,7 @@
-/* A planner with a floating-point environment of its own: "upward" rounding, denormals "flushed" to zero, or
-   "trapping" exceptions. The library computes in the default environment, both in its threads and in the calls, and
-   every call restores the planner's environment and exception flags. The black box goes to the file in the second
-   argument. */
+/* A planner with a floating-point environment of its own, which the first argument selects: "upward" rounding,
+   denormals "flushed" to zero, or "trapping" exceptions. The library computes in the default environment, both in its
+   threads and in the calls, and every call restores the planner's environment and exception flags. The black box goes
+   to the file in the second argument. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fenv.h>

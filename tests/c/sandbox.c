@@ -23,7 +23,7 @@
 #endif
 
 struct refusal {
-    /* What OpenHand cannot do. */
+    /* A part of the refusal, which names what OpenHand cannot do. */
     const char *cannot;
     /* The refused system calls. */
     long calls[2];

@@ -10,7 +10,7 @@
 #include "check.h"
 
 #define STACK_BYTES (64 * 1024)
-/* The limit for one call (chapter 5 of sun2xp.h, "Stack"). The use of the thread itself is subtracted. */
+/* The limit for one call (chapter 5 of sun2xp.h, "Stack"). The bytes that the thread itself uses are not counted. */
 #define PROMISED_BYTES (16 * 1024)
 #define PROMISED_FOR_MANY (48 * 1024)   /* for the calls that get many set points */
 #define PAINT 0xA5

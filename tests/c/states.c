@@ -14,14 +14,14 @@ static int state_of(int finger)
     return Status.state;
 }
 
-/* Registered before the library's own exit handler, so it runs after that. Its result becomes the program's. */
+/* This exit handler is registered before that of the library, so it runs after it. Its status becomes the program's. */
 static void look_at_the_closed_hand(void)
 {
     int finger;
 
     for (finger = 1; finger <= 3; finger++)
         if (state_of(finger) != SUN2XP_STATE_CLOSED) {
-            fprintf(stderr, "finger %d reads %d when exit has closed the hand\n", finger, state_of(finger));
+            fprintf(stderr, "finger %d reports state %d after exit has closed the hand\n", finger, state_of(finger));
             _exit(1);
         }
     _exit(0);
@@ -51,7 +51,7 @@ int main(void)
         if (Record.state == SUN2XP_STATE_TENSIONING)
             tensioning++;
     }
-    printf("%d cycles under tension, at cycle %lu\n", tensioning, Cycle);
+    printf("%d cycles in the state tensioning, up to cycle %lu\n", tensioning, Cycle);
     CHECK(tensioning > 0);
     return 3;
 }

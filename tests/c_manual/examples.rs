@@ -45,8 +45,8 @@ impl Example {
         self.text.starts_with("cc ")
     }
 
-    /// Makes a whole program of statements. The program fails if one of them is refused. Static functions at the start
-    /// of the example are placed before main.
+    /// Makes a whole program of the statements of an example. The program fails if one of their calls is refused.
+    /// Static functions at the start of the example are placed before main.
     fn program(&self) -> String {
         if self.is_program() {
             return self.text.clone();

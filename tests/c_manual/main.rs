@@ -1,4 +1,5 @@
-//! The C manual is the header. Its chapters, its entries and the library's behaviour must agree.
+//! The manual of the C calls consists of the comments of the two headers. Its chapters, its entries and the library's
+//! behaviour must agree.
 
 mod adjusting;
 #[allow(dead_code)]

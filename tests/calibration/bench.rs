@@ -10,6 +10,7 @@ use sun2xp::simulated::Wiring;
 
 pub struct Bench {
     pub plant: Plant,
+    /// The configuration that calibration and controller use. It may differ from the true finger.
     pub belief: ConfiguredFinger,
     rate: f64,
     gravity: Vector3<f64>,
@@ -87,7 +88,7 @@ impl Bench {
             self.plant.step(self.wiring.torques(torques));
             self.largest_tension = self.largest_tension.max(self.plant.tensions().max());
         }
-        // The tests compare maxima, which skip NaN. So a finger that has diverged to NaN would pass.
+        // The tests compare maxima, which skip NaN. Without this check, a finger that has diverged to NaN would pass.
         let (joints, tensions) = (self.plant.joints(), self.plant.tensions());
         assert!(joints.iter().chain(tensions.iter()).all(|value| value.is_finite()), "{joints} {tensions}");
         let (state, feedback, activity) = (&mut self.state, Some(feedback), &self.activity);
@@ -165,8 +166,8 @@ impl Bench {
                     return Ok(findings);
                 }
                 Verdict::Refused(obstacle) => {
-                    // A limp finger stays limp after the routine. Any other finger is left to the routine's last
-                    // command.
+                    // If the routine has commanded the finger before, it switches the motors off. Otherwise it gives no
+                    // command, and the finger continues under its own controller.
                     let motors_off = Some(Activity::Turn(Vector4::zeros()));
                     assert_eq!(activity, if own.is_none() { motors_off } else { None });
                     return Err(obstacle);

@@ -74,7 +74,8 @@ impl Trial {
     /// A spring that holds the finger's pose.
     fn spring(&self) -> Bench {
         let mut bench = Bench::in_gravity(&self.truth, &self.belief, self.gravity, 1000.0).open();
-        // Wrong gauges pull the finger away. A soft finger, or one with its tip near the axis of joint 0, moves slowly.
+        // Wrong gauges pull the finger away. A compliant finger, or one with its tip near the axis of joint 0, moves
+        // slowly.
         bench.go_on(4.0);
         bench
     }
@@ -122,14 +123,14 @@ impl Tally {
         Self { accepted: errors.len(), refused }
     }
 
-    fn only_refused(&self, for_it: impl Fn(&Obstacle) -> bool) {
-        let other = self.refused.iter().find(|(_, obstacle)| !for_it(obstacle));
+    fn only_refused(&self, is_expected: impl Fn(&Obstacle) -> bool) {
+        let other = self.refused.iter().find(|(_, obstacle)| !is_expected(obstacle));
         assert!(other.is_none(), "{other:?}");
     }
 
-    fn all_refused(&self, for_it: impl Fn(&Obstacle) -> bool) {
+    fn all_refused(&self, is_expected: impl Fn(&Obstacle) -> bool) {
         assert_eq!(self.accepted, 0);
-        self.only_refused(for_it);
+        self.only_refused(is_expected);
     }
 }
 
@@ -143,7 +144,7 @@ fn restless(obstacle: &Obstacle) -> bool {
 }
 
 #[test]
-fn a_spring_that_stands_still() {
+fn a_spring_that_stands_still_is_zeroed() {
     for scheme in SCHEMES {
         let tally = Tally::of(&format!("{scheme:?}"), 100, |seed| {
             let trial = Trial { gravity: Vector3::zeros(), ..Trial::new(scheme, seed) };
@@ -160,7 +161,7 @@ fn a_spring_that_stands_still() {
 }
 
 #[test]
-fn a_spring_that_is_pushed_while_it_is_read() {
+fn a_spring_that_is_pushed_while_it_is_read_is_refused() {
     for scheme in SCHEMES {
         let tally = Tally::of(&format!("{scheme:?}, pushed"), 50, |seed| {
             let mut trial = Trial::new(scheme, seed);
@@ -175,7 +176,7 @@ fn a_spring_that_is_pushed_while_it_is_read() {
 }
 
 #[test]
-fn a_spring_that_is_released_while_it_is_read() {
+fn a_spring_that_is_released_while_it_is_read_is_refused() {
     for scheme in SCHEMES {
         let tally = Tally::of(&format!("{scheme:?}, released"), 50, |seed| {
             let mut trial = Trial::new(scheme, seed);
@@ -194,7 +195,7 @@ fn a_spring_that_is_released_while_it_is_read() {
 }
 
 #[test]
-fn a_moving_spring() {
+fn a_moving_spring_is_refused() {
     for scheme in SCHEMES {
         let tally = Tally::of(&format!("{scheme:?}, on its way"), 50, |seed| {
             let mut trial = Trial::new(scheme, seed);
@@ -209,7 +210,7 @@ fn a_moving_spring() {
 }
 
 #[test]
-fn a_limp_finger_that_is_held() {
+fn a_limp_finger_that_is_held_is_zeroed() {
     let tally = Tally::of("limp, held", 50, |seed| {
         let trial = Trial::new(Scheme::StateFeedback, seed);
         trial.zero(&mut trial.limp(), |_, _| {})
@@ -218,21 +219,21 @@ fn a_limp_finger_that_is_held() {
 }
 
 #[test]
-fn a_limp_finger_that_nothing_holds() {
+fn a_limp_finger_that_nothing_holds_is_refused() {
     for friction in [0.5e-3, 5e-3] {
         let tally = Tally::of(&format!("limp, not held, joint friction {friction} N m"), 50, |seed| {
             let mut trial = Trial::new(Scheme::StateFeedback, seed);
             trial.truth.simulation.joint_coulomb_friction = [friction; 3];
             trial.zero(&mut trial.limp(), |_, plant| plant.release())
         });
-        // Other fingers fall, or reach their stops, before they can be pushed.
+        // Other fingers fall, or reach their stops, before the routine can push them.
         let pushed = tally.refused.iter().filter(|(_, obstacle)| matches!(obstacle, Obstacle::NotHeld { .. }));
         assert!(tally.accepted == 0 && pushed.count() > 25, "{:?}", tally.refused);
     }
 }
 
 #[test]
-fn a_limp_finger_that_is_released_during_the_reading() {
+fn a_limp_finger_that_is_released_during_the_reading_gets_no_wrong_zeros() {
     let tally = Tally::of("limp, released", 200, |seed| {
         let mut trial = Trial::new(Scheme::StateFeedback, seed);
         let at = trial.chance.between(0.0, 9.0);

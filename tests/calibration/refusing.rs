@@ -25,7 +25,7 @@ fn a_cut_tendon() {
 
 #[test]
 fn a_tendon_that_breaks_on_the_way() {
-    // While slack is taken up, and while a stop is searched for.
+    // The tendon breaks while slack is taken up, or while a stop is searched for.
     for breaks_at in [3.0, 8.0] {
         let finger = with_stops();
         let mut bench = Bench::new(&finger, &finger, 1000.0).open();
@@ -138,7 +138,7 @@ fn a_routine_that_takes_too_long() {
     assert!(text.contains("something slows the finger down, or zeroing.time_limit_s is too short"), "{text}");
 }
 
-/// Starts with tight and with slack tendons, at every rate, with every pair.
+/// Starts with tight or with slack tendons, at every rate, and swaps every pair.
 #[test]
 fn cables_of_two_gauges_or_two_motors_that_are_swapped() {
     let finger = ConfiguredFinger::default();

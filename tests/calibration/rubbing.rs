@@ -14,7 +14,7 @@ fn random(seed: u64, index: u64) -> f64 {
     (x >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-/// One identification: the true finger, the results, and the controller's finger with the results.
+/// One identification: the true finger, the results, and the controller's configuration with the results.
 struct Run {
     name: String,
     truth: ConfiguredFinger,
@@ -112,7 +112,7 @@ impl Run {
         }
     }
 
-    /// Stiffness, gauge gains and pulley friction.
+    /// Checks stiffness, gauge gains, friction of pulleys and conduits, joint angles and tolerances.
     fn check(&self, stiffness: f64, within: f64, gain: f64) {
         self.near("stiffness", &self.belief.tendon.stiffness, stiffness, within * stiffness);
         self.near("gauge gain", self.found.gauge_gain.as_slice(), 1.0, gain);

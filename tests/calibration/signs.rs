@@ -5,7 +5,7 @@ use sun2xp::calibration::{Findings, Task};
 use sun2xp::model::configuration::ConfiguredFinger;
 
 #[test]
-fn every_sign_is_found_from_tight_and_from_slack() {
+fn every_sign_is_found_with_tight_and_with_slack_tendons() {
     for rate in [500.0, 1000.0, 2000.0] {
         for pattern in 0..8u8 {
             let sign =

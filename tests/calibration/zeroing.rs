@@ -22,7 +22,8 @@ fn truth() -> ConfiguredFinger {
     truth
 }
 
-/// True joint angles minus the controller's, rad, after the controller has adopted the findings.
+/// Largest difference between a true joint angle and the controller's, rad, after the controller has adopted the
+/// findings.
 fn joint_error(bench: Bench) -> f64 {
     let bench = bench.adopt();
     (bench.plant.joints() - bench.report.joints).amax()
@@ -52,7 +53,7 @@ fn zeroing_against_the_stops_works_from_any_pose() {
 }
 
 #[test]
-fn at_the_configured_pose() {
+fn zeroing_at_the_configured_pose_works() {
     let truth = truth();
     let mut belief = ConfiguredFinger::default();
     belief.tendon.stiffness = [330.0; 4];
@@ -72,7 +73,7 @@ fn at_the_configured_pose() {
 }
 
 #[test]
-fn a_board_that_kept_its_counts_keeps_the_zero_but_not_that_of_the_gauges() {
+fn a_board_that_kept_its_counts_keeps_the_zeros_of_encoders_but_not_of_gauges() {
     let truth = truth();
     let mut belief = truth.clone();
     belief.zeroing.method = Some(ZeroingMethod::Kept);
@@ -109,7 +110,7 @@ fn a_calibrated_finger_is_the_commanded_spring() {
     assert!(after <= 0.01, "{after}");
 }
 
-/// Largest relative error of the apparent joint-space compliance, over pushes of 0.9 N along every axis.
+/// Largest relative error of the apparent compliance of the tip, over pushes of 0.9 N along every axis.
 fn apparent_error(truth: &ConfiguredFinger, belief: &ConfiguredFinger) -> f64 {
     let mut bench = Bench::new(truth, belief, 1000.0).open();
     let stiffness = nalgebra::Matrix3::identity() * 3.0;

@@ -1,4 +1,4 @@
-//! Whether simulated parts gain energy although nothing supplies any.
+//! Checks that simulated parts gain no energy while nothing supplies any.
 
 use proptest::prelude::*;
 

@@ -2,8 +2,8 @@
 //!
 //! A real-time test can fail because the machine paused it. Such a failure is excused only if the pause was measured.
 //! The kernel counts for every thread how long it was ready to run but had no core (`/proc/PID/task/TID/schedstat`). A
-//! thread that sleeps, waits for bytes or was stopped by a signal is not ready, so a defect of that kind does not count
-//! as a pause.
+//! thread that sleeps, waits for bytes or was stopped by a signal is not ready, so a defect that has this effect does
+//! not count as a pause.
 
 #[path = "waits.rs"]
 mod waits;
@@ -63,8 +63,8 @@ impl PauseWatch {
         self.shared.processes().push((process, part));
     }
 
-    /// Closes all files and discards the measurements until the guard is dropped. For tests that count the resources of
-    /// the process.
+    /// Closes all files and discards the measurements until the guard is dropped. Tests that count the resources of the
+    /// process need this.
     pub fn rest(&self) -> Rest<'_> {
         let [asked, done] = &self.shared.rests;
         asked.store(true, Relaxed);
@@ -89,7 +89,7 @@ impl Drop for PauseWatch {
     }
 }
 
-/// The watch rests while this exists.
+/// The watch rests while this guard exists.
 pub struct Rest<'a>(&'a PauseWatch);
 
 impl Drop for Rest<'_> {

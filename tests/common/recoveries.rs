@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use sun2xp::finger::Stage;
 use sun2xp::hand::{Hand, HandError};
 
-/// A recovery asks a board every 50 ms, and gives it 300 ms to answer. A shorter pause leaves enough time.
+/// A recovery asks a board every 50 ms, and gives it 300 ms to answer. A pause of less than 100 ms leaves enough time.
 pub const TOLERATED_PAUSE: Duration = Duration::from_millis(100);
 
 /// Longest time from a request to stop until the fault.

@@ -28,7 +28,7 @@ pub fn tool() -> &'static Path {
         if folder.ends_with("release") {
             cargo.arg("--release");
         }
-        assert!(cargo.status().expect("cargo runs").success(), "the tool is not built");
+        assert!(cargo.status().expect("cargo runs").success(), "cargo has not built the tool: see its messages");
         folder.join("sun2xp")
     })
 }

@@ -1,4 +1,4 @@
-//! Sums up the times that threads waited for a core, and finds the worst.
+//! Sums up the times for which threads waited for a core, and finds the span with the longest waits.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};

@@ -4,7 +4,7 @@
 use crate::reading::{keys, read, with_optional_keys};
 use toml_edit::{Array, Value};
 
-/// Every array in a value, itself included, given by its path of indices from the outside in.
+/// Every array in a value, the value itself included. Each is given by its path of indices, from the outside in.
 fn arrays(value: &Value, place: &mut Vec<usize>, found: &mut Vec<Vec<usize>>) {
     let Value::Array(array) = value else { return };
     found.push(place.clone());
@@ -65,7 +65,7 @@ fn every_array_has_exactly_as_many_entries_as_its_key_has_places() {
 }
 
 #[test]
-fn arrays_inside_tables_in_a_line_too() {
+fn arrays_inside_inline_tables_have_exactly_as_many_entries() {
     for wrong in ["point = [4, 0, 0, 0]", "normal = [-1, 0]"] {
         let right = ["point = [4, 0, 0]", "normal = [-1, 0, 0]"]
             .map(|right| if right[..4] == wrong[..4] { wrong } else { right })
@@ -79,7 +79,7 @@ fn arrays_inside_tables_in_a_line_too() {
 }
 
 #[test]
-fn arrays_inside_a_list_of_tables_too() {
+fn errors_inside_a_list_of_tables_are_refused() {
     let good = "{ position = [0, 0, 0], normal = [0, 0, 1] }";
     for (wrong, needed) in [
         ("{ position = [0, 0], normal = [0, 0, 1] }", "entries, and must have 3"),

@@ -4,10 +4,10 @@ use crate::reading::{keys, read, usable, with_numbers, with_optional_keys};
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
-/// The longest reason contains a list of the keys of the largest table.
+/// Largest length of a reason, bytes. The longest reason contains a list of the keys of the largest table.
 const LONGEST: usize = 400;
 
-/// About the largest file that is read.
+/// A little less than the size of the largest file that is read, bytes.
 const LARGE: usize = (1 << 20) - 100;
 
 /// Returns the line and the reason of a refusal. Checks that it was quick and that the reason suits a terminal.
@@ -101,7 +101,7 @@ fn no_nesting_depth_exhausts_the_stack() {
 }
 
 #[test]
-fn large_files_are_read_in_no_long_time() {
+fn large_files_are_read_quickly() {
     let numbered = |format: fn(&mut String, usize)| {
         let mut text = String::new();
         (0..)

@@ -25,7 +25,7 @@ fn the_reference_is_the_default_hand() {
 }
 
 #[test]
-fn every_key_of_every_table_is_in_it() {
+fn every_key_of_every_table_is_in_the_reference() {
     let document: DocumentMut = with_optional_keys().parse().expect("TOML");
     let named = |path: &str| table(&document, path).iter().map(|(key, _)| key.to_owned()).collect::<BTreeSet<_>>();
     let fingers: BTreeSet<String> = ["1", "2", "3"].map(String::from).into();
@@ -195,7 +195,7 @@ fn an_initial_stiffness_above_the_bound_is_clamped_like_a_command_and_its_commen
     assert!(key.comment.contains("hand.out_of_range is \"clamp\""), "{}", key.comment);
 }
 
-/// docs/building-a-hand.md, step 8 of the order of bring-up.
+/// Step 8 of the order of bring-up in docs/building-a-hand.md sets an eighth of the torque limit.
 #[test]
 fn an_eighth_of_the_torque_limit_suffices_for_the_signs() {
     let limit = Configuration::default().fingers[0].motor.torque_limit.map(|limit| limit / 8.0);

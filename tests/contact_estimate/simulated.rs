@@ -91,7 +91,7 @@ fn a_gauge_that_drifts_slowly_is_no_contact() {
 }
 
 #[test]
-fn a_lasting_contact_lasts() {
+fn the_estimate_of_a_lasting_contact_does_not_fade() {
     let mut finger = nominal();
     run(&mut finger, 1.0, |_| start());
     let force = Vector3::new(0.0, 0.0, -0.3);

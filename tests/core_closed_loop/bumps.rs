@@ -9,8 +9,8 @@ const SEED: u64 = 312;
 
 const RATE: f64 = 1000.0;
 
-/// Returns the time from the end of a push by `force` (N) that lasts 20 ms until every tension stays above half of
-/// t_min, s.
+/// Pushes the tip with `force`, N, for 20 ms. Returns the time from the end of the push until every tension stays above
+/// half of t_min, s.
 fn time_of_return(finger: &ConfiguredFinger, joints: Vector3<f64>, force: Vector3<f64>) -> f64 {
     let mut finger = finger.clone();
     finger.simulation.start_degrees = joints.map(f64::to_degrees).into();
@@ -30,7 +30,7 @@ fn time_of_return(finger: &ConfiguredFinger, joints: Vector3<f64>, force: Vector
     f64::from(last) / RATE
 }
 
-/// With rotors of every inertia that is configured correctly, the tensions return equally fast.
+/// If the inertia of the rotors is configured correctly, the tensions return equally fast with every inertia.
 #[test]
 fn tensions_return_after_a_bump_whatever_the_inertia_of_the_rotors() {
     for ratio in [0.5, 1.0, 2.5] {

@@ -78,7 +78,7 @@ fn state_feedback_rests_at_both_ends_of_the_range() {
 }
 
 /// The finger has no friction, because with friction the controllers of the report's figures hunt by more than 0.01 cm
-/// at any damping, 1 included.
+/// at any damping, even at 1.
 #[test]
 fn the_figures_rest_with_more_damping_without_friction() {
     for scheme in [Scheme::Figure9, Scheme::Figure10] {

@@ -71,7 +71,7 @@ fn with_friction_the_tensions_are_right_at_rest_and_the_model_stays_within_its_b
     }
 }
 
-/// A finger that is stuck: its tensions, N, stay the same whatever is commanded.
+/// A finger that is stuck: its tensions stay the same whatever is commanded.
 struct Stuck {
     controller: Controller,
     state: sun2xp::control::State,
@@ -163,7 +163,7 @@ fn with_adapted_kinematics(pose: Vector3<f64>, geometry: bool) -> (f64, f64) {
 }
 
 #[test]
-fn in_the_kinematics_the_adapted_model_moves_the_finger_off() {
+fn the_adapted_model_in_the_kinematics_displaces_the_finger() {
     for pose in poses().into_iter().step_by(6) {
         let (off, fastest) = with_adapted_kinematics(pose, false);
         assert!(off < 0.005 && fastest < 0.1, "{off} rad off, {fastest} rad/s");

@@ -67,7 +67,7 @@ fn arrive(finger: impl Fn(&ConfiguredFinger) -> ConfiguredFinger, joint_2: [[f64
             }
         }
     }
-    assert!(astray.is_empty(), "{}: {astray:#?}", astray.len());
+    assert!(astray.is_empty(), "{} cases went astray: {astray:#?}", astray.len());
 }
 
 #[test]

@@ -7,7 +7,7 @@ use sun2xp::control::{Activity, Controller, Feedback};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
 #[test]
-fn gravity_does_not_move_the_finger_unless_it_is_left_alone() {
+fn gravity_moves_the_finger_only_without_compensation() {
     for scheme in SCHEMES {
         let mut finger = finger_with(scheme);
         let sag = |compensated: bool, finger: &mut sun2xp::model::configuration::ConfiguredFinger| {
@@ -24,7 +24,7 @@ fn gravity_does_not_move_the_finger_unless_it_is_left_alone() {
 }
 
 #[test]
-fn a_pose_that_cannot_carry_the_stiffness_gets_what_it_can() {
+fn a_pose_that_cannot_carry_the_stiffness_gets_the_part_that_it_can_carry() {
     for scheme in SCHEMES {
         let finger = finger_with(scheme);
         let mut servo = Loop::new(&finger, 1000.0);
@@ -164,8 +164,8 @@ fn a_warm_motor_does_not_wind_up_the_integral() {
     }
 }
 
-/// Presses a finger against a stop with the full strength of its motors, then calls it back. Returns by how much the
-/// true tensions exceed the desired ones at most, from 30 ms after the call on, N.
+/// Presses a finger against a stop with the full strength of its motors, then calls it back. Returns the largest excess
+/// of a true tension over the desired one, N. The first 30 ms after the call do not count.
 fn excess_after_a_stop(finger: &ConfiguredFinger, rate: f64) -> f64 {
     let mut finger = finger.clone();
     finger.controller.set_point_speed = Some(1e3);

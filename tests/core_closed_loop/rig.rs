@@ -98,7 +98,7 @@ impl Loop {
         self.watch.adjusted();
     }
 
-    /// Replaces the controller without informing the new one.
+    /// Replaces the controller. The new one does not take over from the old one, so the command may jump.
     pub fn replace(&mut self, belief: &ConfiguredFinger) {
         self.controller = Controller::new(belief, self.rate).unwrap();
         self.watch.adjusted();
@@ -122,7 +122,8 @@ impl Loop {
             self.plant.step((self.command.motor_torques * 0.01).into());
             self.least_true = self.least_true.min(self.plant.tensions().min());
         }
-        // The tests compare minima and maxima, which skip NaN. So a finger that has diverged to NaN would pass.
+        // The tests compare minima and maxima, which skip NaN. Without this check, a finger that has diverged to NaN
+        // would pass.
         let (joints, tensions) = (self.plant.joints(), self.plant.tensions());
         assert!(joints.iter().chain(tensions.iter()).all(|value| value.is_finite()), "{joints} {tensions}");
         let lost = (self.random.next_u32() as f64) < self.loss * 4294967296.0;
@@ -185,7 +186,7 @@ pub fn spring(joints: Vector3<f64>, stiffness: f64) -> Activity {
     Activity::Follow(SetPoint::hard_finger(joints, nalgebra::Matrix3::identity() * stiffness))
 }
 
-/// 24 poses, rad: joint 0 within +-30, joint 1 -10 to 70, joint 2 30 to 100 degrees.
+/// 24 poses, rad. Joint 0 is within -30 to 30 degrees, joint 1 within -10 to 70, and joint 2 within 30 to 100.
 pub fn poses() -> Vec<Vector3<f64>> {
     poses_of(24)
 }

@@ -98,7 +98,7 @@ fn deflection_ratio(finger: &ConfiguredFinger, belief: &ConfiguredFinger) -> f64
 }
 
 #[test]
-fn tip_is_the_commanded_spring_and_is_not_without_stretch_compensation() {
+fn the_tip_is_the_commanded_spring_only_with_stretch_compensation() {
     let mut finger = finger_with(Scheme::Figure10);
     finger.simulation.joint_coulomb_friction = [0.0; 3];
     let ratio = deflection_ratio(&finger, &finger);

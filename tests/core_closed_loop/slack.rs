@@ -7,7 +7,8 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::control::{Activity, SetPoint};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
-/// How far the joints have moved, rad, when the finger is under tension and holds its pose, and how long that took, s.
+/// How far the joints have moved, rad, when the finger holds its pose after slack was taken up, and how long it took to
+/// take up slack, s.
 fn drift(finger: &ConfiguredFinger, slack: &Vector4<f64>, rate: f64, take_up: &Activity) -> (f64, f64) {
     let mut servo =
         Loop::with_belief(finger, &ConfiguredFinger { simulation: Default::default(), ..finger.clone() }, rate);
@@ -68,7 +69,7 @@ fn the_joints_stay_where_they_are() {
 }
 
 #[test]
-fn they_stay_about_there_in_a_calibration() {
+fn the_joints_stay_nearly_where_they_are_in_a_calibration() {
     for case in CASES {
         let tighten = Activity::Tighten(Vector4::zeros());
         let [drift, mean, _] = worst(case, finger_with(Scheme::Figure10), 1000.0, &tighten);
@@ -79,7 +80,7 @@ fn they_stay_about_there_in_a_calibration() {
 /// Pulling every tendon independently of the others makes the same fingers drift, so `the_joints_stay_where_they_are`
 /// can fail.
 #[test]
-fn without_regard_to_the_joints_they_move() {
+fn tendons_that_are_pulled_independently_move_the_joints() {
     let finger = ConfiguredFinger::default();
     let pretension = finger.tendons().expect("regular").pretension(finger.tendon.minimum);
     let [drift, mean, _] = worst(CASES[1], finger, 1000.0, &Activity::Tense(pretension));

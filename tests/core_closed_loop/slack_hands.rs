@@ -7,7 +7,7 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::control::Activity;
 use sun2xp::model::configuration::{ConfiguredFinger, NamedHand};
 
-/// Largest time in which the tendons come under tension, s.
+/// Longest time until the tendons are under tension, s.
 const LONGEST: f64 = 10.0;
 
 /// A simulated hand, and what happens on it.
@@ -122,7 +122,7 @@ fn take_up(hand: &Hand, pose: &Vector3<f64>, seed: u64, found: &mut Found) {
         servo.plant.turn_motor(motor, -slack / finger.geometry.motor_radius[motor]);
     }
     if hand.gravity != [0.0; 3] {
-        // The finger falls until it hangs, lies at its stops, or a tendon holds it.
+        // The finger falls until it hangs, lies at its stops, or is held by a tendon.
         servo.run(3.0, &Activity::Turn(Vector4::zeros()));
     }
     if finger.simulation.gauge_bandwidth > 0.0 {
@@ -146,7 +146,7 @@ fn take_up(hand: &Hand, pose: &Vector3<f64>, seed: u64, found: &mut Found) {
 }
 
 /// The environment variable `SEEDS` sets the number of seeds, by default 1. Each seed has 12 poses and slacks. If the
-/// environment variable `HAND` is set, only the hands run whose names contain its value.
+/// environment variable `HAND` is set, only hands whose names contain its value are tested.
 #[test]
 fn the_joints_stay_on_every_hand() {
     let seeds = std::env::var("SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(1);

@@ -210,7 +210,7 @@ fn the_spring_begins_where_the_finger_is() {
 }
 
 #[test]
-fn a_missing_reply_leaves_the_command_unchanged() {
+fn after_many_missing_replies_the_command_stays_unchanged() {
     let mut servo = Loop::new(&finger(), 1000.0);
     let target = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);
     servo.run(0.5, &target);
@@ -226,7 +226,7 @@ fn a_missing_reply_leaves_the_command_unchanged() {
 }
 
 #[test]
-fn a_set_point_of_no_or_little_rank_is_damped() {
+fn a_set_point_whose_kx_has_rank_0_or_1_is_damped() {
     for kx in [Matrix3::zeros(), Matrix3::from_diagonal(&Vector3::new(0.0, 3.0, 0.0))] {
         for law in [Law::Report, Law::Exact] {
             let mut servo = Loop::new(&finger(), 1000.0);

@@ -48,7 +48,7 @@ fn switches() -> Vec<(&'static str, SetPoint, SetPoint, bool)> {
     steps.into_iter().flat_map(both).collect()
 }
 
-/// A pushed finger before a switch: at rest, or released 30 ms ago.
+/// A pushed finger before a switch: at rest, or 30 ms after the push has changed.
 fn before(finger: &ConfiguredFinger, rate: f64, set_point: SetPoint, moving: bool) -> Loop {
     let mut servo = Loop::new(finger, rate);
     let follow = Activity::Follow(set_point);

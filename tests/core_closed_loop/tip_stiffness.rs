@@ -6,7 +6,7 @@ use sun2xp::control::{Activity, JointSprings, Law, SetPoint, spatial};
 use sun2xp::model::Contact;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
-/// N/cm. No planner can send it, and no pose supports it.
+/// A stiffness, N/cm, that no planner can send and no pose supports.
 const TWICE_THE_BOUND: f64 = 12.0;
 
 const LAWS: [Law; 2] = [Law::Exact, Law::Report];

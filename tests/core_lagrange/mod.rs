@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Rotation3, SVector, Vector3, Vector4};
 const LENGTHS: [f64; 3] = [0.03556, 0.05080, 0.04000];
 const RADII: [f64; 3] = [0.009, 0.008, 0.007];
 const MASSES: [f64; 4] = [0.060, 0.045, 0.025, 0.005];
-const PULLEY: f64 = 0.0475e-2;
+const MOTOR_RADIUS: f64 = 0.0475e-2;
 const TENDON_STIFFNESS: f64 = 3e4;
 const ROTOR: f64 = 6e-7;
 const R: [[f64; 4]; 3] =
@@ -31,7 +31,7 @@ impl IndependentFinger {
         let mut state = State::zeros();
         state.fixed_rows_mut::<3>(0).copy_from(&theta);
         for tendon in 0..4 {
-            state[3 + tendon] = (0..3).map(|joint| R[joint][tendon] * theta[joint]).sum::<f64>() / PULLEY;
+            state[3 + tendon] = (0..3).map(|joint| R[joint][tendon] * theta[joint]).sum::<f64>() / MOTOR_RADIUS;
         }
         Self { state, gravity, force, torque, home_tension }
     }
@@ -65,7 +65,7 @@ impl IndependentFinger {
 
     fn tension(&self, state: &State, tendon: usize) -> f64 {
         let wrapped: f64 = (0..3).map(|joint| R[joint][tendon] * state[joint]).sum();
-        (TENDON_STIFFNESS * (PULLEY * state[3 + tendon] - wrapped) + self.home_tension[tendon]).max(0.0)
+        (TENDON_STIFFNESS * (MOTOR_RADIUS * state[3 + tendon] - wrapped) + self.home_tension[tendon]).max(0.0)
     }
 
     fn derivative(&self, state: &State) -> State {
@@ -78,7 +78,7 @@ impl IndependentFinger {
             for joint in 0..3 {
                 joint_torque[joint] += R[joint][tendon] * tension;
             }
-            derivative[10 + tendon] = (self.torque[tendon] - PULLEY * tension) / ROTOR;
+            derivative[10 + tendon] = (self.torque[tendon] - MOTOR_RADIUS * tension) / ROTOR;
         }
         // d/dt (dT/d rate) - dT/d theta = Q, with T = rate' H(theta) rate / 2.
         let inertia = inertia(&theta);

@@ -128,7 +128,7 @@ fn inject_all(cases: &[Case], rate: f64, times: u64, warns: bool) -> Vec<String>
         let last = |outcome: &Outcome| if warns { outcome.found } else { outcome.ended };
         let worst = outcomes.iter().map(last).fold(0.0, f64::max);
         if worst > case.within {
-            wrong.push(format!("{}: {worst} ms, not {}", case.what, case.within));
+            wrong.push(format!("{}: took {worst} ms, longer than {} ms", case.what, case.within));
         }
     }
     wrong

@@ -192,7 +192,7 @@ impl Bench {
         self.world.place().hooks.ended = None;
     }
 
-    /// When the motors were without torque, ms after the mark.
+    /// When the motors were first without torque, ms after the mark.
     pub fn ended(&self) -> Option<f64> {
         self.world.place().hooks.ended.map(|ended| (ended - self.injected) as f64 * 1e-6)
     }
@@ -267,8 +267,8 @@ impl Bench {
         });
     }
 
-    /// Does what sun2xp_recover does with a faulted finger: takes the link from the servo, or a new one, shakes hands,
-    /// returns the link, and waits until the finger is a spring.
+    /// Does what sun2xp_recover does with a faulted finger: takes the link from the servo, replaces it if it has
+    /// failed, shakes hands, hands the link to the servo, and waits until the finger is a spring.
     pub fn recover(&mut self) {
         let before = self.report().recoveries;
         // Lets delayed frames arrive.

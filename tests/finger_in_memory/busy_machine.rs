@@ -27,7 +27,7 @@ impl BusyMachine {
         Self { host: Cell::new(0), limit: MILLISECOND, release: 0, random: Pcg64::seed_from_u64(seed) }
     }
 
-    /// Passes the time of the host until `until`, ns, and that of the board as far as it may pass.
+    /// Advances the host's time to `until`, ns, and the board's time by the same span, but not beyond `limit`.
     fn pass(&mut self, cable: &mut SimulatedCable, until: u64) {
         let passed = until.saturating_sub(self.host.get());
         self.host.set(until.max(self.host.get()));

@@ -62,7 +62,7 @@ fn a_finger_that_stands_still_is_zeroed() {
 }
 
 #[test]
-fn a_push_is_refused_and_the_finger_stays_the_spring_that_it_was() {
+fn a_zeroing_during_a_push_is_refused_and_the_finger_stays_the_spring_that_it_was() {
     for scheme in [Scheme::StateFeedback, Scheme::Figure10] {
         let mut bench = standing(scheme);
         let before = bench.report().set_point;
@@ -98,7 +98,7 @@ fn a_set_point_sent_in_the_previous_cycle_counts_as_motion() {
 }
 
 #[test]
-fn an_adjustment_during_a_calibration_is_in_force_after_its_refusal() {
+fn an_adjustment_during_a_calibration_that_is_refused_is_in_force_afterwards() {
     let mut bench = standing(Scheme::StateFeedback);
     order(&bench, Scheme::StateFeedback);
     bench.cycles(50);
@@ -137,7 +137,8 @@ fn a_path_ends_where_a_calibration_began() {
     }
 }
 
-/// After a calibration that is longer than the black box, the servo resumes a controller that no kept record names.
+/// After a calibration that lasts longer than the time that a black box keeps, the servo resumes a controller that no
+/// kept record names.
 #[test]
 fn the_black_box_keeps_the_controller_that_is_resumed() {
     let mut bench = standing(Scheme::StateFeedback);

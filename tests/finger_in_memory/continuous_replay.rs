@@ -13,8 +13,8 @@ fn collect(bench: &mut Bench, cycles: usize) -> Recording {
     bench.black_box.recording().expect("a recording")
 }
 
-/// Returns the cycles of a recording. A recording has stages as texts, and the replay needs stages as values. Of a
-/// stage it uses only whether the finger was faulted, so every fault has the same kind here.
+/// Returns the cycles of a recording. A recording has stages as texts, and the replay needs stages as values. The
+/// replay uses only whether the finger was faulted, so this function gives every fault the same kind.
 fn cycles(recording: &Recording) -> impl Iterator<Item = CycleRecord> {
     recording.cycles.iter().map(|record| {
         let faulted = record.stage.starts_with("faulted");
@@ -37,7 +37,7 @@ fn announce(replay: &mut ContinuousReplay, recording: &Recording) {
     }
 }
 
-/// A replay before the first cycle of a recording.
+/// A replay that has the controllers and the first state of a recording, and computes its first cycle next.
 fn begun(recording: &Recording) -> ContinuousReplay {
     let mut replay = with_controllers(recording);
     assert_eq!(replay.keyframe(recording.cycles[0].cycle, recording.origin.state), Ok(true));

@@ -76,8 +76,9 @@ fn a_corrected_set_point_can_be_renewed() {
     assert!(bench.report().expired);
 }
 
-/// The correction is made at every place of the cycle in which the set point expires. If it is made after the servo has
-/// taken its input and before the report is published, it still names the set point that has expired.
+/// The set point expires in each round. Each round makes the correction at a later reading of the clock in the cycle of
+/// the expiry. A correction that is made after the servo has taken its input and before the report is published still
+/// names the set point that has expired.
 #[test]
 fn a_correction_does_not_undo_an_expiry() {
     let mut bench = Bench::new();

@@ -78,7 +78,7 @@ fn disturb(bench: &mut Bench, random: &mut Random, rules: &mut Vec<u32>) -> bool
         1 => {
             let kx = spatial(&(Matrix3::identity() * random.between(0.0, 5.0)));
             let _ = bench.mailbox.try_send::<()>((Replaced::Stiffness, Validity::default()), |set_point| {
-                // A ratio other than 1 is refused with some of these Kx if a planner sends it.
+                // The hand would refuse some of these Kx with a damping ratio other than 1.
                 (set_point.stiffness, set_point.damping) = (kx, 1.0);
                 Ok(())
             });

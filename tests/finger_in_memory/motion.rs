@@ -1,4 +1,4 @@
-//! Paths with the whole servo.
+//! Paths that the whole servo follows: their smoothness, their limits, their replay and their stiffness.
 
 use crate::rig::{Bench, TARGET};
 use nalgebra::{Matrix3, Vector3};
@@ -179,8 +179,8 @@ fn whatever_replaces_a_path_the_reference_does_not_jump() {
     }
     println!("{accepted} accepted, {refused} refused, largest {:?}", track.largest());
     assert!(accepted > 20 && refused > 0, "{accepted} {refused}");
-    // A bare set point moves the input of the filter at up to 5 rad/s. The derivatives of the filter lag by half a
-    // cycle.
+    // A bare set point moves the input of the reference filter at up to 5 rad/s. The derivatives of this filter lag by
+    // half a cycle.
     track.is_smooth([0.3, 40.0, 12_000.0]);
     assert_eq!(bench.stage(), Stage::Running);
 }

@@ -12,8 +12,8 @@ fn impatient(configuration: &mut Configuration) {
     configuration.hand.open_timeout_ms = TIMEOUT_MS;
 }
 
-/// Runs cycles until the finger is no longer opening. After each, other work on the machine takes `pause`, ms. Returns
-/// the fault and when it came, ms.
+/// Runs cycles until the finger is no longer opening. After each cycle, other work on the machine takes `pause`, ms.
+/// Returns the fault, and the time from the beginning to the fault, ms.
 fn opens_on_a_machine_with(bench: &mut Bench, pause: u64) -> (Fault, f64) {
     let begun = bench.world.now();
     while bench.stage() == Stage::Opening {

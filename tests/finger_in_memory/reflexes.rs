@@ -146,7 +146,7 @@ fn a_later_reaction_does_not_shorten_an_inhibition() {
 }
 
 #[test]
-fn silence_of_the_planner_and_a_stop() {
+fn a_reflex_stops_the_finger_of_a_silent_planner() {
     let mut bench = Bench::new();
     bench.goes(Vector3::new(0.1, 0.5, 1.0));
     bench.reflexes.install(rule(Condition::PlannerSilent(0.05), Reaction::Stop)).expect("a place");

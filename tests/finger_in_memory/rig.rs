@@ -108,8 +108,8 @@ impl Bench {
         bench
     }
 
-    /// Constructs a finger that opens in the next periods. `is` changes the configuration of the board. `believed`
-    /// changes only the servo's copy of it, so that the servo's configuration differs from the board's.
+    /// Constructs a finger that opens in the next periods. `is` changes the configuration of the board and of the
+    /// servo. `believed` then changes only the configuration of the servo, so that the two configurations differ.
     pub fn believing(is: impl FnOnce(&mut Configuration), believed: impl FnOnce(&mut Configuration)) -> Self {
         let mut configuration = Configuration::default();
         // The port must not be "simulated": the time limits of a built-in board are longer.

@@ -62,7 +62,7 @@ fn set_points_sent_before_a_fault_are_discarded() {
 }
 
 #[test]
-fn of_two_that_send_within_a_period_after_recovery_none_is_overwritten() {
+fn of_two_commands_within_a_period_after_recovery_neither_is_overwritten() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
     stop(&mut bench);

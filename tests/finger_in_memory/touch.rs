@@ -68,7 +68,7 @@ fn a_tare_makes_the_present_counts_the_zeros() {
 }
 
 #[test]
-fn an_element_that_cannot_be_read_has_no_number() {
+fn an_element_that_cannot_be_read_has_no_valid_reading() {
     let mut bench = Bench::with(two_elements);
     push(&bench, [-0.5, 0.0, 0.0]);
     bench.cycles(3);
@@ -168,7 +168,7 @@ fn a_reset_of_the_board_loses_no_touch() {
     push(&bench, [0.0, 0.0, -0.3]);
     bench.cycles(3);
     assert_eq!(touches(&mut bench).len(), 1);
-    // The contact after the reset has the number of the one before it.
+    // The event of the contact after the reset has the same number as that of the contact before the reset.
     resets(&mut bench);
     let kinds: Vec<EventKind> = touches(&mut bench).iter().map(|event| event.kind).collect();
     assert_eq!(kinds, [EventKind::TouchMade]);

@@ -44,9 +44,9 @@ pub const STM32F405: Emulated = Emulated {
 
 impl Emulated {
     /// Number of boards of the hand. Each emulator of a board with one finger needs up to two thirds of a processor, so
-    /// there are no more of them than processors, but two on a single processor, because the tests need finger 2. With
-    /// three emulators on two processors, the kernel's threads that carry the bytes of the terminals get too little
-    /// time, and replies are lost for a second.
+    /// there are at most as many of these emulators as processors. A machine with a single processor nevertheless runs
+    /// two, because the tests need finger 2. With three emulators on two processors, the kernel's threads that carry
+    /// the bytes of the terminals get too little time, and replies are lost for a second.
     pub fn boards(self) -> usize {
         let processors = std::thread::available_parallelism().map_or(1, NonZero::get);
         self.images.len().min(processors.max(2))
@@ -171,18 +171,19 @@ impl Drop for Emulator {
     }
 }
 
-/// The firmware's last request, in its own time, us.
+/// The firmware's last request. Its times are on the firmware's clock, us.
 #[derive(Clone, Copy, Default)]
 pub struct Asked {
     /// Number of requests that a host's Command or Configure caused.
     pub samples: u32,
-    /// Arrival of the last of them. A processor that was paused may handle it much later.
+    /// Arrival of the last Command or Configure that caused a request. A processor that was paused may handle this
+    /// frame much later.
     pub arrived_at: u32,
     /// When a command or the firmware itself last set the currents.
     pub set_at: u32,
     /// Time of the request.
     pub now: u32,
-    /// uA.
+    /// Currents of the motors, uA.
     pub currents: [i32; 4],
 }
 
@@ -267,7 +268,7 @@ impl Finger {
     }
 }
 
-/// As in firmware/emulated/plant.h.
+/// Length of a request, bytes, as in firmware/emulated/plant.h.
 const REQUEST_LENGTH: usize = 32;
 
 /// Sent in place of a finger's number when the machine is shut down.

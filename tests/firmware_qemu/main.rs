@@ -64,7 +64,7 @@ const TARGETS: [[f64; 3]; 3] = [[0.1, 0.4, 0.9], [-0.1, 0.6, 1.1], [0.0, 0.7, 0.
 /// Largest distance of a finger from its target, rad.
 const CLOSE: f64 = 0.02;
 
-/// On a busy machine the finger moves more slowly than real time.
+/// Longest wait for anything. On a busy machine, the simulated time of the fingers passes more slowly than real time.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 fn farthest(found: &[[f64; 3]], wanted: &[[f64; 3]]) -> f64 {
@@ -152,7 +152,7 @@ fn settles(emulated: Emulated) {
 }
 
 #[test]
-fn its_emergency_stop_stops_the_hand() {
+fn the_emergency_stop_of_the_lm3s6965_stops_the_hand() {
     stops(LM3S6965);
 }
 

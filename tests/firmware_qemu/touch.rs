@@ -4,7 +4,7 @@ use crate::machine::{Emulated, LM3S6965, STM32F405};
 use crate::{KEYS, PATIENCE, alone, text, wait_until, with_configured_hand};
 
 #[test]
-fn its_tactile_elements_reach_the_planner() {
+fn the_tactile_elements_of_the_lm3s6965_reach_the_planner() {
     elements_reach_the_planner(LM3S6965);
 }
 

@@ -45,18 +45,18 @@ fn a_ball_is_lifted_whatever_its_mass_its_friction_and_the_noise() {
 #[test]
 fn a_held_ball_does_not_creep_in_a_minute() {
     let mut hand = lifted(GraspingHand::open(around_a_ball(0.1, 0.6, 3)));
-    let start = (0..100).map(|_| settled(&mut hand)).sum::<Vector3<f64>>() / 100.0;
+    let start = (0..100).map(|_| after_a_cycle(&mut hand)).sum::<Vector3<f64>>() / 100.0;
     let mut farthest: f64 = 0.0;
     for _ in 0..60 {
         hand.run(900);
-        let mean = (0..100).map(|_| settled(&mut hand)).sum::<Vector3<f64>>() / 100.0;
+        let mean = (0..100).map(|_| after_a_cycle(&mut hand)).sum::<Vector3<f64>>() / 100.0;
         farthest = farthest.max((mean - start).norm());
     }
     assert!(farthest < 0.01, "{farthest} cm");
 }
 
 /// Runs a cycle and returns the position of the object, cm.
-fn settled(hand: &mut GraspingHand) -> Vector3<f64> {
+fn after_a_cycle(hand: &mut GraspingHand) -> Vector3<f64> {
     hand.run(1);
     position(hand)
 }

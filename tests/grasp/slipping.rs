@@ -12,8 +12,8 @@ const STIFFNESS: f64 = 5.0;
 /// Depth of the anchors below the surface of the ball, cm. Each finger presses with 2.4 N.
 const SQUEEZE: f64 = 0.5;
 
-/// Largest force of a finger, N. The tendons make about 4.7 N in this pose. A finger at this limit is no spring any
-/// more, and three such fingers turn the ball out of the grasp, however large the friction is.
+/// Largest force of a finger, N. In this pose the tendons can produce about 4.7 N. A finger at this limit of its
+/// tendons is no longer a spring, and three such fingers turn the ball out of the grasp, however large the friction is.
 const MOST: f64 = 4.2;
 
 /// What happened to a ball whose load grew.

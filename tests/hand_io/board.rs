@@ -158,7 +158,7 @@ fn after_a_silence_the_watchdog_counts_as_tripped() {
 }
 
 #[test]
-fn a_stop_is_confirmed_when_the_hardware_has_stopped_and_once() {
+fn a_stop_is_confirmed_when_the_hardware_has_stopped_and_is_then_not_repeated() {
     let mut rig = Rig::ready();
     rig.status();
     rig.switches.lock().stops_fail = 2;

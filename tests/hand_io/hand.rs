@@ -180,7 +180,7 @@ fn counts_that_are_lost_after_an_opening_without_a_zero_fault_the_finger_and_ref
     report(io::IoFaults::ZERO_LOST);
     assert_eq!(fault(&hand, 1), FaultKind::ZeroLost);
     refused("lost in a sample");
-    refused("the start before has not brought the counts back");
+    refused("the previous start has not brought the counts back");
 
     report(io::IoFaults::default());
     hand.recover(1).unwrap_or_else(|error| panic!("{error}"));

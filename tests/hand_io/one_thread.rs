@@ -1,4 +1,4 @@
-//! Fingers that share a servo thread: what hardware with one telegram for all fingers relies on.
+//! Fingers that share a servo thread: tests what hardware that sends one telegram for all fingers relies on.
 
 use super::plant_io::PlantIo;
 use std::io;
@@ -21,8 +21,9 @@ const PATIENCE: Duration = Duration::from_secs(10);
 struct Shared {
     /// The exchanges in their order: the index of the finger, and the deadline.
     exchanges: Mutex<Vec<(usize, u64)>>,
-    /// Whether a start returns only after another finger has been exchanged.
+    /// Whether a start first waits for an exchange with another finger.
     waits: AtomicBool,
+    /// Number of calls of `properties`.
     asked: Mutex<u32>,
 }
 
@@ -31,7 +32,7 @@ impl Shared {
     fn wait_for_exchanges(&self, number: usize) {
         let (before, begun) = (self.exchanges.lock().len(), Instant::now());
         while self.exchanges.lock().len() < before + number {
-            assert!(begun.elapsed() < PATIENCE, "no finger is exchanged");
+            assert!(begun.elapsed() < PATIENCE, "no exchange takes place");
             sleep(Duration::from_millis(1));
         }
     }

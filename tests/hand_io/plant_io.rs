@@ -58,7 +58,8 @@ pub struct PlantIo {
 }
 
 impl PlantIo {
-    /// The physics advances by one period in each exchange. `in_step` says whether the servo waits for it.
+    /// The physics advances by one period in each exchange with a new command. `in_step` says whether the servo waits
+    /// for the physics.
     pub fn new(configuration: &Configuration, finger: FingerNumber, in_step: bool) -> Self {
         let configured = &configuration.fingers[finger.index()];
         let plant = Plant::new(configured, configuration.gravity(finger)).expect("tendons that hold the finger");

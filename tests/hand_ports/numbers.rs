@@ -42,7 +42,7 @@ fn two_boards_with_one_number_are_refused() {
 }
 
 #[test]
-fn boards_that_differ_in_their_numbers_only_serve() {
+fn boards_that_differ_only_in_their_numbers_are_accepted() {
     let _turn = turn();
     let boards = copies([7, 8, 9]);
     let hand = open(on_copies(&boards));

@@ -50,7 +50,7 @@ pub struct State {
     /// N cm.
     pub torques: Vec<f64>,
     /// Times on the board's clock, ms: the present time, the arrival of the last Command that was obeyed, and the
-    /// beginning of the end state. NaN: not since the last Configure.
+    /// beginning of the end state. NaN stands for an event that has not occurred since the last Configure.
     pub times: Vec<f64>,
     pub status: Status,
 }

@@ -1,4 +1,4 @@
-//! `tests/run`: what it installs, and what it says if it cannot.
+//! `tests/run`: what it installs, and what it says if it cannot install something.
 
 use crate::{said, turn, write_program};
 use std::fs;

@@ -1,5 +1,6 @@
 //! Every snippet of README and of the pages in docs is compiled and run as it stands, or read as the library reads it.
-//! python/tests/test_examples.py and ros/tests/test_node.py run those in Python. Other tests compare the quoted texts.
+//! python/tests/test_examples.py and ros/tests/test_node.py run those in Python. `LANGUAGES` names the tests of the
+//! blocks that are not code.
 
 #[allow(dead_code)]
 #[path = "../c/mod.rs"]
@@ -15,7 +16,8 @@ use pages::{Page, pages};
 /// and `text` blocks quote errors (tests/faq.rs).
 const LANGUAGES: [&str; 6] = ["c", "hex", "python", "rust", "text", "toml"];
 
-/// Texts that only code contains. The section `See it move` of README contains commands (tool/tests/readme.rs).
+/// Texts that only code contains. Commands do not contain them, so commands may be indented, as in the section `See it
+/// move` of README (tool/tests/readme.rs).
 const CODE: [&str; 6] = ["#include", "let ", "?;", "import ", "if (", "sun2xp_send"];
 
 #[test]

@@ -1,4 +1,4 @@
-//! The contents of the messages: they are what planners get.
+//! The contents of the messages. Samples have the values that the calls of planners return.
 
 use crate::support::{configuration, name, open, read_for, read_until, reader};
 use nalgebra::{Matrix3, Vector3};
@@ -199,8 +199,8 @@ fn events_status_and_object_arrive() {
     assert_eq!((first.lost(), second.lost()), ([0; 3], [0; 3]));
 }
 
-/// A reader that asks to attach waits for the next publication. If a fault occurs in this time, the
-/// reader receives its event.
+/// A reader that asks to attach waits for the next publication. If a fault occurs in this time, the reader receives the
+/// event of the fault.
 #[test]
 fn a_fault_while_a_reader_attaches_is_an_event() {
     let name = name("attaching");
@@ -216,9 +216,9 @@ fn a_fault_while_a_reader_attaches_is_an_event() {
     }
 }
 
-/// A servo writes a keyframe before the record of its cycle, and both may be collected at different times.
+/// A servo writes a keyframe before the record of its cycle, and the two may be collected at different times.
 #[test]
-fn a_keyframe_that_is_collected_before_its_cycle_is_published() {
+fn a_keyframe_is_published_even_if_it_is_collected_before_its_cycle() {
     let name = name("keyframes");
     let configuration = configuration(&name);
     let finger = &configuration.fingers[0];

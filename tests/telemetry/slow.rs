@@ -11,7 +11,7 @@ fn a_sleeping_reader_loses_cycles_and_counts_them_and_nobody_else_does() {
     let (mut slow, mut awake) = (reader(&name), reader(&name));
     let (mut of_slow, mut of_awake) = (Vec::new(), Vec::new());
     read_for(&mut slow, Duration::from_millis(200), &mut of_slow);
-    // One reader does not read for longer than the ring holds.
+    // For 8 s, only `awake` reads. The ring holds the messages of 2 s.
     for _ in 0..80 {
         read_for(&mut awake, Duration::from_millis(100), &mut of_awake);
     }

@@ -86,7 +86,7 @@ fn port_orders_and_end() {
 }
 
 #[test]
-fn the_end_of_its_input_does_not_end_it() {
+fn the_end_of_its_input_does_not_end_the_board() {
     let mut board = Board::start(&[]);
     let port = board.line();
     drop(board.orders.take());
@@ -97,7 +97,7 @@ fn the_end_of_its_input_does_not_end_it() {
 }
 
 #[test]
-fn defects_occur_while_it_runs_and_are_repaired() {
+fn defects_occur_while_the_board_runs_and_are_repaired() {
     let mut board = Board::start(&["--finger", "1", "--order", "cut 1 2"]);
     let port = board.line();
     let tensions = |board: &mut Board| numbers(&board.order("state 1"), "tensions", 4);
@@ -176,7 +176,8 @@ fn values_of_the_simulation_are_checked_although_the_file_names_a_port() {
     let (status, told) = run(text, "1");
     assert_eq!(status, Some(1), "{told}");
     assert!(told.contains("hand.toml:4: finger.1.simulation.rotor_inertia: "), "{told}");
-    // The other fingers of the file are on other boards. Only finger 1 names a port here, which a hand would refuse.
+    // A hand would refuse this file, because only finger 1 names a port. `sun2xp board` accepts it, because the other
+    // fingers of the file are on other boards.
     let (status, told) = run("[finger.1]\nport = '/dev/ttyUSB0'\n", "1");
     assert_eq!(status, Some(0), "{told}");
 }

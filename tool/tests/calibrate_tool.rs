@@ -151,7 +151,7 @@ fn a_finger_whose_stops_are_known_is_zeroed_against_them() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("measured minus configured range"), "{output:?}");
     assert!(!desk.unchanged());
 
-    // Other programs receive one JSON object, and a trial changes nothing.
+    // With --json, other programs receive one JSON object. With --dry-run, the file does not change.
     let stored = fs::read_to_string(desk.file()).expect("there");
     let output = desk.calibrate(&["--finger", "1", "--zero", "--json", "--dry-run"], "");
     assert_eq!(fs::read_to_string(desk.file()).expect("there"), stored);

@@ -114,7 +114,7 @@ fn a_terminal_has_colours_and_its_width_is_kept_and_a_pipe_has_neither() {
     assert!(shown.contains("\u{1b}[38;5;2mgood\u{1b}"), "{shown:?}");
     let bare = bare(&shown);
     assert!(bare.lines().all(|line| line.chars().count() <= 80), "{bare}");
-    // The advice of the kernel, if it has one, wraps in its own column.
+    // The first finding is about the kernel. If it has advice, the advice wraps in a column of its own.
     let column = bare.lines().next().and_then(|line| line.find("Linux")).expect("the kernel");
     let advice: Vec<&str> = bare.lines().skip(1).take_while(|line| line.starts_with(' ')).collect();
     assert!(advice.iter().all(|line| line.len() > column && line[..column].trim().is_empty()), "{bare}");
@@ -139,7 +139,7 @@ fn a_terminal_shows_a_bar_that_disappears() {
     assert!(result.contains("───") && !result.contains("| thread"), "{result}");
 }
 
-/// A person who starts the program with nohup closes the terminal. The program must stay.
+/// A person may start the program with nohup and then close the terminal. The program must continue.
 #[test]
 fn an_ignored_signal_stays_ignored() {
     let script = "trap '' HUP; exec \"$0\" monitor no-such-hand --web";
@@ -153,7 +153,7 @@ fn an_ignored_signal_stays_ignored() {
     };
     let bit = |signal: i32| 1u64 << (signal - 1);
     let begun = Instant::now();
-    // The program watches SIGTERM last.
+    // SIGTERM is the last signal for which the program installs a handler.
     while mask("SigCgt:") & bit(libc::SIGTERM) == 0 {
         assert!(begun.elapsed() < Duration::from_secs(60), "the program does not watch its signals");
         sleep(Duration::from_millis(5));

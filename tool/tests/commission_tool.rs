@@ -97,7 +97,7 @@ fn health_does_not_move_a_finger_with_an_open_fault() {
     );
 }
 
-/// The file is made for one finger, and gets a second one, each with the board that answers for it.
+/// The tool creates the file with one finger, and then adds a second finger. Each gets the board that answers for it.
 #[test]
 fn a_finger_that_the_file_does_not_have_is_added_with_its_board() {
     let desk = Desk(tempfile::tempdir().expect("a folder"));

@@ -101,7 +101,7 @@ fn the_report_is_readable_and_an_invalid_configuration_is_refused() {
     assert!(!told.contains('\u{1b}'), "{told}");
     assert!(told.ends_with("pass\n") || told.ends_with("fail\n"), "{told}");
 
-    // No controller can use the second text.
+    // No controller can run with the values of the second configuration.
     for text in ["[hand]\nrat = 1\n", "[finger.tendon]\nmaximum = 10\n"] {
         fs::write(&file, text).expect("written");
         assert_eq!(doctor(&file, &["--json"]), (Vec::new(), Some(1)), "{text}");

@@ -21,7 +21,7 @@ const NOBODY: u32 = 65534;
 /// A capability that most containers leave to root, so that a program can get it there too.
 const CAP_NET_BIND_SERVICE: u32 = 10;
 
-/// The file that such a program reads.
+/// The configuration file that a program with more privileges than its caller reads.
 const SYSTEM_FILE: &str = "/etc/xdg/sun2xp/sun2xp.toml";
 
 /// Held by one test at a time. A child that one test forks while another test copies a program inherits the open file,
@@ -30,7 +30,7 @@ static TURN: Mutex<()> = Mutex::new(());
 
 /// The tool twice, and the user who runs it.
 struct Programs {
-    /// Contains the programs, unless they are elsewhere. The user can read it.
+    /// Contains `raised`, and may contain `ordinary`. The user can read this folder.
     folder: TempDir,
     /// The tool with more privileges than its user.
     raised: PathBuf,
@@ -40,7 +40,7 @@ struct Programs {
     user: Option<u32>,
 }
 
-/// A tool that runs with another group than its caller. None if this user cannot make one.
+/// A tool that runs with a group other than that of its caller. None if this user cannot make one.
 fn setgid_tool() -> Option<Programs> {
     // The folder is not in /tmp, which may be mounted nosuid.
     let folder = tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a folder");
@@ -111,8 +111,8 @@ fn copied(program: &Path, place: &Path) -> PathBuf {
 
 /// Does what `setcap cap_net_bind_service+ep` does. The program setcap need not be installed.
 fn give_capability(program: &Path) -> io::Result<()> {
-    // The kernel's struct vfs_cap_data: its revision 2 with the effective bit, the permitted and the inheritable ones
-    // of the capabilities 0 to 31, and those of the capabilities from 32 up.
+    // The kernel's struct vfs_cap_data: revision 2 with the effective bit, then the sets of permitted and of
+    // inheritable capabilities, first for the capabilities 0 to 31 and then for those from 32 up.
     let attribute = [0x0200_0001, 1 << CAP_NET_BIND_SERVICE, 0, 0, 0].map(u32::to_le_bytes);
     let name = CString::new(program.as_os_str().as_bytes())?;
     // SAFETY: both names are C strings, and the value is readable for its size.
@@ -184,7 +184,8 @@ fn a_setgid_program_ignores_configurations_of_its_caller() {
     ignores_configurations_of_its_caller(setgid_tool);
 }
 
-/// The user and the group of a program with file capabilities are those of its caller. To compare them is not enough.
+/// The user and the group of a program with file capabilities are those of its caller. So a comparison of users and
+/// groups does not show that the program has more privileges.
 #[test]
 fn a_program_with_file_capabilities_ignores_configurations_of_its_caller() {
     ignores_configurations_of_its_caller(capable_tool);

@@ -36,7 +36,7 @@ fn a_hand_that_meets_its_deadlines() {
         "\n3       3        2           80      3.0 %       55 %      660 us   680 us  met\n",
         "\n3       3        2           80      8.0 %       65 %      760 us   830 us  met\n",
         "met up to 1454 Hz: above that, the line is too busy (thread 1)",
-        // 100 + 10 + 650 + 70 us.
+        // With the sensor, the longest cycle takes 100 + 10 + 650 + 70 = 830 us.
         "With the sensor, every deadline is met up to 1204 Hz: above that, a cycle may end too late (thread 1)",
     ] {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");

@@ -89,7 +89,7 @@ fn turned_encoders_and_loaded_gauges_are_shown() {
     let turned = |reading: &Value| (four(reading, "turns")[2] - 0.25).abs() < 0.02;
     let loaded = |reading: &Value| (four(reading, "tensions")[0] - 10.0).abs() < 0.2;
     let shown = (0..20).map(|_| sensors.reading()).find(|reading| turned(reading) && loaded(reading));
-    let shown = shown.expect("the motor and the weight are shown");
+    let shown = shown.expect("the turned encoder and the loaded gauge are shown");
     assert!([0, 1, 3].iter().all(|&motor| four(&shown, "turns")[motor].abs() < 0.02), "{shown}");
     assert!([1, 2, 3].iter().all(|&gauge| four(&shown, "tensions")[gauge].abs() < 0.5), "{shown}");
 }

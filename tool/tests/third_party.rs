@@ -8,7 +8,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace")
 }
 
-/// The crates that are linked to packages of the workspace.
+/// The crates that are linked into these packages of the workspace.
 fn linked(packages: &[&str]) -> BTreeSet<String> {
     let mut tree = Command::new(env!("CARGO"));
     tree.args(["tree", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}"]);
@@ -47,7 +47,7 @@ fn every_crate_that_is_linked_has_its_licence_in_the_list() {
 }
 
 #[test]
-fn every_other_crate_of_the_remote_service_is_in_a_list_of_its_own() {
+fn the_other_crates_of_the_remote_service_are_in_a_second_list() {
     let local = linked(&["sun2xp", "sun2xp-tool", "sun2xp-python"]);
     let remote = linked(&["sun2xp-serve", "sun2xp-remote-library"]);
     let others: BTreeSet<String> = remote.difference(&local).cloned().collect();

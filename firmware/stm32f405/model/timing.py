@@ -124,7 +124,7 @@ QUICK, IN_TIME, NO_LIMIT = (ALLOWED / MARGIN, ALLOWED), (ALLOWED, ALLOWED), (flo
 ROWS = [
     ("Command to Reply, typical", lambda cached: Bench(cached).reply_time(VALUES[0][0], 100), QUICK),
     (
-        "Command to Reply, longest over torques, torque constants and phases of the main loop",
+        "Command to Reply, the longest time found for different torques, torque constants and phases of the main loop",
         lambda cached: at_any_phase(cached, 0),
         QUICK,
     ),

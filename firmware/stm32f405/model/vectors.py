@@ -80,7 +80,7 @@ def noise():
         good = bytearray(wrap(0x11, any_byte.randrange(256), bytes([1, 1])))
         good[any_byte.randrange(len(good))] ^= 1 << any_byte.randrange(8)
         other = bytes(any_byte.randrange(256) for _ in range(any_byte.randrange(200)))
-        # A damaged frame may still be a good one with another delimiter. Answers to it are dropped here.
+        # By chance, these bytes may contain a good frame. Its answer is ignored.
         answer_of(board, bytes(good) if any_byte.random() < 0.5 else other)
         sequence = any_byte.randrange(256)
         frame = answer_of(board, b"\0" + wrap(0x11, sequence, bytes([1, 1])))

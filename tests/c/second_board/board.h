@@ -49,7 +49,7 @@ enum { MOTION_MOST = 2000000 };
 /* Handles one byte from the line. */
 void receive(struct board *board, uint8_t byte, int64_t now);
 
-/* Ends motion or hold when their time has expired. */
+/* Ends the motion when the watchdog has tripped, and a hold when its time has expired. */
 void watch_time(struct board *board, int64_t now);
 
 #endif

@@ -4,7 +4,7 @@
        second_board ADDRESS         a board on a pseudo-terminal, whose path is the first line of the output
        second_board --check PAGE    compares the hex examples of the page with the codec in frame.c
 
-   For each line on its standard input the board prints the true joint angles: three, rad. It ends when its standard
+   For each line on its standard input the board prints the three true joint angles, rad. It ends when its standard
    input ends, so that it does not outlive the program that started it. */
 
 #include "board.h"

@@ -7,7 +7,7 @@ static const double pulley = 4.75e-4;
 static const double stiffness = 30000.0;
 static const double rotor_inertia = 6e-7, rotor_damping = 2e-6;
 static const double joint_inertia[JOINTS] = {3.7e-4, 1.4e-4, 2.5e-5};
-/* More than a real finger has: it replaces the friction and the coupling that this model leaves out. */
+/* This damping is larger than that of a real finger. It replaces friction and coupling, which this model omits. */
 static const double joint_damping[JOINTS] = {2e-3, 2e-3, 2e-3};
 static const double gauge_range = 100.0;
 static const double start_degrees[JOINTS] = {0.0, 30.0, 60.0};

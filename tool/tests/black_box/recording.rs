@@ -133,7 +133,8 @@ fn opening_calibrating_and_closing_are_replayed() {
     assert!(calibrating.cycles.iter().any(|cycle| cycle.stage == "calibrating"));
     let calibrated = hand.recording(1).expect("a recording");
     let adopted = calibrated.origin.controllers.last().expect("a controller");
-    // Controller 0 opened the finger. The calibration computes with controller 1.
+    // Controller 0 opened the finger, and the calibration computed with controller 1, so the new values are in
+    // controller 2.
     assert!(adopted.number == 2 && adopted.gravity.norm() > 0.0, "{adopted:?}");
     for recording in [&opened, &calibrating, &calibrated] {
         let replayed = recording.replay().expect("replayable");

@@ -29,7 +29,8 @@ pub fn own_board(scheme: Scheme, folder: Option<&Path>) -> (SimulatedPort, Hand)
     (port, hand)
 }
 
-/// Only one hand runs at a time, because its servos and boards need the machine.
+/// Waits until no other test has a turn. Only one hand runs at a time, because its servos and boards need the whole
+/// machine.
 pub fn turn() -> MutexGuard<'static, ()> {
     pauses::name_pauses();
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());

@@ -117,7 +117,7 @@ impl Outcomes {
         };
         match catch_unwind(AssertUnwindSafe(run)) {
             Ok(outcome) => *self.0.entry(outcome).or_default() += 1,
-            Err(_) => panic!("it panicked with {}", what()),
+            Err(_) => panic!("the reading or the replay panicked with {}", what()),
         }
     }
 

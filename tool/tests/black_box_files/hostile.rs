@@ -79,7 +79,7 @@ fn invalid_configurations_make_no_controller() {
 }
 
 #[test]
-fn a_fade_ends_at_the_rest_torque() {
+fn a_fade_with_impossible_numbers_is_refused() {
     for (left, rest) in [(0.4, -1.0), (0.4, 1.1), (-0.1, 0.5), (1.1, 0.5)] {
         let told = refusal(&altered(|recording| {
             recording.cycles[8].control.as_mut().expect("computed").input.fading = Some(Fading { left, rest });
@@ -89,7 +89,7 @@ fn a_fade_ends_at_the_rest_torque() {
 }
 
 #[test]
-fn gravity_is_that_of_a_hand() {
+fn a_gravity_that_no_hand_has_is_refused() {
     let told = refusal(&altered(|recording| {
         let input = &mut recording.cycles[8].control.as_mut().expect("computed").input;
         input.gravity = Some([0.0, 0.0, 1e3].into());

@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-/// The program `sun2xp board`, which ends with this value.
+/// The program `sun2xp board`. It is killed when this value is dropped.
 pub struct Board(Child);
 
 impl Board {

@@ -1,6 +1,6 @@
 """Loads a model into MuJoCo. The standard input has poses and rates of the nine joints, in rad and rad/s, as JSON.
-Prints for each pose the positions of the three fingertips, m, the inertia matrix, kg m^2, and the torques of gravity
-and motion, N m."""
+Prints as JSON, for each pose, the positions of the three fingertips (m), the inertia matrix (kg m^2), and the torques
+of gravity and motion (N m). Also prints the stops, the actuators and the gravity of the model."""
 
 import json
 import sys
@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import mujoco
 import numpy
 
-# MuJoCo accepts files that are not XML.
+# MuJoCo also accepts files that are not well-formed XML, so this parser checks the file first.
 ElementTree.parse(sys.argv[1])
 model = mujoco.MjModel.from_xml_path(sys.argv[1])
 data = mujoco.MjData(model)

@@ -121,14 +121,14 @@ fn a_refused_or_failed_export_leaves_the_folder_as_it_was() {
         names.sort();
         names
     };
-    // The first event follows rows of the finger.
+    // The first event follows rows of the finger, so the tool has begun a file for them when it finds the old file.
     fs::write(path("finger-2-events.csv"), "old").expect("written");
     let output = folder.path().to_str().expect("a name");
     let refused = tool(folder.path(), &["export", recorded.file().to_str().expect("a name"), "--output", output]);
     assert_eq!(refused.status.code(), Some(2), "{refused:?}");
     assert_eq!(names(), ["finger-2-events.csv"]);
 
-    // The recording is damaged after rows of the finger.
+    // The damage follows rows of the finger, so the tool has begun a file for them when it finds the damage.
     fs::copy(recorded.file(), path("box.jsonl")).expect("copied");
     let recording = ["record", "--from-black-box", "box.jsonl", "-o", "hand.mcap"];
     done(folder.path(), &recording);
@@ -159,7 +159,7 @@ fn a_full_disk_is_named_with_the_folder() {
 
 /// Nobody reads the names of the files.
 #[test]
-fn work_that_is_done_is_a_success_whoever_reads_its_names() {
+fn finished_work_succeeds_even_if_nobody_reads_the_printed_names() {
     let recorded = recorded();
     let folder = tempfile::tempdir().expect("a folder");
     let file = recorded.file();
@@ -178,7 +178,8 @@ fn work_that_is_done_is_a_success_whoever_reads_its_names() {
     }
 }
 
-/// An export that returns has removed its files. The tool is held up by a full pipe until it is interrupted.
+/// An export removes its unfinished files when it returns, so a signal must not end the process at once. A full pipe
+/// stops the tool until it is interrupted.
 #[test]
 fn an_interrupted_export_returns() {
     let recorded = recorded();

@@ -13,7 +13,7 @@ use sun2xp::realtime::Priority;
 use sun2xp::simulated::{LineFault, Pace, SimulatedBoard, SimulatedPort};
 use tempfile::TempDir;
 
-/// Hz.
+/// Rate of the servos, Hz.
 const RATE: f64 = 500.0;
 
 /// A black box of finger 2 in a folder of its own.

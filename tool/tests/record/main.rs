@@ -59,7 +59,7 @@ fn wait_for(path: &Path, bytes: u64) {
     }
 }
 
-/// Checks that every cycle of every finger is there or marked.
+/// Checks that every cycle of every finger is in the recording, or is marked as lost.
 fn assert_complete(contents: &Contents) {
     for finger in 0..3 {
         let (cycles, lost) = (&contents.cycles[finger], contents.lost[finger]);
@@ -110,7 +110,7 @@ fn the_poses_of_the_object_become_a_table() {
     let rows: Vec<Vec<f64>> =
         rows.lines().map(|row| row.split(',').map(|field| field.parse().expect("a number")).collect()).collect();
     assert!(rows.len() > 5 && rows.iter().all(|row| row.len() == names.len()), "{table}");
-    // The times of both clocks increase alike, and the object rests where the hand reports it.
+    // Neither of the two clocks runs backwards, and the object rests where the hand reports it.
     assert!(rows.is_sorted_by(|one, next| one[0] <= next[0] && one[1] <= next[1]), "{table}");
     let last = rows.last().expect("a row");
     assert!((0..3).all(|axis| (last[2 + axis] - object.position[axis]).abs() < 0.01), "{last:?} {object:?}");
@@ -136,7 +136,7 @@ fn a_killed_recorder_loses_less_than_a_second() {
     let file = folder.path().join("hand.mcap");
     let mut recorder = start(record(&name, folder.path(), &["-o", "hand.mcap"]));
     wait_for(&file, 1_000_000);
-    // Killed at any phase between two chunks.
+    // The recorder may be killed at any time between the writing of two chunks.
     std::thread::sleep(Duration::from_millis(230));
     let newest: Vec<u64> = (1..=3).map(|finger| hand.report(finger).expect("report").losses.cycles).collect();
     recorder.kill().expect("killed");
@@ -220,7 +220,7 @@ fn python_reads_the_same_samples() {
     let contents = contents(&fs::read(&file).expect("the file"));
     assert_eq!(read["cycles"], serde_json::json!(contents.cycles.each_ref().map(Vec::len)));
     assert_eq!(read["description"]["name"], name.as_str());
-    // Every value of the last cycle of finger 1, as the message of telemetry has it.
+    // Every value of the last cycle of finger 1 must be the one in the message of telemetry.
     let last = contents.last[0].as_ref().expect("a sample");
     let sample = serde_json::to_value(last).expect("numbers");
     let fields = read["last"].as_object().expect("a message");
@@ -239,7 +239,8 @@ fn python_reads_the_same_samples() {
     assert!(fields.len() > 25, "{fields:?}");
 }
 
-/// Ten minutes of three fingers at 1000 Hz, with a planner that moves them. It takes so long that it is run on request.
+/// Ten minutes of three fingers at 1000 Hz, with a planner that moves them. The test takes so long that it runs only on
+/// request.
 #[test]
 #[ignore = "takes ten minutes"]
 fn ten_minutes_are_recorded_with_every_cycle() {

@@ -57,7 +57,7 @@ pub fn recorded() -> &'static Recorded {
     })
 }
 
-/// Attaches to the hand of this process. Other tests have hands too.
+/// Attaches to the hand of this process. Other test programs may have open hands too.
 fn reader_of_this_process() -> Reader {
     let names = telemetry::hands().expect("names");
     let mut readers = names.iter().filter_map(|name| Reader::attach(Some(name)).ok());

@@ -79,7 +79,7 @@ fn the_monitor_shows_a_hand_until_a_key_ends_it() {
     let _next = open("tmux-monitor");
     terminal.until(&["live", "finger 2 running"]);
     terminal.keys(&["q"]);
-    // The shell is back, and the terminal has its keys and its screen.
+    // The shell is back, and the terminal echoes keys and reads lines again.
     terminal.until(&["status 0"]);
     terminal.run("stty -a | tr ' ' '\\n' | grep -x -e echo -e icanon | tr '\\n' ' '");
     terminal.until(&["echo", "icanon"]);
@@ -110,7 +110,7 @@ fn jog_moves_and_pushes_the_simulated_hand() {
     terminal.keys(&["]", "]", "Right", "Right"]);
     terminal.until(&["finger 1: joints to 10.0, 30.0, 60.0 degrees"]);
     terminal.keys(&["]"]);
-    // Joint 0 ends at 60 degrees.
+    // The range of joint 0 ends at 60 degrees.
     terminal.keys(&["Right", "Right", "Right", "Right", "Right", "Right"]);
     terminal.until_words("is outside the limits of finger 1, -1.0472 to 1.0472 rad: send an angle within the limits");
     terminal.keys(&["2", "t", "Up"]);

@@ -9,7 +9,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// Pixels of the 3-D view, 64 x 48 of them, each from 0 to 765. The page has just drawn them.
+/// Waits until the page draws. Then returns the 64 x 48 pixels of the 3-D view, each as the sum of its three colours, 0
+/// to 765.
 const PICTURE: &str = r"
     const view = document.getElementById('hand3d');
     const copy = Object.assign(document.createElement('canvas'), { width: 64, height: 48 });

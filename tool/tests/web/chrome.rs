@@ -92,8 +92,8 @@ impl Browser {
         panic!("the page never does this: {body}")
     }
 
-    /// Presses keys, or moves and presses the mouse, as a person does: these are the sources of WebDriver actions. What
-    /// is pressed stays pressed until a later call releases it.
+    /// Presses keys, or moves and presses the mouse, as a person does. `sources` are the input sources of the WebDriver
+    /// command Perform Actions, each with its actions. What is pressed stays pressed until a later call releases it.
     pub fn act(&self, sources: &Value) {
         self.call("POST", &format!("{}/actions", self.session), &json!({ "actions": sources }));
     }

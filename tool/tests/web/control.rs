@@ -9,7 +9,7 @@ use std::net::TcpListener;
 use std::process::Command;
 use tempfile::TempDir;
 
-/// A hand that may be delayed for long.
+/// The configuration of a hand that tolerates long delays.
 const CONFIGURATION: &str = "
     [hand]
     watchdog_ms = 1000
@@ -85,7 +85,7 @@ fn a_page_with_the_token_moves_the_hand_and_its_push_ends_with_the_page() {
     wait_until(&mut open(&program), |angle| (angle - 0.2).abs() < 0.02);
 }
 
-/// A real hand tightens its tendons when it is opened.
+/// A real hand tightens its tendons when it is opened. If its page cannot be served, nothing may move.
 #[test]
 fn a_hand_whose_page_cannot_be_served_is_not_opened() {
     let taken = TcpListener::bind("127.0.0.1:0").expect("a free port");

@@ -153,7 +153,7 @@ fn connections_that_never_complete_their_header_leave_room_for_pages() {
         scope.spawn(|| {
             while !done.load(Ordering::Relaxed) {
                 thread::sleep(Duration::from_millis(500));
-                // The server closes the connections.
+                // The server closes the connections, so a write may fail.
                 slow.iter_mut().for_each(|stream| drop(stream.write_all(b"x")));
             }
         });

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 const AHEAD: usize = 20;
 
 #[test]
-fn a_page_that_does_not_acknowledge_gets_a_second_and_then_waits() {
+fn a_page_that_does_not_acknowledge_gets_the_batches_of_one_second_and_then_waits() {
     let (hand, name) = hand(|_| {});
     let program = Program::monitor(&name);
     let open = || Socket::open(program.address(), "/stream", &[]).expect("a socket");
@@ -35,8 +35,8 @@ fn a_page_that_does_not_acknowledge_gets_a_second_and_then_waits() {
     while message(&mut quick)["type"] != "gone" {}
 }
 
-/// The page acknowledges batches and reads none, until the server cannot write any more. The server would disconnect it
-/// ten seconds later, with its stop unread.
+/// The page acknowledges batches and reads none, until the server cannot write any more. A server that reads only after
+/// it has written would disconnect the page ten seconds later, without having read the stop.
 #[test]
 fn a_stop_is_carried_out_while_the_page_takes_no_message() {
     let (program, _folder) = control::jog(&["--control"]);
