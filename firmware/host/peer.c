@@ -154,8 +154,12 @@ int main(int count, char **arguments)
         finger_start(&fingers[number], &traits[number], (unsigned)number);
         number++;
     }
-    if (number == 0 || !open_line()) {
+    if (number == 0) {
         fprintf(stderr, "usage: peer ADDRESS..., with one to three addresses from 1 to 15 in rising order\n");
+        return 1;
+    }
+    if (!open_line()) {
+        perror("peer cannot open a pseudo-terminal");
         return 1;
     }
     board_start(&board, 0, fingers, number);
