@@ -107,7 +107,7 @@ fn a_small_stack_is_enough_for_every_call() {
 }
 
 #[test]
-fn a_call_that_was_jumped_out_of_completes() {
+fn a_call_completes_after_the_planner_has_jumped_out_of_it() {
     let bench = bench();
     let program = bench.build(c_compiler(), STRICT, &["jumped.c"]);
     // A call that never returns would hang the test.

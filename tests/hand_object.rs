@@ -125,7 +125,7 @@ fn fingers_that_are_not_opened_do_not_touch_the_object() {
 }
 
 #[test]
-fn a_hand_without_object_has_none() {
+fn the_object_of_a_hand_without_one_is_refused() {
     let fingers = Fingers::only(1).expect("finger 1");
     let hand = Hand::open_limp(Configuration::default(), None, fingers).expect("open");
     assert!(matches!(hand.object(), Err(HandError::NoObject)));

@@ -62,7 +62,7 @@ fn ellipses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
     for (panel, (case, pose)) in panels.iter().zip(subjects) {
         let finger = &case.finger(&pose, Friction::Default);
         let held = Held { case, finger, belief: finger, pose: &pose, kx: &kx, senses: Senses::Counts };
-        let Pushed { forces, deflections, .. } = statics::pushed_about(&held);
+        let Pushed { forces, deflections, .. } = statics::pushed_along_axes(&held);
         let found = fits::apparent_stiffness(&forces, &deflections);
         let degrees = pose.map(f64::to_degrees);
         let caption = format!("{} ({:.0}, {:.0}, {:.0})", case.controller(), degrees[0], degrees[1], degrees[2]);

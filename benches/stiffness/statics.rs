@@ -1,4 +1,5 @@
-//! Measurements for the table: a constant or slowly changing force pushes the tip, and its deflection is measured.
+//! Measurements for the table and the plots: a constant or slowly changing force pushes the tip, and the deflection of
+//! the tip is measured.
 
 use crate::cases::{Case, Friction, axes};
 use crate::closed_loop::{ClosedLoop, Held, Senses};
@@ -32,7 +33,7 @@ pub fn apparent_stiffness(case: &Case, senses: Senses) -> Fidelity {
 
 /// Measures the apparent stiffness of one tip for deflections of 1 mm.
 pub fn fidelity(held: &Held) -> Fidelity {
-    let Pushed { forces, deflections, scale } = pushed_about(held);
+    let Pushed { forces, deflections, scale } = pushed_along_axes(held);
     Fidelity { error: fits::spring_error(&forces, &deflections, &(held.kx * scale)), scale }
 }
 
@@ -49,7 +50,7 @@ pub struct Pushed {
 /// Pushes with the forces that deflect a spring Kx by 1 mm along every axis, in both directions.
 ///
 /// Both pushes of a pair have the same noise, so that most of it cancels in their difference. The rest is averaged.
-pub fn pushed_about(held: &Held) -> Pushed {
+pub fn pushed_along_axes(held: &Held) -> Pushed {
     const DEFLECTION: f64 = 0.1;
     let (settled, averaged) = if held.senses == Senses::Exact { (2.5, 0.5) } else { (1.0, 3.0) };
     let mut scales = 0.0;

@@ -10,7 +10,7 @@ REGISTER(value, 0xE000E018u);
 /* Processor clock, interrupt, on. */
 enum { CONTROL_RUN = 7 };
 
-/* SysTick counts 24 bits down to 0. */
+/* SysTick is a down counter of 24 bits. */
 enum { MOST_COUNTS = 1 << 24 };
 
 static uint32_t counts_per_microsecond, last_count;
@@ -22,7 +22,8 @@ static volatile uint32_t rounds;
 void systick_start(uint32_t megahertz)
 {
     counts_per_microsecond = megahertz;
-    /* The longest round that fits: 65 ms at 168 MHz. If a machine delays its emulator for longer, rounds are lost. */
+    /* The longest round that fits: 65 ms at 168 MHz. If the processor is emulated, and the host stops the emulator for
+       longer than a round, rounds are lost. */
     while (megahertz << (round_bits + 1) <= MOST_COUNTS)
         round_bits++;
     last_count = (megahertz << round_bits) - 1;

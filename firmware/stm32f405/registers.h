@@ -1,5 +1,6 @@
-/* The registers of the STM32F405 that this port uses, in the order and with the names of its reference manual, RM0090.
-   Numbers in comments are sections of that manual. The names of bits are the manual's names too.
+/* The registers of the STM32F405 that this port uses. Registers and bits have the names of the chip's reference manual,
+   RM0090. The registers of each struct are in the order of that manual. Numbers in comments are its sections, unless
+   another manual is named.
 
    These few definitions replace the vendor's header, which has more than 10 000 lines. A reader can compare each one
    with the manual. */

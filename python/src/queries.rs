@@ -14,7 +14,7 @@ const STAGES: [&str; CycleStage::ALL.len()] = ["wake_up", "write", "wire", "read
 
 #[pymethods]
 impl Hand {
-    /// The measured angles of joints 0, 1 and 2 of a finger, rad, at most one cycle old: shape (3,).
+    /// The measured angles of joints 0, 1 and 2 of a finger, rad, from the last cycle: shape (3,).
     fn position<'py>(
         &self,
         py: Python<'py>,
@@ -24,7 +24,7 @@ impl Hand {
         Ok(vector(py, &joints))
     }
 
-    /// Position, force and stiffness of a fingertip, and the tendon tensions, at most one cycle old.
+    /// Position, force and stiffness of a fingertip, and the tendon tensions, from the last cycle.
     fn tip<'py>(
         &self,
         py: Python<'py>,
@@ -85,7 +85,7 @@ impl Hand {
         records::losses(py, &losses)
     }
 
-    /// Measured and commanded joint torques of a finger, N cm, at most one cycle old.
+    /// Measured and commanded joint torques of a finger, N cm, from the last cycle.
     fn joint_torques<'py>(
         &self,
         py: Python<'py>,

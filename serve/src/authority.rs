@@ -4,6 +4,7 @@
 use crate::ServeError;
 use rcgen::KeyPair;
 use std::fs::{Metadata, metadata, symlink_metadata};
+use std::io;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use sun2xp::files::read_regular_file;
@@ -21,7 +22,8 @@ const LARGEST: u64 = 1 << 20;
 /// # Errors
 /// Returns an error if others can write there, or if it is not a folder.
 pub fn check_folder(folder: &Path, user: u32) -> Result<(), ServeError> {
-    let found = metadata(folder).map_err(|error| ServeError::certificate(folder, error))?;
+    let found = metadata(folder)
+        .map_err(|error| ServeError::certificate(folder, format!("cannot use the folder ({error}): choose another one")))?;
     if !found.is_dir() {
         return Err(ServeError::certificate(folder, "is not a folder: choose another one"));
     }
@@ -49,21 +51,25 @@ pub fn read(certificate: &Path, key: &Path, user: u32) -> Result<KeyPair, ServeE
         symlink_metadata(path).map_err(|error| ServeError::certificate(path, format!("{error}, {}", missing())))?;
     }
     check_key(key, user)?;
-    let text = read_regular_file(key, LARGEST).map_err(|error| ServeError::certificate(key, error))?;
+    let text = read_regular_file(key, LARGEST).map_err(|error| unreadable(key, &error))?;
     let pair = KeyPair::from_pem(&text).map_err(|error| {
         ServeError::certificate(
             key,
             format!("is not a private key in PEM: {error}. Restore it, or use an empty folder"),
         )
     })?;
-    let text = read_regular_file(certificate, LARGEST).map_err(|error| ServeError::certificate(certificate, error))?;
+    let text = read_regular_file(certificate, LARGEST).map_err(|error| unreadable(certificate, &error))?;
     check_certificate(&text, &pair).map_err(|reason| ServeError::certificate(certificate, reason))?;
     Ok(pair)
 }
 
+fn unreadable(file: &Path, error: &io::Error) -> ServeError {
+    ServeError::certificate(file, format!("cannot read the file ({error}): restore it, or choose an empty folder"))
+}
+
 fn check_key(key: &Path, user: u32) -> Result<(), ServeError> {
     // This inspects a link itself and not the file behind it, because a link can lead to the key of somebody else.
-    let found = symlink_metadata(key).map_err(|error| ServeError::certificate(key, error))?;
+    let found = symlink_metadata(key).map_err(|error| unreadable(key, &error))?;
     if !found.is_file() {
         return Err(ServeError::certificate(key, "is not a regular file: put the key of the authority itself there"));
     }

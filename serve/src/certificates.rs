@@ -10,9 +10,10 @@ use rcgen::{
     KeyPair, KeyUsagePurpose,
 };
 use std::fs::{DirBuilder, OpenOptions, remove_dir, remove_file};
-use std::io::Write;
+use std::io::{self, Write};
 use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
+use sun2xp::model::Shown;
 use sun2xp_remote_protocol::ClientName;
 use time::{Duration, OffsetDateTime};
 
@@ -25,14 +26,15 @@ const AUTHORITY_VALIDITY: Duration = Duration::days(3650);
 /// How long other certificates are valid.
 const VALIDITY: Duration = Duration::days(730);
 
-/// Largest difference between the clocks of two machines with which a new certificate is accepted at once.
+/// A machine accepts a new certificate at once if its clock is behind the clock of the machine that made the certificate
+/// by at most this time.
 const CLOCK_DIFFERENCE: Duration = Duration::days(1);
 
 /// The certificates to make.
 #[derive(Clone, Debug, Default)]
 pub struct Wanted {
-    /// Names of servers, hands and routers. Clients must reach each of them by its name, by one of `addresses`, or at
-    /// loopback.
+    /// Names of the servers of hands, and of routers. They obey the same rules as the names of clients. A client that
+    /// connects to one of them must use its name, one of `addresses`, or loopback.
     pub servers: Vec<ClientName>,
     /// Other names and addresses by which clients reach the servers.
     pub addresses: Vec<String>,
@@ -72,7 +74,7 @@ fn check_names(folder: &Path, wanted: &Wanted) -> Result<(), ServeError> {
     for name in named() {
         check_client(name).map_err(|reason| ServeError::certificate(folder, format!("\"{name}\": {reason}")))?;
         if name.as_str() == AUTHORITY {
-            return Err(ServeError::certificate(folder, "`ca` is the name of the authority: choose another name"));
+            return Err(ServeError::certificate(folder, "`ca` is the name of the authority's files: choose another name"));
         }
         if named().filter(|other| *other == name).count() > 1 {
             let reason = format!("{name} is named twice: give each certificate a name of its own");
@@ -96,7 +98,9 @@ fn make_files(folder: &Path, wanted: &Wanted, made: &mut Vec<PathBuf>) -> Result
     let user = effective_user()?;
     let mut builder = DirBuilder::new();
     let created = builder.recursive(true).mode(0o700).create(folder);
-    created.map_err(|error| ServeError::certificate(folder, error))?;
+    created.map_err(|error| {
+        ServeError::certificate(folder, format!("cannot make the folder ({error}): choose a place where you can write"))
+    })?;
     authority::check_folder(folder, user)?;
     let issuer = issuer(folder, user, made)?;
     for name in &wanted.servers {
@@ -143,6 +147,15 @@ fn leaf(
     issuer: &Issuer<'static, KeyPair>,
     made: &mut Vec<PathBuf>,
 ) -> Result<(), ServeError> {
+    if let Some(address) = addresses.iter().find(|address| CertificateParams::new(vec![address.to_string()]).is_err()) {
+        return Err(ServeError::Argument {
+            option: "--address",
+            text: Shown(address).to_string(),
+            reason: "a certificate can name only ASCII names and IP addresses: give the ASCII form of the name \
+                     (xn--...), or an IP address"
+                .into(),
+        });
+    }
     let [certificate, key] = files(folder, name.as_str());
     // A client's certificate must not pass as the certificate of a server. A server may connect to a router, so its
     // certificate is valid for a client too.
@@ -175,12 +188,16 @@ fn write(
     pair: &KeyPair,
     made: &mut Vec<PathBuf>,
 ) -> Result<(), ServeError> {
+    let unwritten = |path: &Path, error: io::Error| {
+        let remedy = "choose a folder in which you can write, on a disk with free space";
+        ServeError::certificate(path, format!("cannot write the file ({error}): {remedy}"))
+    };
     // Only the owner of the file may read a key.
     for (path, text, mode) in [(key, pair.serialize_pem(), 0o600), (certificate, signed.pem(), 0o644)] {
         let opened = OpenOptions::new().write(true).create_new(true).mode(mode).open(path);
-        let mut file = opened.map_err(|error| ServeError::certificate(path, error))?;
+        let mut file = opened.map_err(|error| unwritten(path, error))?;
         made.push(path.into());
-        file.write_all(text.as_bytes()).map_err(|error| ServeError::certificate(path, error))?;
+        file.write_all(text.as_bytes()).map_err(|error| unwritten(path, error))?;
     }
     Ok(())
 }

@@ -47,8 +47,10 @@ pub enum LinkError {
         request: Kind,
     },
     /// The board has no finger with this address.
-    #[error("the board at this port has no finger address {address}; it has {}: set finger.address to one that it has, \
-             or check finger.port", listed(*addresses))]
+    #[error(
+        "the board at this port has no finger address {address}; it has {}, or check finger.port",
+        present(*addresses)
+    )]
     WrongAddress {
         /// The requested address.
         address: u8,
@@ -94,7 +96,7 @@ impl LinkError {
         match self {
             LinkError::Port(error) => error.in_short(),
             LinkError::Silent { .. } => "nothing answers: check power and cable".into(),
-            LinkError::Unintelligible { .. } => "no valid frame: check the bit rate, and that it is a board".into(),
+            LinkError::Unintelligible { .. } => "no valid frame: check the bit rate, and that the device is a board".into(),
             LinkError::WrongVersion { lowest, highest } => {
                 format!("protocol versions {lowest} to {highest}, not {VERSION}: update board or library")
             }
@@ -120,12 +122,16 @@ impl LinkError {
     }
 }
 
-fn listed(addresses: u16) -> String {
+/// Lists the addresses that the board has, followed by the first part of the remedy.
+fn present(addresses: u16) -> String {
     let names: Vec<String> = (1..=HIGHEST_ADDRESS)
         .filter(|address| addresses & 1 << address != 0)
         .map(|address| address.to_string())
         .collect();
-    if names.is_empty() { "none at all".into() } else { names.join(", ") }
+    match names.is_empty() {
+        true => "none at all: update its faulty firmware".into(),
+        false => format!("{}: set finger.address to one that it has", names.join(", ")),
+    }
 }
 
 #[cfg(test)]
@@ -157,5 +163,12 @@ mod tests {
             let (before, remedy) = text.split_once(": ").expect("a remedy");
             assert!(before.starts_with(cause) && !remedy.is_empty() && text.len() <= 80, "{text}");
         }
+    }
+
+    #[test]
+    fn a_board_without_the_address_has_a_remedy_that_is_possible() {
+        let text = |addresses| LinkError::WrongAddress { address: 1, addresses }.to_string();
+        assert!(text(0b1100).contains("it has 2, 3: set finger.address to one that it has, or check finger.port"));
+        assert!(text(0).contains("it has none at all: update its faulty firmware, or check finger.port"));
     }
 }

@@ -92,7 +92,7 @@ pub(super) fn occupy() -> Vec<MutexGuard<'static, ()>> {
 
 /// Opens a hand at a free place. The caller has locked its lifecycle.
 fn open_at(place: usize, from: SourceWithIo, open_remote: RemoteOpener) -> Result<Handle, Refusal> {
-    process::watch(close_at_exit);
+    process::prepare(close_at_exit);
     let (hand, print_refusals) = opened_hand::open(from, open_remote)?;
     // If the process exits, this line returns an error, and the return drops the hand, which closes it. The exit
     // handler waits only briefly for this call, so it cannot be relied on to close this hand.

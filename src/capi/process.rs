@@ -11,7 +11,7 @@ static CLOSE: OnceLock<fn()> = OnceLock::new();
 
 /// Registers the handlers of fork and exit, and replaces closed standard descriptors. It must be called at every
 /// open, because a planner may have closed a descriptor since the previous open. The exit handler calls `close`.
-pub(super) fn watch(close: fn()) {
+pub(super) fn prepare(close: fn()) {
     replace_closed_standard_descriptors();
     // Handlers cannot be unregistered, so they are registered once.
     CLOSE.get_or_init(|| {

@@ -18,9 +18,12 @@ const PERMISSIONS: u32 = 0o777;
 /// Writes a file with the content that `write` gives. The new file replaces the file at `path`, if there is one.
 ///
 /// A reader sees either the complete old file or the complete new one, even after a power cut. If anything fails before
-/// the replacement, the old file stays unchanged. If the folder cannot be flushed afterwards, the call fails although
-/// the new file is in its place. The new file gets the permissions of the old one, and its owner and group if this
-/// process may set them.
+/// the replacement, the old file stays unchanged. If flushing the folder fails afterwards, the call fails although the
+/// new file is in its place. The call does not fail if the folder cannot be opened for reading, or if its file system
+/// cannot flush folders. A power cut can then undo the replacement.
+///
+/// The new file gets the permissions of the old one, and its owner and group if this process may set them. If it may not
+/// set the group, the new file's group gets at most the permissions that others have.
 ///
 /// Symbolic links are not followed. A caller that wants to replace the target of a link must resolve the link first.
 ///
@@ -75,7 +78,8 @@ pub struct NewFile {
 }
 
 impl NewFile {
-    /// Creates a file in the folder of `target`, to replace a file with the metadata `old`.
+    /// Creates a file in the folder of `target`. `old` is the metadata of the file that it will replace, if there is one.
+    /// The new file inherits permissions, owner and group from that file.
     ///
     /// # Errors
     /// Returns the error that the system reports.
@@ -150,7 +154,7 @@ impl Drop for NewFile {
 
 /// Creates a file under a name that an attacker cannot predict.
 fn create_unpredictable(folder: &Path, mode: u32) -> io::Result<(PathBuf, File)> {
-    create_under_free(folder, iter::repeat_with(unpredictable_name).take(ATTEMPTS), mode)
+    create_under_free_name(folder, iter::repeat_with(unpredictable_name).take(ATTEMPTS), mode)
 }
 
 /// Returns a name with 64 random bits.
@@ -160,7 +164,11 @@ fn unpredictable_name() -> String {
 }
 
 /// Creates a file under the first of `names` that is free in `folder`.
-fn create_under_free(folder: &Path, names: impl IntoIterator<Item = String>, mode: u32) -> io::Result<(PathBuf, File)> {
+fn create_under_free_name(
+    folder: &Path,
+    names: impl IntoIterator<Item = String>,
+    mode: u32,
+) -> io::Result<(PathBuf, File)> {
     let mut last = io::Error::from(ErrorKind::AlreadyExists);
     for name in names {
         let path = folder.join(name);

@@ -74,7 +74,7 @@ impl Hand {
         Ok(admission.tip(tip, &present)?.into())
     }
 
-    /// Returns the joint torques of finger 1, 2 or 3, at most one cycle old.
+    /// Returns the joint torques of finger 1, 2 or 3, from the last cycle.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted.

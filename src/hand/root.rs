@@ -161,7 +161,8 @@ impl Hand {
         self.opened
     }
 
-    /// Measured joint angles of finger 1, 2 or 3, rad, at most one cycle old.
+    /// Measured joint angles of finger 1, 2 or 3, rad, from the last cycle. While the servo thread does not run, the
+    /// angles stay those of its last cycle, and the skipped periods of [`Hand::status`] grow.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted.
@@ -179,7 +180,8 @@ impl Hand {
         self.dispatcher.last_report(finger)
     }
 
-    /// The duration of a stage of the cycles of finger 1, 2 or 3, since open or the last reset.
+    /// The distribution of the durations of one stage of the cycle ([`realtime::CycleStage`]), over all cycles of finger
+    /// 1, 2 or 3 since open or the last reset.
     ///
     /// # Errors
     /// Returns an error if there is no such finger.

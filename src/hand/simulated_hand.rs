@@ -58,12 +58,12 @@ impl SimulatedHand {
         separate.or_else(|| self.coupled.as_ref()?.path(finger))
     }
 
-    /// Calls `look` with a simulated finger. Returns `None` if the finger is not simulated.
-    pub fn with_finger<R>(&self, finger: FingerNumber, look: impl FnOnce(&mut SimulatedFinger) -> R) -> Option<R> {
+    /// Calls `act` with a simulated finger. Returns `None` if the finger is not simulated.
+    pub fn with_finger<R>(&self, finger: FingerNumber, act: impl FnOnce(&mut SimulatedFinger) -> R) -> Option<R> {
         match (&self.separate[finger.index()], &self.coupled) {
             // The board of a simulated finger has only this finger.
-            (Some(port), _) => port.with_board(|board| board.fingers().first_mut().map(look)),
-            (None, Some(ports)) => ports.with_finger(finger, look),
+            (Some(port), _) => port.with_board(|board| board.fingers().first_mut().map(act)),
+            (None, Some(ports)) => ports.with_finger(finger, act),
             (None, None) => None,
         }
     }

@@ -46,14 +46,14 @@ fn throughput_measures_every_finger_beside_other_work() {
     let rows = measure(&Arguments { seconds: 1, ..Arguments::default() }).expect("three fingers");
     for (finger, row) in (1..).zip(&rows) {
         let (rate, lost, ended) = row.as_ref().unwrap_or_else(|reason| panic!("finger {finger}: {reason}"));
-        println!("finger {finger}: {rate:.0} cycles a second, {lost} lost replies, {ended:?}");
+        println!("finger {finger}: {rate:.0} cycles a second, {lost} lost replies, ended early: {ended:?}");
         assert!(*rate > 100.0, "finger {finger}: {rate} cycles a second");
     }
     assert_eq!(rows.len(), 3);
 }
 
-/// A servo that never sleeps prevents the system from transporting bytes only if it has real-time priority. The test
-/// above does not find this defect where that priority is not permitted, and this test does.
+/// A servo with real-time priority that never sleeps prevents the system from transporting bytes. The test above does
+/// not find this defect where that priority is not permitted, and this test does.
 #[test]
 fn the_servos_sleep_until_the_fingers_are_under_control() {
     let clock = UnlimitedClock { phase: Arc::new(AtomicU8::new(OPEN)) };

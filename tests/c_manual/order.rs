@@ -1,4 +1,5 @@
-//! If several things are wrong with a call, the call must report the first in the order of its entry.
+//! If several things are wrong with a call, the call must report the errno that its entry in the manual lists before the
+//! others.
 
 use super::c::board::Board;
 use super::c::{Bench, STRICT, c_compiler, said};

@@ -1,4 +1,4 @@
-//! A pushed fingertip has the stiffness that the controller reports. This also holds near limits and for every contact.
+//! A pushed fingertip has the stiffness that the controller reports. This also holds near limits and for soft fingers.
 
 use super::rig::{Loop, SCHEMES, smooth};
 use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3, Vector4};
@@ -29,7 +29,7 @@ impl Held {
         held
     }
 
-    /// The tip at rest under the load and `push`, N, in cm.
+    /// Returns the position of the tip at rest, cm, under the load and the additional force `push`, which are in N.
     fn tip(&mut self, push: Vector3<f64>) -> Vector3<f64> {
         self.servo.plant.set_external_force(self.load + push);
         let follow = Activity::Follow(self.set_point);
@@ -82,14 +82,16 @@ fn a_stretched_finger_has_the_reported_part_of_its_stiffness() {
             let expected = if scheme == Scheme::Figure11 { 0.38..0.48 } else { 0.53..0.63 };
             assert!(expected.contains(&scale), "{scheme:?}, {law:?}: {scale}");
             assert!((reported - Matrix3::identity() * TWICE_THE_BOUND * scale).amax() < 1e-6, "{reported}");
-            // Without a gain on the tension error, the finger is slow to settle.
+            // Figure 11 does not feed the tension error back, neither by a gain nor by an integral. The finger is
+            // therefore slow to settle.
             let most = if scheme == Scheme::Figure11 { 0.06 } else { 0.02 };
             assert!(off(&measured, &reported) < most, "{scheme:?}, {law:?}: {measured} instead of {reported}");
         }
     }
 }
 
-/// A load bends joint 2 beyond its limit. At 6 N/cm the tip has the sum of Kx and of the spring of the limit.
+/// A load bends joint 2 beyond its limit. With a Kx of 6 N/cm, the stiffness of the tip is the sum of Kx and of the
+/// stiffness that the spring of the limit adds.
 #[test]
 fn a_finger_beyond_its_limit_has_the_reported_stiffness() {
     for scheme in SCHEMES {
@@ -131,8 +133,8 @@ fn beyond_its_limit(scheme: Scheme, law: Law, stiffness: f64, load: f64) -> (Hel
     (held, beyond)
 }
 
-/// Three joints turn the tip only by moving it. The rotational stiffness of a soft finger is an additional stiffness of
-/// the tip, and is reported as such.
+/// Three joints cannot turn the tip without moving it. The rotational stiffness of a soft finger therefore also makes
+/// the tip stiffer against motion in one direction. The reported stiffness contains this part.
 #[test]
 fn a_soft_finger_has_the_reported_stiffness() {
     let k = Matrix4::from_diagonal(&Vector4::new(3.0, 3.0, 3.0, 20.0));

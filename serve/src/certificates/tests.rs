@@ -115,6 +115,7 @@ fn what_was_made_is_removed_if_a_later_step_fails() {
     let below = folder.path().join("a").join("b");
     // This address cannot be in a certificate, and it is used only after the authority has been made.
     let wanted = Wanted { servers: names(&["cell"]), addresses: vec!["m\u{fc}ller".into()], clients: Vec::new() };
-    assert!(make(&below, &wanted).is_err());
+    let refused = make(&below, &wanted).expect_err("refused").to_string();
+    assert!(refused.starts_with("--address \"m\u{fc}ller\": ") && refused.contains("ASCII form"), "{refused}");
     assert_eq!(read_dir(folder.path()).expect("a folder").count(), 0);
 }

@@ -1,5 +1,5 @@
-//! Starts from an earlier state: continues it with another controller, or starts anew after the motors were off or
-//! replies were lost.
+//! How a controller begins when there is a state already: it continues the state of another controller, or it starts
+//! anew after the motors were off or replies were lost.
 
 use super::{Controller, Doing, State};
 use crate::control::signals::{Activity, Feedback, MotorCommand, Report, SetPoint};
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn an_adjustment_of_arms_or_gauges_is_no_contact() {
+    fn an_adjustment_of_moment_arms_or_gauges_is_no_contact() {
         assert!(!touches_after(|finger| finger.geometry.r.iter_mut().for_each(|joint| joint[0] *= 1.1), false));
         assert!(!touches_after(|finger| finger.gauge.zero[0] = 100.0, false));
     }

@@ -23,7 +23,8 @@ const DURATION: f64 = 0.004;
 #[derive(Clone, Debug)]
 pub(super) struct GaugeRange {
     ends: GaugeEnds,
-    /// Tension from which a tendon can pull its gauge to the end of the range, N.
+    /// If a gauge showed more than this tension, N, before it reached the end of its range, its tendon has pulled it
+    /// there.
     pulled: f64,
     /// Largest tolerated tension, N.
     highest: f64,
@@ -77,8 +78,8 @@ mod tests {
     use crate::control::signals::{Feedback, Report};
     use nalgebra::Vector4;
 
-    /// Watches a finger for 10 ms at each of these tensions of tendon 2. The counts of gauge 2 fall when the tension
-    /// rises, and `zero` is its zero.
+    /// Watches a finger for 10 ms at each of these tensions of tendon 2. Gauge 2 is a falling gauge: its counts fall when
+    /// the tension rises. `zero` is its zero.
     fn alarmed(zero: f64, tensions: &[f64]) -> Option<Symptom> {
         let mut finger = ConfiguredFinger::default();
         finger.gauge.newton_per_count[1] *= -1.0;

@@ -19,7 +19,7 @@ pub(crate) struct PulleyFeedForward {
     /// p s.
     fraction: Vector4<f64>,
     /// 1 / c, s/m.
-    per_creep: f64,
+    per_full_speed: f64,
     /// p e, s/m.
     slope: Vector4<f64>,
     /// Gain per cycle of the low-pass filter.
@@ -32,7 +32,7 @@ impl PulleyFeedForward {
     pub fn new(pulley: &Vector4<f64>, numbers: &Numbers, rate: f64) -> Option<Self> {
         (pulley.max() > 0.0 && numbers.pulley_share > 0.0).then(|| Self {
             fraction: pulley * numbers.pulley_share,
-            per_creep: numbers.pulley_creep.recip(),
+            per_full_speed: numbers.pulley_creep.recip(),
             slope: pulley * numbers.creep_slope,
             gain: -(-numbers.creep_bandwidth / rate).exp_m1(),
         })
@@ -46,7 +46,7 @@ impl PulleyFeedForward {
         (reference, speeds): (&Vector4<f64>, &Vector4<f64>),
         tensions: &Vector4<f64>,
     ) -> Vector4<f64> {
-        let moving = reference * self.per_creep;
+        let moving = reference * self.per_full_speed;
         // The finger lags a reference that brakes. This lag is not a creep.
         let at_rest = (1.0 - moving.amax()).max(0.0);
         *creep = (*creep + (speeds - *creep) * self.gain) * at_rest;

@@ -149,7 +149,7 @@ fn a_link_or_a_file_under_a_temporary_name_is_neither_followed_nor_written() {
     symlink("absent", place("dangling link")).expect("made");
     fs::hard_link(place("victim"), place("hard link")).expect("made");
     let taken = ["link", "dangling link", "hard link", "file"].map(String::from);
-    let create = |names: &[String]| create_under_free(folder.path(), names.to_vec(), 0o600);
+    let create = |names: &[String]| create_under_free_name(folder.path(), names.to_vec(), 0o600);
 
     let refused = create(&taken).expect_err("every name is taken");
     assert_eq!(refused.kind(), ErrorKind::AlreadyExists);

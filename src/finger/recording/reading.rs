@@ -14,7 +14,7 @@ use std::path::Path;
 /// Largest file, bytes. Two seconds at the highest rate take 13 MB, and a thousand controllers take 3 MB.
 const LARGEST: u64 = 1 << 26;
 
-/// Longest line of a cycle, bytes. The library writes about 1500.
+/// Longest line of a cycle, bytes. The library writes about 1300.
 const LONGEST_LINE: u64 = 1 << 16;
 
 /// Largest number of cycles. It is five times the number of cycles in two seconds at the highest rate.

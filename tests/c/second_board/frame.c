@@ -93,7 +93,8 @@ int from_wire(const uint8_t *stuffed, unsigned length, struct frame *frame)
                 return 0;
             frame->bytes[frame->length++] = stuffed[i++];
         }
-        /* The last distance leads to the end, which is not a zero of the frame. */
+        /* In COBS, each code is the distance to the next zero. The last code leads to the end of the frame, where no
+           zero is added. */
         if (i < length) {
             if (frame->length == FRAME_MAXIMUM)
                 return 0;

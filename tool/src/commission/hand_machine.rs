@@ -1,4 +1,4 @@
-//! A finger at its port.
+//! The machine of a commissioning that is a finger at its port.
 
 use super::machine::{AtRest, BoardSeen, Bound, Machine, Reading, Refused};
 use crate::calibrate::with_progress;
@@ -14,8 +14,8 @@ use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{BoardNumber, Configuration, ConfiguredFinger, EndState};
 use sun2xp::realtime::now;
 
-/// How long to wait for an answer of the board, ns.
-const HELLO: u64 = 1_500_000_000;
+/// Longest time that the handshake with the board takes, ns.
+const HANDSHAKE_TIMEOUT: u64 = 1_500_000_000;
 /// Time over which the measurements of a finger at rest are averaged, and interval of their samples.
 const RESTING: Duration = Duration::from_millis(600);
 const SAMPLING: Duration = Duration::from_millis(5);
@@ -46,8 +46,8 @@ impl HandMachine {
         configuration
     }
 
-    /// Opens the finger with its motors off, if it is not open.
-    fn limp(&mut self) -> Result<&Hand, HandError> {
+    /// Returns the open hand. If the hand is closed, this opens it with the motors off.
+    fn opened(&mut self) -> Result<&Hand, HandError> {
         let hand = match self.hand.take() {
             Some(hand) => hand,
             None => Hand::open_limp(self.released(), None, Fingers::ALL)?,
@@ -57,7 +57,7 @@ impl HandMachine {
 
     fn run(&mut self, task: Task) -> Result<Findings, Refused> {
         let finger = self.finger.get();
-        let hand = self.limp()?;
+        let hand = self.opened()?;
         let found = with_progress(hand, finger, task, "turning the motors");
         let calibrated = hand.calibrated(finger)?;
         let found = found.map_err(refused)?;
@@ -91,7 +91,7 @@ impl Machine for HandMachine {
         let mut link = Link::open(port, configured.baud)?;
         let terms = Terms::new(&configuration.hand, configured);
         let address = configuration.address(self.finger);
-        match link.shake_hands(address, &terms, now() + HELLO) {
+        match link.shake_hands(address, &terms, now() + HANDSHAKE_TIMEOUT) {
             Ok((identity, _)) => {
                 let number = BoardNumber(identity.unique_number);
                 let [major, minor, patch] = identity.firmware.0;
@@ -121,12 +121,13 @@ impl Machine for HandMachine {
 
     fn read(&mut self, seconds: f64) -> Result<Reading, Failure> {
         let finger = self.finger.get();
-        let hand = self.limp()?;
+        let hand = self.opened()?;
         // The first cycles of an open hand have no measurement yet.
         sleep(Duration::from_millis(100));
         let first = hand.record(finger, None)?.newest;
         sleep(Duration::from_secs_f64(seconds));
-        // A faulted finger has no new cycles, and its last one would look like parts that do not react.
+        // A faulted finger has no new cycles. Without this check, the error would be that measurements are missing, and
+        // would not name the fault.
         if let Some(fault) = hand.fault(finger)?.stopped {
             return Err(format!("finger {finger}: {fault}").into());
         }
@@ -138,11 +139,11 @@ impl Machine for HandMachine {
         // The black box may overwrite the oldest cycles meanwhile.
         let cycles: Vec<_> =
             (first..=kept.newest).filter_map(|cycle| hand.record(finger, Some(cycle)).ok()?.record.feedback).collect();
-        let number = cycles.len() as f64;
+        let count = cycles.len() as f64;
         if cycles.is_empty() {
             return Err("the board has sent no measurement".into());
         }
-        let mean = |of: &dyn Fn(usize) -> f64| (0..cycles.len()).map(of).sum::<f64>() / number;
+        let mean = |of: &dyn Fn(usize) -> f64| (0..cycles.len()).map(of).sum::<f64>() / count;
         let encoders = std::array::from_fn(|part| mean(&|cycle| f64::from(cycles[cycle].motor_counts[part])));
         let gauges: [f64; 4] = std::array::from_fn(|part| mean(&|cycle| f64::from(cycles[cycle].gauge_counts[part])));
         let square = |cycle: usize, part: usize| (f64::from(cycles[cycle].gauge_counts[part]) - gauges[part]).powi(2);
@@ -156,9 +157,9 @@ impl Machine for HandMachine {
 
     fn at_rest(&mut self) -> Result<AtRest, Failure> {
         let finger = self.finger.get();
-        let hand = self.limp()?;
+        let hand = self.opened()?;
         sleep(SETTLING);
-        let (mut sum, mut number, began) = (AtRest::default(), 0.0, Instant::now());
+        let (mut sum, mut count, began) = (AtRest::default(), 0.0, Instant::now());
         let add = |sum: &mut [f64], values: &[f64]| sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
         while began.elapsed() < RESTING {
             let tip = hand.fingertip(finger)?;
@@ -168,15 +169,15 @@ impl Machine for HandMachine {
             let cycle = hand.report(finger)?.cycle;
             add(&mut sum.intended, cycle.desired_tensions.as_slice());
             add(&mut sum.torques, cycle.motor_torques.as_slice());
-            number += 1.0;
+            count += 1.0;
             sleep(SAMPLING);
         }
         Ok(AtRest {
-            tip: sum.tip.map(|value| value / number),
-            force: sum.force.map(|value| value / number),
-            tensions: sum.tensions.map(|value| value / number),
-            intended: sum.intended.map(|value| value / number),
-            torques: sum.torques.map(|value| value / number),
+            tip: sum.tip.map(|value| value / count),
+            force: sum.force.map(|value| value / count),
+            tensions: sum.tensions.map(|value| value / count),
+            intended: sum.intended.map(|value| value / count),
+            torques: sum.torques.map(|value| value / count),
         })
     }
 

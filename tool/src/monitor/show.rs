@@ -52,7 +52,8 @@ pub fn show(
     } else {
         Palette::coloured()
     };
-    let mut screen = Screen::open(urgent).map_err(|error| format!("cannot use the terminal: {error}"))?;
+    let mut screen = Screen::open(urgent)
+        .map_err(|error| format!("cannot use the terminal: {error}. Run the command in a terminal, or use --web"))?;
     while !screen.ended() {
         view.now = now();
         take_news(view, source);
