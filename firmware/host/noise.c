@@ -207,10 +207,11 @@ int main(int count, char **arguments)
     board_start(&board, 0, fingers, FAKE_FINGERS);
     for (stream_number = 0; stream_number < streams; stream_number++)
         one_stream();
-    printf("%llu streams, %llu frames accepted, %llu answers, finger 1 was enabled at the end of %llu inputs\n", streams,
-           accepted, answered, enabled);
+    printf("%llu streams, %llu frames accepted, %llu answers, finger 1 was enabled at the end of %llu inputs\n",
+           streams, accepted, answered, enabled);
     if (answered == 0 || enabled == 0) {
-        fprintf(stderr, "%s: run more streams\n", answered == 0 ? "no frame was answered" : "finger 1 was never enabled");
+        const char *what = answered == 0 ? "no frame was answered" : "finger 1 was never enabled";
+        fprintf(stderr, "%s: run more streams\n", what);
         return 1;
     }
     return 0;

@@ -22,8 +22,9 @@ const LARGEST: u64 = 1 << 20;
 /// # Errors
 /// Returns an error if others can write there, or if it is not a folder.
 pub fn check_folder(folder: &Path, user: u32) -> Result<(), ServeError> {
-    let found = metadata(folder)
-        .map_err(|error| ServeError::certificate(folder, format!("cannot use the folder ({error}): choose another one")))?;
+    let found = metadata(folder).map_err(|error| {
+        ServeError::certificate(folder, format!("cannot use the folder ({error}): choose another one"))
+    })?;
     if !found.is_dir() {
         return Err(ServeError::certificate(folder, "is not a folder: choose another one"));
     }

@@ -26,8 +26,8 @@ const AUTHORITY_VALIDITY: Duration = Duration::days(3650);
 /// How long other certificates are valid.
 const VALIDITY: Duration = Duration::days(730);
 
-/// A machine accepts a new certificate at once if its clock is behind the clock of the machine that made the certificate
-/// by at most this time.
+/// A machine accepts a new certificate at once if its clock is behind the clock of the machine that made the
+/// certificate by at most this time.
 const CLOCK_DIFFERENCE: Duration = Duration::days(1);
 
 /// The certificates to make.
@@ -74,7 +74,7 @@ fn check_names(folder: &Path, wanted: &Wanted) -> Result<(), ServeError> {
     for name in named() {
         check_client(name).map_err(|reason| ServeError::certificate(folder, format!("\"{name}\": {reason}")))?;
         if name.as_str() == AUTHORITY {
-            return Err(ServeError::certificate(folder, "`ca` is the name of the authority's files: choose another name"));
+            return Err(ServeError::certificate(folder, "`ca` names the files of the authority: choose another name"));
         }
         if named().filter(|other| *other == name).count() > 1 {
             let reason = format!("{name} is named twice: give each certificate a name of its own");
@@ -147,7 +147,7 @@ fn leaf(
     issuer: &Issuer<'static, KeyPair>,
     made: &mut Vec<PathBuf>,
 ) -> Result<(), ServeError> {
-    if let Some(address) = addresses.iter().find(|address| CertificateParams::new(vec![address.to_string()]).is_err()) {
+    if let Some(address) = addresses.iter().find(|address| CertificateParams::new(vec![(*address).clone()]).is_err()) {
         return Err(ServeError::Argument {
             option: "--address",
             text: Shown(address).to_string(),

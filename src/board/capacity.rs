@@ -102,8 +102,8 @@ pub fn capacity(baud: u32, fingers: usize, rate: f64) -> Result<f64, TooFast> {
     if needed_us <= usable_us {
         return Ok(needed_us / period_us);
     }
-    // If the usable part of a period is not longer than the turnaround, this divides by zero. The conversion to an
-    // integer then gives the largest value.
+    // If the usable part of a period is not longer than the turnaround, `line_us` is zero and the division gives
+    // infinity. The conversion to an integer then gives the largest value.
     let line_us = (usable_us - turnaround_us).max(0.0);
     let exact_baud = ((command_bits + reply_bits) / line_us * 1e6).ceil() as u32;
     Err(TooFast {

@@ -28,7 +28,8 @@ const F_GETSIG: libc::c_int = 11;
 const MARK: libc::c_int = libc::SIGPWR;
 
 /// How many files of this library have had each descriptor number. The mark says only that a file belongs to this
-/// library. If other code closes a descriptor, its number may be given to another file that is opened here.
+/// library. If other code closes a descriptor, its number may be given to another file that is opened here. The count
+/// distinguishes these two files.
 static GENERATIONS: [AtomicU32; NUMBERED] = [const { AtomicU32::new(0) }; NUMBERED];
 
 /// Descriptor numbers below this one have a generation count. The system assigns the lowest free number, so only a
@@ -107,7 +108,7 @@ fn next_generation(number: RawFd) -> u32 {
 /// Returns the lowest number for our descriptors.
 fn lowest() -> RawFd {
     let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
-    // SAFETY: `limit` is writable. If the call fails, `limit` stays 0, and so does the result.
+    // SAFETY: `limit` is writable. If the call fails, `limit` stays 0, and this function returns 0.
     unsafe { libc::getrlimit(libc::RLIMIT_NOFILE, &mut limit) };
     // The soft limit of most systems is 1024.
     RawFd::try_from(limit.rlim_cur / BELOW.1 * BELOW.0).map_or(LOWEST, |below| below.min(LOWEST))

@@ -96,7 +96,9 @@ impl LinkError {
         match self {
             LinkError::Port(error) => error.in_short(),
             LinkError::Silent { .. } => "nothing answers: check power and cable".into(),
-            LinkError::Unintelligible { .. } => "no valid frame: check the bit rate, and that the device is a board".into(),
+            LinkError::Unintelligible { .. } => {
+                "no valid frame: check the bit rate, and that the device is a board".into()
+            }
             LinkError::WrongVersion { lowest, highest } => {
                 format!("protocol versions {lowest} to {highest}, not {VERSION}: update board or library")
             }

@@ -232,7 +232,7 @@ mod tests {
     /// The limits of threads belong to the calls that start one, and those of pseudo-terminals to the calls that open
     /// one.
     #[test]
-    fn no_port_is_explained_by_a_limit_of_threads_or_of_pseudo_terminals() {
+    fn no_error_of_a_port_is_explained_by_a_limit_of_threads_or_of_pseudo_terminals() {
         let path = PathBuf::from("/dev/port");
         for errno in [libc::EAGAIN, libc::ENOSPC] {
             let refused = || io::Error::from_raw_os_error(errno);

@@ -16,7 +16,8 @@ const COARSEST_UNIT: f64 = 0.01;
 /// uN m in one N cm.
 const MICRO_PER_CENTI: f64 = 1e4;
 
-/// The terms in physical units. [`Terms::configure`] converts them to a [`Configure`] with the board's [`Identity`].
+/// The terms in physical units. [`Terms::configure`] converts them to a [`Configure`] in the units that the board's
+/// [`Identity`] states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terms {
     /// Silence after which the board enters its end state, ms. If the board's shortest time is longer than this and at

@@ -1,4 +1,4 @@
-//! Means over a period of time.
+//! Mean values over a period of time.
 
 use nalgebra::Vector4;
 

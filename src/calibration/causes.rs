@@ -1,4 +1,4 @@
-//! Causes and remedies of a refusal that depend on what the finger did.
+//! Causes and remedies of a refusal. They depend on what the finger did.
 
 /// A joint does not follow when it is moved back and forth. The largest torque of this motion is fixed, so
 /// `zeroing.torque` does not affect it.

@@ -16,14 +16,14 @@ pub(super) struct JointGuide {
     pub anchor: Vector3<f64>,
     /// Motion of the anchor in this cycle, rad.
     moved: Vector3<f64>,
-    /// Filtered joint angles with the configured zero, rad.
+    /// Filtered joint angles, rad, computed with the configured zeros of the encoders.
     pub joints: Vector3<f64>,
     /// Filtered tensions, N.
     tensions: Vector4<f64>,
     /// Largest torque, N cm.
     limit: f64,
-    /// Common tension that is added to the tensions for the torques, N. This is its value in the tendon with the
-    /// smallest pretension.
+    /// Common tension that is added to the tensions for the torques, N. The field holds its value in the tendon with
+    /// the smallest pretension. The values in the other tendons are larger in proportion to their pretensions.
     pub common: f64,
 }
 

@@ -50,7 +50,7 @@ pub enum Obstacle {
         /// Change, N.
         newton: f64,
     },
-    /// A gauge is far from its configured zero although its tendon is slack.
+    /// A gauge is far from its configured zero although its tendon was let out and should be slack.
     #[error(
         "gauge {tendon} is {newton:.1} N from its configured zero with the motors off: its tendon is still under \
          tension, or the gauge is damaged. If the gauge was replaced, first set gauge.zero to its approximate \
@@ -124,7 +124,8 @@ pub enum Obstacle {
     JointBlocked {
         /// The joint, 0 to 2.
         joint: u8,
-        /// Whether the joint returns to its start. `zeroing.torque` affects only this motion.
+        /// Whether the joint was on the way back to its start. `zeroing.torque` affects the torque of this motion, but
+        /// not that of the motion back and forth.
         returning: bool,
     },
     /// The measurements do not determine a value, or the value is impossible.

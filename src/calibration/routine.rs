@@ -115,7 +115,8 @@ impl Calibration {
     }
 
     /// Runs one cycle with a measurement. Returns what the finger must do, and the state of the routine. Without an
-    /// activity the finger continues under its own controller. Must not be called again after `Found` or `Refused`.
+    /// activity the finger continues under its own controller. The caller must not call this function again after
+    /// `Found` or `Refused`.
     pub fn cycle(&mut self, sample: &Sample) -> (Option<Activity>, Verdict) {
         let (activity, verdict) = self.step(sample);
         self.in_charge |= activity.is_some();

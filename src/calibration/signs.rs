@@ -39,7 +39,7 @@ pub(super) struct SignSearch {
     newton_per_count: Vector4<f64>,
     /// Counts at the beginning, from which every distance is measured.
     start: Option<[i32; 4]>,
-    /// Distances from the beginning in the last cycle, cm.
+    /// Distances in the previous cycle, cm, measured from the counts at the beginning.
     last: Vector4<f64>,
     /// Low-pass filtered speeds, cm/s.
     speed: Vector4<f64>,
@@ -67,7 +67,7 @@ enum Phase {
         seconds: f64,
         /// N at the tendon.
         push: f64,
-        /// Distances from the beginning before the push, cm.
+        /// Distances before the push, cm, measured from the counts at the beginning.
         from: Vector4<f64>,
     },
     Pause {

@@ -35,8 +35,8 @@ impl StopSearch {
         self.start.map_or(0.0, |start| (guide.joints[self.joint] - start).abs())
     }
 
-    /// Runs one cycle of the motion. Returns the angle of the stop, rad with the configured zero, when the joint has
-    /// reached it.
+    /// Runs one cycle of the motion. When the joint has reached the stop, returns the angle of the stop, rad, computed
+    /// with the configured zeros of the encoders.
     pub fn step(
         &mut self,
         instruments: &Instruments,

@@ -118,7 +118,8 @@ impl Zeroing {
     }
 
     /// Runs one cycle of the current phase. A finger under control is read first. Then every method zeros the gauges.
-    /// Afterwards it zeros the encoders, in the configured pose or between the stops, or keeps their zeros.
+    /// Afterwards the methods differ: they zero the encoders in the configured pose or between the stops, or keep the
+    /// zeros of the encoders.
     pub fn step(&mut self, instruments: &mut Instruments, sample: &Sample) -> Stepped {
         match self.phase {
             Phase::Start => self.begin(instruments, sample),

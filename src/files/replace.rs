@@ -22,8 +22,8 @@ const PERMISSIONS: u32 = 0o777;
 /// new file is in its place. The call does not fail if the folder cannot be opened for reading, or if its file system
 /// cannot flush folders. A power cut can then undo the replacement.
 ///
-/// The new file gets the permissions of the old one, and its owner and group if this process may set them. If it may not
-/// set the group, the new file's group gets at most the permissions that others have.
+/// The new file gets the permissions of the old one, and its owner and group if this process may set them. If it may
+/// not set the group, the new file's group gets at most the permissions that others have.
 ///
 /// Symbolic links are not followed. A caller that wants to replace the target of a link must resolve the link first.
 ///
@@ -78,8 +78,8 @@ pub struct NewFile {
 }
 
 impl NewFile {
-    /// Creates a file in the folder of `target`. `old` is the metadata of the file that it will replace, if there is one.
-    /// The new file inherits permissions, owner and group from that file.
+    /// Creates a file in the folder of `target`. `old` is the metadata of the file that it will replace, if there is
+    /// one. The new file inherits permissions, owner and group from that file.
     ///
     /// # Errors
     /// Returns the error that the system reports.

@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 const HELD_MS: f64 = 3.0;
 
 /// Time after which the motor torques have reached their final values, ms. A torque without feedback winds a tendon up,
-/// or off its motor, within some milliseconds. The watchdog does not prevent that, because commands are still sent.
+/// or unwinds it from its motor, within some milliseconds. The watchdog does not prevent that, because commands are
+/// still sent.
 const FADED_MS: f64 = 10.0;
 
 /// Minimum number of lost replies in a row before the motor torques have reached their final values. [`FADED_MS`] is
@@ -117,7 +118,7 @@ impl LinkWatch {
         std::mem::take(&mut self.in_a_row) >= self.faded_at && !self.in_step()
     }
 
-    /// Notes a lost reply. Returns the number of lost replies in a row if it is a fault.
+    /// Notes a lost reply. Returns the number of lost replies in a row if it is so large that the finger must fault.
     pub fn missed(&mut self) -> Option<u32> {
         self.in_a_row += 1;
         (self.in_a_row >= self.fault_at).then_some(self.in_a_row)

@@ -84,7 +84,7 @@ impl Admission {
     pub fn contact(&self, contact: &Contact) -> Result<Matrix6<f64>, SetPointError> {
         let (bound, lever) = (self.stiffness_bound, self.links.0[2]);
         let largest = contact.largest_eigenvalue(lever);
-        // A stiffness at the bound that is sent as `float` may be rounded beyond the bound. It must be accepted.
+        // A stiffness at the bound may be rounded beyond the bound when it is sent as `float`. It must be accepted.
         if largest <= bound * (1.0 + 8.0 * f64::from(f32::EPSILON)) {
             return Ok(*contact.stiffness());
         }
@@ -127,7 +127,7 @@ impl DampingAdmission {
         let stiffness = self.largest(&set_point.stiffness)? + of_joints;
         let (least, most) = self.admissible.range(stiffness);
         let ratio = set_point.damping;
-        // A ratio at a limit that is sent as `float` may be rounded beyond the limit. It must be accepted.
+        // A ratio at a limit may be rounded beyond the limit when it is sent as `float`. It must be accepted.
         let rounding = f64::from(f32::EPSILON) * most;
         if !(least - rounding..=most + rounding).contains(&ratio) && self.out_of_range == OutOfRange::Refuse {
             return Err(SetPointError::Damping { finger, ratio, stiffness, least, most });

@@ -43,8 +43,8 @@ pub struct SearchedPort {
 
 /// Queries the identity of every finger at every port that the patterns name. Only a Hello is sent, which changes
 /// nothing on a board. A serial device that another program has open is not touched, if this user may see the open
-/// files of that program. Takes at most 160 ms for a port and a rate, and at most 100 ms more for each further finger
-/// of the board.
+/// files of that program. The search takes at most 160 ms for each bit rate at each port, and at most 100 ms more for
+/// each further finger of the board.
 ///
 /// `baud` are the bit rates to try at each port, bit/s. A * in the last part of a pattern stands for any text.
 pub fn search_boards(patterns: &[String], baud: &[u32]) -> Vec<SearchedPort> {
@@ -79,7 +79,7 @@ pub fn find_boards(configuration: &mut Configuration, fingers: Fingers) -> Resul
                     // A path that is not UTF-8 cannot be configured. Paths below /dev are ASCII.
                     configuration.fingers[finger.index()].port = path.to_string_lossy().into_owned();
                 }
-                // Fingers whose boards are at one port need one thread and one bit rate.
+                // This check refuses fingers at the same port with different threads or bit rates.
                 return Ok(check(configuration)?);
             }
             Err(error) if begun.elapsed() > PATIENCE => return Err(error),

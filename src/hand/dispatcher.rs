@@ -107,7 +107,7 @@ impl Dispatcher {
         Ok(self.member(finger)?.mailbox.report())
     }
 
-    /// The timing of a stage.
+    /// The distribution of the durations of one stage of the cycle.
     pub fn timing(&self, finger: FingerNumber, stage: CycleStage) -> Result<Distribution, HandError> {
         let mut collected = self.collected(finger)?;
         collected.collect();

@@ -8,8 +8,8 @@ use crate::model::configuration::Configuration;
 use std::collections::BTreeMap;
 use toml_edit::{Formatted, Item, Value};
 
-/// The keys that signs, zeros, friction and stiffness depend on. They say where the finger is connected, and how counts
-/// and torques are converted to angles and forces.
+/// The keys that signs, zeros, friction and stiffness depend on. These keys say where the finger is connected, and how
+/// counts and torques are converted to angles and forces.
 const HELD_BY_CALIBRATION: &[&str] = &[
     "port",
     "board",

@@ -1,5 +1,5 @@
-//! Root and Dispatcher (section 3 of the report): opens and closes a hand, reads its configuration, passes commands to
-//! the fingers and collects their reports.
+//! Root and Dispatcher (section 3 of the report). This module opens and closes a hand, reads its configuration, passes
+//! commands to the fingers and collects their reports.
 
 mod adjustment;
 mod admission;

@@ -11,8 +11,8 @@ impl Hand {
     /// configured ports of these fingers are ignored. `io` has the hardware of fingers 1, 2 and 3.
     ///
     /// # Errors
-    /// Returns the errors of [`Hand::open`]. Returns an error if the step of the tensions does not fit the configured
-    /// gauges.
+    /// Returns the errors of [`Hand::open`]. Returns an error if the step in which the hardware's tensions are stored
+    /// (`IoProperties::tension_unit`) does not fit the configured gauges.
     pub fn open_with_io(configuration: Configuration, io: HandIo) -> Result<Self, HandError> {
         Self::open_from(configuration, None, Fingers::ALL, Hardware::new(io), false, &|| true)
     }

@@ -1,5 +1,5 @@
-//! The steps of opening a hand before its servo threads start: checks the configuration, opens the ports and shakes
-//! hands with the boards.
+//! Does the part of opening a hand that comes before the start of its servo threads: checks the configuration, opens
+//! the ports and shakes hands with the boards.
 
 use crate::board::protocol::Status;
 use crate::board::{Connection, Link, Terms, capacity, tactile_requests};
@@ -31,7 +31,7 @@ const UNCOLLECTED: f64 = 0.8;
 /// A finger after the handshake. Its servo side is in a [`ServedPort`].
 pub(super) struct Reached {
     pub number: FingerNumber,
-    /// The planners' end.
+    /// The planners' end of the mailbox.
     pub mailbox: Mailbox,
     /// The checks of the planners' commands.
     pub admission: Admission,
@@ -49,9 +49,9 @@ pub(super) struct Reached {
 
 /// A hand after the handshakes.
 pub(super) struct Connected {
-    /// The servos' side.
+    /// The servos' side: the ports, with the servos of their fingers.
     pub lines: Vec<Line>,
-    /// The planners' side, in the order of the fingers.
+    /// The planners' side: an entry for each finger, in the order of the finger numbers.
     pub reached: Vec<Reached>,
     /// The gate that lets a group of set points take effect in the same period in every servo.
     pub gate: GroupGate,
@@ -133,7 +133,7 @@ pub(super) fn reach(
             boards.push(board);
         }
         let (handover, repair_end) = link_handover();
-        // A pseudo-terminal has no bit rate.
+        // A pseudo-terminal has no bit rate, so a TactileRequest for every finger fits into each period.
         let requests = match simulated.path(first) {
             Some(_) => sharing.len(),
             None => tactile_requests(baud, sharing.len(), configuration.hand.rate),
@@ -283,7 +283,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_a_board_that_keeps_a_longer_watchdog_is_announced() {
+    fn only_a_board_that_uses_a_longer_watchdog_is_announced() {
         assert_eq!(longer_watchdog(FingerNumber::TWO, 18, 18), None);
         let text = longer_watchdog(FingerNumber::TWO, 18, 20).expect("longer");
         assert!(

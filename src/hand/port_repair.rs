@@ -170,9 +170,9 @@ impl PortRepair {
         given
     }
 
-    /// Subtracts the repair of a finger that was given to the servo and that the servo has not taken. The servo has
-    /// released the link, and discards the finger. The repair of the link replaces the handshake of this finger.
-    /// `repairs` has the counts in the order of the boards.
+    /// Must be called after the servo has released the link. If a finger was given to the servo and the servo has not
+    /// taken it, subtracts the repair of this finger from its count: the servo discards the finger, and the repair of
+    /// the link replaces its handshake. `repairs` has the counts in the order of the boards.
     pub fn discard_given(&mut self, repairs: &[AtomicU32; FINGERS]) {
         if let Some(place) = self.given.take().filter(|_| !self.is_taken()) {
             repairs[place].fetch_sub(1, Ordering::Release);
@@ -226,9 +226,9 @@ impl KnownBoard {
             // reports the error of the program.
             let _ = link.stop(self.address, 0);
         } else {
-            // A board that never reports valid zeros has lost its counts exactly if it has lost its terms. The same is
-            // true of the readings of a board with tactile elements. It gets new terms below, so `restarts` keeps the
-            // finding for the next attempt.
+            // A board that never reports valid zeros has lost its counts exactly if it has lost its terms. A board with
+            // tactile elements has lost their readings exactly if it has lost its terms. The board gets new terms
+            // below, so `restarts` keeps the finding for the next attempt.
             let deadline = link.transport().now() + ANSWER;
             let status = link.confirmed_stop(self.address, deadline).map_err(|error| self.failed(error))?;
             self.restarts += u32::from(!status.has(Status::CONFIGURED));

@@ -156,7 +156,7 @@ impl Hand {
         Ok(hand)
     }
 
-    /// Returns the fingers that were opened. Calls for all fingers mean these.
+    /// Returns the fingers that were opened. Calls for all fingers apply to these fingers only.
     pub fn fingers(&self) -> Fingers {
         self.opened
     }
@@ -180,8 +180,8 @@ impl Hand {
         self.dispatcher.last_report(finger)
     }
 
-    /// The distribution of the durations of one stage of the cycle ([`realtime::CycleStage`]), over all cycles of finger
-    /// 1, 2 or 3 since open or the last reset.
+    /// The distribution of the durations of one stage of the cycle ([`realtime::CycleStage`]), over all cycles of
+    /// finger 1, 2 or 3 since open or the last reset.
     ///
     /// # Errors
     /// Returns an error if there is no such finger.

@@ -1,4 +1,4 @@
-//! Starts the servo threads, in real time as far as permitted and required.
+//! Starts the servo threads. They run in real time if the configuration asks for it and the system permits it.
 
 use crate::board::Connection;
 use crate::finger::{ServedPort, Servo};

@@ -23,7 +23,8 @@ struct Wanted<'a> {
 /// A path that a finger admits.
 struct AdmittedPath {
     plan: Plan,
-    /// The spring phase for which the path was computed, the period of its beginning, and its validity.
+    /// The number of the spring phase (`FingerReport::springs`) for which the path was computed, the period in which
+    /// the path begins, and the validity of the path.
     when: (u32, u64, Validity),
     damping: DampingAdmission,
 }
@@ -134,8 +135,8 @@ impl Hand {
         Ok(wanted)
     }
 
-    /// Sends commands and paths that were admitted. `changes` are the changes of the commands. No planner can change
-    /// the fingers between the first check and the last sending.
+    /// Sends commands and paths that were admitted. `changes` are the changes that the commands make to the set points.
+    /// No planner can change the fingers between the first check and the last sending.
     fn send_admitted<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
         &self,
         wanted: &[Wanted<'_>; FINGERS],

@@ -59,7 +59,7 @@ impl Waiting {
                 Stage::Opening => false,
                 Stage::Running => in_force && self.holds(report.arrival),
                 Stage::Faulted(_) => return Err(member.refusal(report.stage)),
-                // The fault of a later finger is reported instead.
+                // If a finger that follows in the list is faulted, its fault is reported instead of this refusal.
                 stage => {
                     refusal = refusal.or(Some(member.refusal(stage)));
                     false

@@ -32,12 +32,12 @@ impl Fingers {
         self.0[finger.index()]
     }
 
-    /// The numbers of the fingers, 1 to 3, in rising order.
+    /// Returns the numbers of the selected fingers, 1 to 3, in rising order.
     pub fn numbers(self) -> impl Iterator<Item = i32> {
         self.members().map(FingerNumber::get)
     }
 
-    /// Returns the fingers, in the order of their numbers.
+    /// Returns the selected fingers, in the order of their numbers.
     pub fn members(self) -> impl Iterator<Item = FingerNumber> {
         FingerNumber::ALL.into_iter().filter(move |&finger| self.contains(finger))
     }
@@ -63,7 +63,7 @@ impl From<Fingers> for Vec<FingerNumber> {
     }
 }
 
-/// As in a configuration file: `[1, 3]`.
+/// Writes the selection as it is written in a configuration file: `[1, 3]`.
 impl fmt::Display for Fingers {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         formatter.debug_list().entries(self.numbers()).finish()

@@ -74,8 +74,8 @@ impl Links {
     }
 
     /// Returns the rotation vector, rad, that turns the last link from its rotation at `from` to its rotation at `to`.
-    /// This vector is continuous in the joint angles. Beyond half a turn it is longer than pi, because the shorter
-    /// rotation to the same place has the opposite direction.
+    /// This vector is continuous in the joint angles. If the link turns by more than half a revolution, the vector is
+    /// longer than pi. A shorter rotation has the same result, but its vector has the opposite direction.
     pub fn rotation_between(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
         // A quaternion contains half of the angle, so its real part is negative beyond half a turn. `scaled_axis` would
         // return the shorter rotation.

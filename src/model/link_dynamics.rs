@@ -99,7 +99,7 @@ impl LinkDynamics {
         )
     }
 
-    /// Returns the momentum of the links at a pose.
+    /// Returns the inertia matrix at a pose and its derivatives, from which the momentum of the links follows.
     pub fn momentum(&self, theta: &Vector3<f64>) -> LinkMomentum {
         let pose = Pose::new(self, theta, &JointSines::of(theta));
         let (sin, cos) = (pose.s12 * pose.c1 - pose.c12 * pose.s1, pose.c12 * pose.c1 + pose.s12 * pose.s1);

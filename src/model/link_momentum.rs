@@ -17,7 +17,7 @@ pub struct LinkMomentum {
 }
 
 impl LinkMomentum {
-    /// Returns the momentum in another unit.
+    /// Returns the same quantities in another unit: each one is multiplied by `factor`.
     pub fn scaled(&self, factor: f64) -> Self {
         let Self { inertia, by_1, by_2, bend } = *self;
         Self { inertia: inertia * factor, by_1: by_1 * factor, by_2: by_2 * factor, bend: bend * factor }

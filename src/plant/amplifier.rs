@@ -11,7 +11,7 @@ pub(super) struct Amplifier {
     delay: f64,
     /// Time constant of the lag, s. Zero: no lag.
     lag: f64,
-    /// Commands of the dead time, the oldest first.
+    /// Commands that wait until their dead time has passed, the oldest first.
     waiting: VecDeque<Vector4<f64>>,
     /// Torques, N m.
     torques: Vector4<f64>,

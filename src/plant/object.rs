@@ -137,7 +137,7 @@ impl FreeObject {
         self.velocity
     }
 
-    /// Returns the velocity of the object's material at a place, m and m/s in the palm's frame.
+    /// Returns the velocity of the object's material at `place`, m/s. `place` is in m. Both are in the palm's frame.
     pub fn velocity_at(&self, place: &Vector3<f64>) -> Vector3<f64> {
         self.velocity + self.angular_velocity().cross(&(place - self.position))
     }

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wait_ends_at_its_deadline_and_a_notification_before_it_is_not_missed() {
+    fn a_wait_ends_at_its_deadline_and_a_notification_before_the_wait_is_not_missed() {
         let events = EventCount::default();
         let began = now();
         events.wait(events.prepare(), began + 5_000_000);

@@ -130,7 +130,7 @@ mod processor {
     }
 }
 
-#[cfg_attr(any(target_arch = "x86_64", target_arch = "aarch64"), allow(dead_code, reason = "tested here too"))]
+#[cfg_attr(any(target_arch = "x86_64", target_arch = "aarch64"), allow(dead_code, reason = "only tests use it"))]
 mod other {
     //! For other processors: C functions, which take ten times as long as direct access to the registers.
 
@@ -229,13 +229,13 @@ mod tests {
     #[test]
     fn a_thread_can_use_the_default_environment_for_good() {
         let nearest = third();
-        let inherited = std::thread::spawn(move || {
+        let thread = std::thread::spawn(move || {
             // SAFETY: the C function takes no pointer.
             unsafe { fesetround(UPWARD) };
             use_default_environment();
             // SAFETY: the C function takes no pointer.
             (third(), unsafe { fegetround() })
         });
-        assert_eq!(inherited.join().expect("no panic"), (nearest, 0));
+        assert_eq!(thread.join().expect("no panic"), (nearest, 0));
     }
 }

@@ -11,7 +11,8 @@ pub(super) fn wait(word: &AtomicU32, value: u32, limit: u64) -> bool {
         tv_nsec: (limit % 1_000_000_000) as libc::c_long,
     };
     let operation = libc::FUTEX_WAIT | libc::FUTEX_PRIVATE_FLAG;
-    // SAFETY: the word and the time limit are valid during the call. Every caller checks the word again.
+    // SAFETY: the word and the time limit are valid during the call. The wait may end early, so every caller checks its
+    // own condition again.
     unsafe { libc::syscall(libc::SYS_futex, word.as_ptr(), operation, value, &limit) == 0 }
 }
 

@@ -31,8 +31,9 @@ impl PlannerWatch {
         self.next_check = now() + CHECK_INTERVAL;
         if planner_has_ended() {
             // The exit handlers run, and the process ends with status 0, as it would after the end of its last thread.
-            // The handlers run in a new thread, because a handler may close the hand, and closing waits for the other
-            // threads of the library. If the system refuses the new thread now, a later check tries again.
+            // The handlers run in a new thread, because a handler may close the hand, and closing waits for the threads
+            // of the hand, one of which calls this function. If the system refuses the new thread now, a later check
+            // tries again.
             self.ending = spawn_alike("sun2xp exit", || exit(0)).is_ok();
         }
     }

@@ -1,8 +1,8 @@
 //! Periods with absolute deadlines.
 
-/// The times at which the cycles of a servo begin. They are whole multiples of `period` ns after the first, until
-/// [`Schedule::shift`] moves them. Errors do not accumulate, because these times do not depend on when the previous
-/// cycle ran.
+/// The times at which the cycles of a servo begin. Each of them is later than the first by a whole multiple of `period`
+/// ns, until [`Schedule::shift`] moves them. Errors do not accumulate, because these times do not depend on when the
+/// previous cycle ran.
 #[derive(Clone, Copy, Debug)]
 pub struct Schedule {
     next: u64,

@@ -133,7 +133,7 @@ mod tests {
     /// By hand: R_2 = 100 + 30 ceil((R_2 + 530 - 30)/1000). There is one cycle of the other thread, because 130 + 500 <
     /// 1000.
     #[test]
-    fn a_thread_that_waits_may_come_twice() {
+    fn a_thread_that_waits_may_delay_another_one_twice() {
         let other = thread(0, 90, 1000, [0, 10, 500, 20]);
         assert_eq!(done(&[other, thread(0, 80, 1000, [0, 100, 0, 0])]), [Some(530), Some(130)]);
         // 600 + 30 * 2, because 660 + 500 > 1000.
@@ -157,7 +157,7 @@ mod tests {
     fn sums_that_are_too_large_have_no_bound() {
         const TENTH: u64 = u64::MAX / 10;
         let longest = |priority, period, computing| thread(0, priority, period, [0, computing, 0, 0]);
-        // The window and the bound of the other thread are 12 tenths of the largest number together.
+        // The sum of the window and the bound of the other thread is 12 tenths of the largest number.
         let half = longest(80, u64::MAX - 1, 6 * TENTH);
         assert_eq!(done(&[half, half]), [None, None]);
         // Three cycles of the other thread come to 9 tenths.

@@ -125,7 +125,7 @@ mod tests {
     #[test]
     fn an_ignored_signal_is_known() {
         assert!(!is_ignored(libc::SIGWINCH) && !is_ignored(0));
-        // SAFETY: no function of the process runs at a signal that is ignored, and nothing else here uses this one.
+        // SAFETY: an ignored signal calls no handler, and nothing else in this process uses SIGWINCH.
         let before = unsafe { libc::signal(libc::SIGWINCH, libc::SIG_IGN) };
         assert!(is_ignored(libc::SIGWINCH));
         // SAFETY: the action is the previous one.

@@ -10,9 +10,9 @@ use std::io;
 use std::mem::MaybeUninit;
 use std::thread::{Builder, JoinHandle};
 
-/// Stack of a servo thread. It is many times what a servo cycle uses, but small, so that a planner that locks all of
-/// its memory (mlockall) locks little for this library. The bytes that the C library takes from the stack are added to
-/// this size.
+/// Stack of a servo thread, and of every other thread that [`spawn`] starts. It is many times what a servo cycle uses,
+/// but small, so that a planner that locks all of its memory (mlockall) locks little for this library. The bytes that
+/// the C library takes from the stack are added to this size.
 const STACK_BYTES: usize = 256 * 1024;
 
 /// Stack of a thread that runs a call on behalf of the planner's thread. Opening a hand needs more than 512 KiB.
@@ -116,7 +116,8 @@ impl LockedStack {
     /// Locks the whole stack of the calling thread, which also faults it in.
     ///
     /// # Errors
-    /// The system's error: EPERM without the right to lock, ENOMEM beyond the memlock limit.
+    /// Returns the system's error: EPERM if the process may not lock memory, ENOMEM if the stack exceeds the memlock
+    /// limit.
     pub fn lock() -> io::Result<Self> {
         let mut attributes = MaybeUninit::uninit();
         let (mut lowest, mut bytes) = (std::ptr::null_mut(), 0);
@@ -147,7 +148,8 @@ impl Drop for LockedStack {
     }
 }
 
-/// Faults in half of the stack of a thread that [`spawn`] has started. It is for stacks that cannot be locked.
+/// Faults in half of the stack of the calling thread, which must have been started by [`spawn`]. This function is for
+/// stacks that cannot be locked.
 #[inline(never)]
 pub fn touch_stack() {
     const PAGE: usize = 4096;
@@ -197,7 +199,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_thread_has_every_signal_blocked_and_its_starter_has_not() {
+    fn a_new_thread_blocks_every_signal_and_the_thread_that_starts_it_blocks_none() {
         let blocked = |signal| {
             let mut mask = MaybeUninit::uninit();
             // SAFETY: with a null new mask, the call only reads the current mask into `mask`.

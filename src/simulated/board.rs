@@ -121,7 +121,8 @@ impl SimulatedBoard {
         self.advance(now);
         // The physics advances in whole steps, so its time may be a fraction of a step behind.
         let now = self.time.unwrap_or(now);
-        // The bytes are decoded one frame at a time, because an answer reports the damaged frames before its request.
+        // The bytes are decoded one frame at a time, because an answer reports whether damaged frames arrived before
+        // its request.
         for mut piece in bytes.split_inclusive(|&byte| byte == DELIMITER) {
             let damaged = self.decoder.counters().damaged;
             let answer =

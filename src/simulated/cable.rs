@@ -37,7 +37,7 @@ impl SimulatedCable {
         self.line.inject(fault, probability, until, seed);
     }
 
-    /// Applies `fault` to frames to the board. The parameters are those of [`SimulatedCable::inject`].
+    /// Applies `fault` to each frame on its way to the board. The parameters are those of [`SimulatedCable::inject`].
     pub fn inject_to_board(&mut self, fault: LineFault, probability: f64, until: u64, seed: u64) {
         self.line_to_board.inject(fault, probability, until, seed);
     }

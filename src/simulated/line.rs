@@ -18,7 +18,7 @@ pub enum LineFault {
     Duplicate,
     /// A frame arrives after the one that follows it.
     Reorder,
-    /// No frame arrives until the fault ends. Then all of them arrive at once.
+    /// No frame arrives until the fault ends. Then all frames that were held up arrive at once.
     Stall,
 }
 

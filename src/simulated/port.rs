@@ -95,7 +95,7 @@ impl SimulatedPort {
         shared.line.inject(fault, probability, until, seed);
     }
 
-    /// Applies `fault` to each frame to the board, see [`SimulatedPort::inject`].
+    /// Applies `fault` to each frame on its way to the board. The parameters are those of [`SimulatedPort::inject`].
     pub fn inject_to_board(&self, fault: LineFault, probability: f64, time: u64, seed: u64) {
         let mut shared = self.shared.lock();
         let until = shared.time.saturating_add(time);

@@ -165,7 +165,7 @@ mod tests {
                 time.received(finger, true);
             }
         }
-        // The first command after the stagger may be up to a period late.
+        // The first command after the staggered start may be up to a period late.
         assert!(time.board >= before + 99 * MILLISECOND, "{} ns", time.board - before);
     }
 

@@ -1,14 +1,16 @@
-//! The set of plants for which a finger must be stable: plants that differ from the controller's model.
+//! The set of plants for which a finger must be stable: the plant of the controller's model, and plants that differ
+//! from it.
 
 use crate::model::configuration::ConfiguredSimulation;
 
 /// One in this many replies is lost: 5 %.
 const LOSS_INTERVAL: usize = 20;
 
-/// A plant that differs from the controller's model in one property, or a connection to the board that loses replies.
+/// A plant that equals the controller's model or differs from it in one property, or a connection to the board that
+/// loses replies.
 #[derive(Clone, Copy, Debug)]
 pub struct Variant {
-    /// The difference.
+    /// Name of the difference.
     pub name: &'static str,
     /// Changes the plant. The second argument is the period of the servo, ms.
     change: fn(&mut ConfiguredSimulation, f64),

@@ -42,7 +42,7 @@ impl Trial {
         in_parallel(samples, |sample| UNSUPPORTED * self.map.scale(&sample.with_isotropic(UNSUPPORTED)))
     }
 
-    /// Returns a sample with a spring whose largest eigenvalue is at most `stiffest`, N/cm.
+    /// Returns the finger of a sample at rest, with a spring whose largest eigenvalue is at most `stiffest`, N/cm.
     pub fn rest(&self, sample: &Sample, stiffest: f64) -> Rest {
         sample.at(stiffest, &self.links, |stiffness| self.admissible.range(stiffness))
     }

@@ -1,5 +1,5 @@
-//! If several things are wrong with a call, the call must report the errno that its entry in the manual lists before the
-//! others.
+//! If several things are wrong with a call, the call must report the errno that its entry in the manual lists before
+//! the others.
 
 use super::c::board::Board;
 use super::c::{Bench, STRICT, c_compiler, said};

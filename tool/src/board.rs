@@ -27,10 +27,12 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 #[derive(clap::Args)]
 #[command(after_long_help = manual::help())]
 pub struct Arguments {
-    /// The configuration of the simulated fingers. Without it every key has its default value. Its ports are ignored.
+    /// The configuration file of the simulated fingers. Without it, every key has its default value. The ports in the
+    /// file are ignored.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// A finger of the board, 1 to 3. May be repeated. Its address is its number unless the configuration sets another.
+    /// A finger of the board, 1 to 3. May be repeated. The address of a finger is its number, unless the configuration
+    /// sets another address.
     #[arg(
         long = "finger",
         value_name = "N",
@@ -237,7 +239,7 @@ fn rate(text: &str) -> Result<f64, String> {
 mod tests {
     use super::*;
 
-    /// Nobody may change the folder of a process in /proc.
+    /// No user, not even root, can add a link to a process's folder in /proc, or remove one from it.
     #[test]
     fn a_link_that_cannot_be_made_is_named_with_a_remedy() {
         for (link, begin) in [

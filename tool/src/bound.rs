@@ -107,7 +107,8 @@ struct FingerReport {
     finger: i32,
     /// The bound, or with `--passivity` the stiffness of the spring, N/cm.
     stiffness: f64,
-    /// The equal finger that the result comes from.
+    /// The number of the finger from which this result was taken, because the two fingers are equal. `None` if the
+    /// result was computed for this finger.
     same_as: Option<i32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     set: Option<SetBound>,
@@ -187,8 +188,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Stores a bound in the file, if a file is given, and then prints the bound. Returns how the printing ended: a reader
-/// that has closed the pipe must not cost the bounds of the remaining fingers.
+/// Stores a bound in the file, if a file is given, and then prints the bound. Returns the result of the printing
+/// separately: if the reader of standard output has closed the pipe, the bounds of the remaining fingers must still be
+/// found and stored.
 ///
 /// # Errors
 /// Returns an error if the bound cannot be stored.

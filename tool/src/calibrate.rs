@@ -95,7 +95,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         if !arguments.json {
             printed = printed.and(write!(io::stdout(), "{}", calibrated.text(&Screen::stdout())));
         }
-        // A reader that has closed the pipe must not cost the results of the remaining fingers.
+        // If the reader of standard output has closed the pipe, the remaining fingers are calibrated all the same. With
+        // --dry-run this would be useless, because their results are not stored.
         if arguments.dry_run && printed.is_err() {
             break;
         }
@@ -115,6 +116,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 enum Refused {
     /// Nobody is there to hold the finger.
     ByPerson(Failure),
+    /// [`Hand`] has refused the task.
     ByHand(HandError),
 }
 

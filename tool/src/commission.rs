@@ -57,15 +57,16 @@ const RETRIES: u32 = 3;
 /// Exit status: 0 if every step of this run has passed, 1 if one has not, 2 for wrong usage.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The configuration file. The tool writes the results into it, with comments. If it does not exist, the tool
-    /// searches for a board and creates it. If it does not have the finger, the tool searches for a board and adds it.
+    /// The configuration file. The tool writes the results into it, with comments. If the file does not exist, the tool
+    /// searches for a board and creates the file. If the file does not have the finger, the tool searches for a board
+    /// and adds the finger.
     #[arg(long, value_name = "FILE")]
     config: PathBuf,
     /// The finger.
     #[arg(long, value_name = "N", default_value = "1", value_parser = finger)]
     finger: FingerNumber,
-    /// Search for the board of a new file or finger at these ports. A * in the last part of the path stands for any
-    /// text. May be repeated. By default these are the ports of hand.search_ports.
+    /// If the configuration file does not have the finger yet, search for its board at these ports. A * in the last
+    /// part of the path stands for any text. May be repeated. By default these are the ports of hand.search_ports.
     #[arg(long = "port", value_name = "PATH")]
     ports: Vec<String>,
     /// Do this step, and no other, even if it has passed before. May be repeated.

@@ -69,7 +69,7 @@ pub fn complaints(configuration: &Configuration, duration: Duration) -> Result<V
     Ok(findings.into_iter().filter(|finding| finding.verdict > Rating::Good).map(line).collect())
 }
 
-/// One row for each finding, with the advice below what was found, and the verdict in the last line.
+/// Returns one row for each finding, with the advice below what was found, and then a line that says `pass` or `fail`.
 fn report(findings: &[Finding], pass: bool, screen: &Screen) -> String {
     let mut table = Table::without_header();
     for Finding { subject, verdict, found, advice } in findings {

@@ -116,7 +116,8 @@ impl Files<'_> {
         self.row(OBJECT, seconds, ",", &object_columns(object))
     }
 
-    /// Writes the values of one time. `place` has the finger and the cycle for the long format.
+    /// Writes the values that belong to one time. `place` contains the finger and the cycle. Only the long format needs
+    /// it.
     fn row(&mut self, key: i32, seconds: f64, place: &str, columns: &[Column]) -> Result<(), Failure> {
         if self.arguments.format == Format::Wide && !self.standard_output {
             let names = columns.iter().map(Column::full_name).collect::<Vec<_>>().join(",");

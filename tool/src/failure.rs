@@ -50,8 +50,8 @@ pub fn unwritable(path: &Path, error: &io::Error) -> Failure {
     format!("cannot write {}: {error}{}", ShownPath(path), write_remedy(error)).into()
 }
 
-/// The failure of a file that cannot be read. Other errors than these two need no remedy, because their texts already
-/// show what to change.
+/// The failure of a file that cannot be read. Only a missing file and a missing permission get a remedy, because the
+/// texts of other errors already show what to change.
 pub fn unreadable(path: &Path, error: &io::Error) -> Failure {
     let remedy = match error.kind() {
         ErrorKind::NotFound => ". Name an existing file",
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_without_permission_has_a_remedy_and_a_full_disk_tells_its_own() {
+    fn a_file_without_permission_has_a_remedy_and_a_full_disk_needs_none() {
         let text = |kind: ErrorKind| unwritable(Path::new("hand.toml"), &io::Error::from(kind)).to_string();
         let (denied, full) = (text(ErrorKind::PermissionDenied), text(ErrorKind::StorageFull));
         assert!(

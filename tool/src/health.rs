@@ -14,8 +14,7 @@ use sun2xp::model::FingerNumber;
 /// Measures a finger as `sun2xp commission` does, and compares the results with the results of commissioning: zeros,
 /// pretension, stiffness, friction. Names what to tension, replace or lubricate. Changes no file.
 ///
-/// The finger moves through its whole workspace, which must be free. The measurements take two to
-/// three minutes.
+/// The finger moves through its whole workspace, which must be free. The measurements take two to three minutes.
 ///
 /// Exit status: 0 if nothing has changed beyond its limit, 1 if something has, 2 for wrong usage.
 #[derive(clap::Args)]
@@ -27,7 +26,7 @@ pub struct Arguments {
     /// The finger.
     #[arg(long, value_name = "N", default_value = "1", value_parser = crate::commission::finger)]
     finger: FingerNumber,
-    /// Do not wait for Enter: the space around the finger is free, or a jig holds it in its pose.
+    /// Do not wait for Enter: the space around the finger is free, or a jig holds the finger in its zeroing pose.
     #[arg(long)]
     yes: bool,
     /// Print one JSON object with `healthy` and `findings`, for other programs. Implies --yes.

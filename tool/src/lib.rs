@@ -78,8 +78,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     run_script(arguments, None)
 }
 
-/// Runs the tool as [`run`] does. `script` is the file of the tool if this process is an interpreter that runs a
-/// script.
+/// Runs the tool as [`run`] does. If this process is an interpreter such as Python, `script` is the script with which
+/// it started the tool.
 pub fn run_script(arguments: impl IntoIterator<Item = OsString>, script: Option<&Path>) -> u8 {
     let parsed = command().try_get_matches_from(arguments).and_then(|matches| Arguments::from_arg_matches(&matches));
     let arguments = match parsed {

@@ -131,8 +131,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Passes the selected part of a recording to a plot. With `one_finger`, if no finger is
-/// selected, the first finger of the recording is selected.
+/// Passes the selected part of a recording to a plot. If `one_finger` is true and no finger is selected, selects the
+/// first finger of the recording.
 fn collect(file: &Path, selection: &mut Selection, one_finger: bool, plot: &mut dyn Plot) -> Result<(), Failure> {
     let mut start = trace::first_cycle(file)?;
     trace::read(file, "plot", &mut |item| {

@@ -21,8 +21,8 @@ pub struct Arguments {
     options: Vec<OsString>,
 }
 
-/// Runs the command. Does not return if the program starts, because the program takes the place of this one. `script`
-/// is the file of the tool if this process is an interpreter that runs a script.
+/// Runs the command. Does not return if sun2xp-serve starts, because it then takes the place of this program. `script`
+/// has the same meaning as in [`crate::run_script`].
 pub fn run(arguments: &Arguments, script: Option<&Path>) -> Result<ExitStatus, Failure> {
     let program = match script {
         Some(script) => beside(script),

@@ -91,7 +91,7 @@ pub type Visit<'a> = &'a mut dyn FnMut(Item) -> Result<(), Failure>;
 /// Reads a recording or a black box, and passes its items on. `what` names the work for the progress.
 ///
 /// # Errors
-/// Returns an error if the file is not a recording, or if `visit` does.
+/// Returns an error if the file is not a recording, if an entry cannot be read, or if `visit` returns an error.
 pub fn read(file: &Path, what: &str, visit: Visit) -> Result<(), Failure> {
     let progress = Progress::new(what, THOUSANDTHS);
     let reach = |part: f64| progress.reach((part * THOUSANDTHS as f64) as u64);
@@ -117,7 +117,7 @@ pub fn first_cycle(file: &Path) -> Result<Option<u64>, Failure> {
 }
 
 /// Reads a recording or a black box, and passes its items on. Returns the description of the hand, and whether the file
-/// has its end. Calls `reach` with the part of the file that has been read, 0 to 1.
+/// is complete. Calls `reach` with the part of the file that has been read, 0 to 1.
 ///
 /// # Errors
 /// Returns the errors of [`read`].

@@ -1,7 +1,7 @@
 //! The web page of `sun2xp monitor --web` and `sun2xp jog --web`: a server for browsers on this machine, or with a
-//! token for browsers on others.
+//! token for browsers on other machines.
 //!
-//! A thread reads the hand and publishes messages to the pages. It does not wait for them.
+//! A thread reads the hand and publishes messages to the pages. The thread does not wait for the pages.
 
 mod access;
 mod control;

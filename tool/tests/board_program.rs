@@ -109,7 +109,8 @@ fn defects_occur_while_the_board_runs_and_are_repaired() {
     }
     assert!(board.order("jam 1 7").starts_with("error"));
     // The default finger has no tactile elements.
-    assert_eq!(board.order("dead-element 1 0"), "error finger 1 has no part with this number");
+    let without_elements = "error finger 1 does not have the part that this order names: name a part that it has";
+    assert_eq!(board.order("dead-element 1 0"), without_elements);
     let answer = board.order("shove 1");
     let orders = ["force", "state", "cut", "drift-gauge", "mend", "drop", "commands", "unplug", "replug"];
     assert!(answer.starts_with("error there is no order shove: "), "{answer}");

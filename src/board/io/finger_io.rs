@@ -48,7 +48,7 @@ pub trait FingerIo: Send {
     fn stop(&mut self) -> io::Result<()>;
 }
 
-/// The hardware of fingers 1, 2 and 3. A finger without hardware has a port.
+/// The hardware of fingers 1, 2 and 3. With `None`, the finger uses the port or the board of its configuration.
 pub type HandIo = [Option<Box<dyn FingerIo>>; FINGERS];
 
 /// What the library must know before it starts the hardware. Later versions add fields, so end a value with

@@ -50,7 +50,7 @@ pub(super) struct Stroke {
     pub direction: usize,
 }
 
-/// Mean tensions of all motions, each in both directions.
+/// The mean tensions of every motion, separately for the way back and the way forth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JointFriction {
     strokes: [(Stroke, [Average; 2]); STROKES],

@@ -16,11 +16,11 @@ use nalgebra::{Matrix3x4, Vector3, Vector4};
 pub(super) const SIGNIFICANT: f64 = 0.01;
 /// Largest plausible difference, as a part of the largest moment arm of the joint.
 const LARGEST: f64 = 0.2;
-/// Largest plausible error of a joint's range with the configured moment arms, as a part of the range. A larger one
-/// means that something blocks the joint, or that its stops are not where they are configured.
+/// Largest plausible error of a joint's range that is computed with the configured moment arms, as a part of the range.
+/// A larger error means that something blocks the joint, or that its stops are not where they are configured.
 const RANGE: f64 = 0.08;
 
-/// Means of a finger at rest.
+/// Mean readings of a finger at rest.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rest {
     /// Motor travel, cm.

@@ -79,7 +79,8 @@ impl MotorFriction {
 mod tests {
     use super::*;
 
-    /// Solves for motors whose conduits have this friction, and whose pull equals the tension otherwise.
+    /// Solves for motors whose only friction is that of their conduits, `conduit`. Without friction, their commanded
+    /// pull would equal the tension.
     fn solved(conduit: f64) -> Result<MotorFrictionFound, Obstacle> {
         let mut friction = MotorFriction::new();
         for fit in &mut friction.fits {

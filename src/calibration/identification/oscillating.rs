@@ -26,7 +26,8 @@ const COUNTS: f64 = 10.0;
 /// The oscillation also stops growing when the amplitude of a tension reaches this part of the tension's mean. Then no
 /// tendon becomes slack.
 const SWING: f64 = 0.4;
-/// Largest amplitude of the commanded common tension as a part of its mean. Heavy rotors hardly follow the command.
+/// Largest amplitude of the commanded common tension as a part of its mean. It may exceed 1, because heavy rotors
+/// hardly follow the command.
 const LARGEST: f64 = 1.4;
 /// Growth of the amplitude of the commanded common tension from one period to the next, as a part of its mean.
 const GROWTH: f64 = 0.04;

@@ -112,8 +112,8 @@ impl Ranges {
         Ok(None)
     }
 
-    /// Presses the joints at rest against their lower stops with the full torque. Their measured angles drift while
-    /// another joint moves, because the moment arms are not known yet.
+    /// Presses the joints at rest against their lower stops with the full torque. Their anchors are set anew in every
+    /// cycle, because their measured angles drift while another joint moves: the moment arms are not known yet.
     fn press(&self, guide: &mut JointGuide) {
         let moving = match self.stage {
             Stage::ReadLower => None,

@@ -142,8 +142,8 @@ mod tests {
     const RADIUS: f64 = 0.0475;
     const INERTIA: f64 = 6e-7;
 
-    /// A motor whose travel is a sine with this amplitude, cm. `hidden` is the stiffness that the gauge does not see,
-    /// N/cm. `torque` is the true torque divided by the commanded one.
+    /// A motor whose travel is a sine with the amplitude `amplitude`, cm. `hidden` is the stiffness that the gauge does
+    /// not see, N/cm. `torque` is the true torque divided by the commanded one.
     #[derive(Clone, Copy)]
     struct Motor {
         amplitude: f64,

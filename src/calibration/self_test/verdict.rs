@@ -6,14 +6,15 @@ use crate::calibration::obstacle::Obstacle;
 use crate::model::LinkDynamics;
 use nalgebra::{Vector3, Vector4};
 
-/// A gauge is dead if it rises by less than this part of the usual rise. If the usual rise is less than this part of
-/// the expected one, most gauges are dead. This part of the expected rise is then used instead of the usual rise.
+/// All rises are compared as fractions of the expected rise. The usual rise is the mean of the middle two of the four
+/// gauges. A gauge is dead if its rise is less than this part of the usual rise. If the usual rise itself is less than
+/// this value, most gauges are dead, and this value replaces the usual rise in the comparison.
 const DEAD: f64 = 0.12;
 /// For each of two motors, take the response of the other motor's gauge minus the response of its own gauge, both
 /// divided by the largest response to this motor. The two gauges count as swapped if the sum of both differences
 /// exceeds this value. The sum is at most 2.
 const LEADING: f64 = 0.15;
-/// A gauge is reported if its scale differs from the usual scale by more than this fraction.
+/// A gauge is reported if its rise differs from the usual rise by more than this fraction: its scale is wrong.
 const SCALE: f64 = 0.13;
 /// Step of the prediction of a pulse, s. The links vibrate at frequencies up to 80 Hz.
 const STEP: f64 = 0.000_25;
@@ -156,6 +157,6 @@ mod tests {
             let found = judged(raised);
             assert!(matches!(found, Err(Obstacle::SilentGauge { gauge: 1, .. })), "{found:?}");
         }
-        assert!(judged(1.0).is_ok() && judged(0.3).is_ok(), "a common error of the scales");
+        assert!(judged(1.0).is_ok() && judged(0.3).is_ok(), "a common error of the scales was refused");
     }
 }

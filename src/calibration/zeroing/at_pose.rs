@@ -72,9 +72,9 @@ impl Zeroing {
         // The instruments have already subtracted the offsets of the gauges.
         let none = Vector4::zeros();
         let at_rest = reading.joints(instruments, &none);
-        // The zeros correct the error that the joint angles had during the swing. This reading gives only the common
-        // travel by which the motors have wound in all tendons. At the pretension this travel does not depend on the
-        // stiffness.
+        // The new zeros correct the error that the joint angles had during the swing. `reading` contributes only the
+        // common travel by which the motors have wound in all tendons. At the pretension this travel does not depend
+        // on the stiffness.
         let too_far = joints - self.pose;
         let zeros = reading.zeros(instruments, &none, &(at_rest - too_far), self.configured);
         Ok(Break(self.findings(instruments, zeros, too_far, None)))

@@ -22,7 +22,9 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// A reading while the tensions rise and fall. Motors may tremble then, and the means remove this motion.
+    /// Creates a reading while the tensions rise and fall. Motors may tremble then. The mean values of the reading are
+    /// free of this motion, so the check that the joints stand still filters it out with the longer time constant
+    /// [`SWINGING`].
     pub fn swinging() -> Self {
         Self { standstill: Standstill::new(SWINGING), ..Self::default() }
     }
@@ -53,8 +55,8 @@ impl Reading {
         self.tensions.mean()
     }
 
-    /// Returns the joint angles with the configured zero, rad. `offset` is the error of the measured tensions, N, which
-    /// was determined after the reading.
+    /// Returns the joint angles, rad, computed with the configured zeros of the encoders. `offset` is the error of the
+    /// measured tensions, N, which was determined after the reading.
     pub fn joints(&self, instruments: &Instruments, offset: &Vector4<f64>) -> Vector3<f64> {
         instruments.joints(&self.travel.mean(), &(self.tensions() - offset))
     }

@@ -1,4 +1,5 @@
-//! Decides whether a finger touches something: thresholds with hysteresis, and the slowly varying error of the torques.
+//! Decides whether a finger touches something, by thresholds with hysteresis. Before the comparison with a threshold,
+//! the slowly varying error of the torques is subtracted. This error is learned while the finger touches nothing.
 
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;

@@ -21,7 +21,7 @@ pub struct ContactEstimate {
 }
 
 impl ContactEstimate {
-    /// Returns the force of the fingertip on its surroundings, N, in the finger's frame: what planners get.
+    /// Returns the force of the fingertip on its surroundings, N, in the finger's frame. Planners get this force.
     pub fn force_on_surroundings(&self) -> Vector3<f64> {
         -self.force
     }

@@ -5,9 +5,9 @@
 //!
 //! p_dot = R t + C^T theta_dot + g - friction + external torques.
 //!
-//! R has the moment arms of the tendons, t the tensions, C the Coriolis terms, and g is the torque of gravity. The
-//! residual r follows r_dot = K (external torques - r). It is computed without the acceleration of the joints and
-//! without an inversion of H:
+//! R is the matrix of the moment arms of the tendons, t are the tensions, C are the Coriolis terms, and g is the torque
+//! of gravity. The residual r follows r_dot = K (external torques - r). It is computed without the acceleration of the
+//! joints and without an inversion of H:
 //!
 //! r = K (p - integral of (R t + C^T theta_dot + g - friction + r)).
 //!

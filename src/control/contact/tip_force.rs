@@ -27,7 +27,7 @@ pub(super) struct TipForce {
 }
 
 impl TipForce {
-    /// Returns the force map at joint angles `theta`, rad. Near a singular pose the inverses are damped ones.
+    /// Returns the force map at joint angles `theta`, rad. Near a singular pose the inverses are damped.
     pub fn at(links: &Links, theta: &Vector3<f64>) -> Self {
         let [l0, l1, l2] = links.0;
         let (s0, c0) = theta[0].sin_cos();

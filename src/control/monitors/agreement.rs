@@ -1,7 +1,7 @@
 //! Compares gauges with encoders. Three joint angles determine the travel of four tendons, so four motor angles and
-//! four tensions are redundant by one. R has the moment arms of the tendons, r the motor radii, m the motor angles, t
-//! the tensions, t_home the tensions at which the encoders are zeroed, and k the stiffnesses of the tendons. For n with
-//! R n = 0,
+//! four tensions are redundant by one. R is the matrix of the moment arms of the tendons, r are the motor radii, m the
+//! motor angles, t the tensions, t_home the tensions at which the encoders are zeroed, and k the stiffnesses of the
+//! tendons. For n with R n = 0,
 //!
 //! n^T (r m - (t - t_home) / k) = 0
 //!
@@ -9,8 +9,8 @@
 //!
 //! t = k (r m - R^T theta) + t_home.
 //!
-//! The difference at the start of monitoring counts as zero, because encoders that were never zeroed are no reason to
-//! stop a finger.
+//! The left side of the first equation, converted to N, is the difference between gauges and encoders. The difference
+//! at the start of monitoring counts as zero, because encoders that were never zeroed are no reason to stop a finger.
 //!
 //! On a real finger the difference also changes without a fault. Wrong stiffnesses, gauge gains and moment arms change
 //! it in proportion to tensions and joint angles; `mismatch` learns by how much, and what it does not know yet is
@@ -166,7 +166,7 @@ impl Agreement {
         let expected = self.friction * self.of_tension.dot(&(tensions + memory.tensions));
         let friction = mismatch.friction(expected);
         let (explained, deviation) = mismatch.explained(&terms);
-        memory.difference = left(disagreement, explained);
+        memory.difference = unexplained(disagreement, explained);
         let tolerated = self.tolerance + friction + DEVIATIONS * deviation;
         let hanging = memory.difference < 0.0 && hangs;
         memory.ratio = if hanging { 0.0 } else { memory.difference.abs() / tolerated };
@@ -174,7 +174,7 @@ impl Agreement {
         // tendon is left out.
         memory.missing = Vector4::from_fn(|tendon, _| {
             let by_others = explained - mismatch.explained_by(tendon, &terms);
-            left(disagreement, by_others) / self.of_tension[tendon]
+            unexplained(disagreement, by_others) / self.of_tension[tendon]
         });
         memory.by_friction = self.of_tension.map(|weight| expected / weight);
         if !hangs && memory.ratio <= 1.0 {
@@ -202,7 +202,7 @@ impl Agreement {
 
 /// Returns the part of a disagreement that is not explained. What is learned may reduce a disagreement, but must not
 /// cause one.
-fn left(disagreement: f64, explained: f64) -> f64 {
+fn unexplained(disagreement: f64, explained: f64) -> f64 {
     (disagreement - explained).clamp(disagreement.min(0.0), disagreement.max(0.0))
 }
 

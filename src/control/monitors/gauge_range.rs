@@ -78,8 +78,8 @@ mod tests {
     use crate::control::signals::{Feedback, Report};
     use nalgebra::Vector4;
 
-    /// Watches a finger for 10 ms at each of these tensions of tendon 2. Gauge 2 is a falling gauge: its counts fall when
-    /// the tension rises. `zero` is its zero.
+    /// Watches a finger for 10 ms at each of these tensions of tendon 2. Gauge 2 is a falling gauge: its counts fall
+    /// when the tension rises. `zero` is its zero.
     fn alarmed(zero: f64, tensions: &[f64]) -> Option<Symptom> {
         let mut finger = ConfiguredFinger::default();
         finger.gauge.newton_per_count[1] *= -1.0;

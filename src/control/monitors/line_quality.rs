@@ -1,6 +1,7 @@
 //! Fraction of the recent periods that failed: their reply was lost or damaged, or they were skipped.
 
-/// A mean in which old periods fade: after one window, the weight of a period has fallen to 1/e.
+/// The mean of the failed fractions of the periods. Old periods fade: after one window, the weight of a period has
+/// fallen to 1/e.
 #[derive(Clone, Copy, Debug)]
 pub struct LineQuality {
     gain: f64,

@@ -29,8 +29,8 @@ const GONE: f64 = 0.1;
 /// tendons or with inexact parameters.
 const MISSED: f64 = 0.3;
 
-/// If the mean of the missing tension (see [`MISSED`]) is positive, the rise of the missing tension must be larger
-/// by this fraction of the mean. A positive mean shows that the configuration indicates too much stretch. The
+/// If the mean of the missing tension (see [`MISSED`]) is positive, the rise from which tension counts as missing is
+/// larger by this fraction of the mean. A positive mean shows that the configuration indicates too much stretch. The
 /// configuration indicates even more stretch when the tensions of the other tendons rise.
 const INEXACT: f64 = 0.5;
 
@@ -50,7 +50,7 @@ const DURATION: f64 = 0.012;
 /// Time after which a low tendon has lost its tension, s. No motion keeps an intact tendon slack for so long.
 const TOO_LONG: f64 = 0.5;
 
-/// Time for which tension must be gone for a warning, s.
+/// Time for which the tension of a tendon must be gone before a warning is given, s.
 const NOTICED: f64 = 0.003;
 
 /// A gauge that flickered is dead if it has shown one count since its tendon became low, in at least this number of

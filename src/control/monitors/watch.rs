@@ -52,7 +52,7 @@ impl Watch {
     }
 
     /// Restarts the monitors after replies were lost for so long that the controller restarts. The time for which the
-    /// motors have been hot continues, because windings do not cool in the few milliseconds of such a loss.
+    /// motors have been hot is kept, because windings do not cool in the few milliseconds of such a loss.
     pub fn resume(&mut self) {
         *self = Self { motor_heat: self.motor_heat, ..Self::default() };
     }

@@ -13,7 +13,7 @@ use crate::control::motion::Motion;
 use crate::control::spring::slew::Slew;
 use nalgebra::Vector3;
 
-/// Least period of the planner, s. A shorter period acts as this one. The acceleration and the jerk of a step are fed
+/// Least period of the planner, s. This period replaces a shorter one. The acceleration and the jerk of a step are fed
 /// forward. If a far step were completed within a few milliseconds, they would demand more than the largest tension.
 const LEAST_TIME: f64 = 0.01;
 
@@ -120,7 +120,7 @@ impl Interpolation {
         (joints, Some(motion))
     }
 
-    /// Returns the period with which a new step does not end before the steps that run. After the planner's period
+    /// Returns the period with which a new step does not end before the running steps. After the planner's period
     /// became shorter, a step with the new period would overtake an older step. If the two had opposite directions, the
     /// sum would leave the range of the set points that were sent.
     fn time_of_new_step(&self, state: &InterpolationState) -> f64 {

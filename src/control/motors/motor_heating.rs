@@ -24,7 +24,7 @@ pub(crate) struct MotorHeating {
     time: f64,
 }
 
-/// h, N^2, with the torque expressed as pull at the tendon.
+/// The heat h of each motor (see [`MotorHeating`]), N^2, with the torque expressed as pull at the tendon.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Heat(Vector4<f64>);
 

@@ -9,7 +9,8 @@ const DEFAULT_SUPPORTED: f64 = 12.306_708_616;
 /// Below this rate, Hz, the delay of a cycle narrows the range.
 const SLOW: f64 = 1000.0;
 
-/// The range of relative damping with which a fingertip settles. It narrows as the stiffness grows.
+/// The range of relative damping, here called the ratio, with which a fingertip settles. The range narrows as the
+/// stiffness grows.
 ///
 /// The limits are straight lines inside the range in which the default finger was stable, with a margin of about a
 /// tenth. Two tests determined that range: the one-cycle map at poses anywhere within the joint limits, and the closed

@@ -109,8 +109,8 @@ impl Drives {
         Ok([observer(0)?, observer(1)?, observer(2)?, observer(3)?])
     }
 
-    /// Returns the damping c of the motion of the motors relative to the links, N s/m, for a finger that is bent about
-    /// as in the default pose of zeroing. `r` is in m.
+    /// Returns the damping c of the motion of the motors relative to the links, N s/m, for a finger that is bent
+    /// approximately as in the default pose of zeroing. `r` is in m.
     fn relative_damping(&self, numbers: &Numbers, dynamics: &LinkDynamics, r: &Matrix3x4<f64>) -> f64 {
         let bent = Vector3::new(0.0, 0.5, 1.0);
         let link_mass = (dynamics.inertia(&bent).determinant() / (r * r.transpose()).determinant()).cbrt();

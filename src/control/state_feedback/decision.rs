@@ -145,8 +145,8 @@ impl StateFeedback {
     }
 
     /// Returns the joint torques: the sum of the torques of the spring, of its additional stiffness in a fast motion,
-    /// of the soft limits, gravity compensation and the damper, and of the feed-forward for friction and for the motion
-    /// of the reference.
+    /// of the soft limits, of the gravity compensation, of the damper, and of the feed-forward for friction and for the
+    /// motion of the reference.
     fn joint_torques(
         &self,
         state: &mut StateFeedbackState,

@@ -2,7 +2,7 @@
 //!
 //! After a motion, the tensions on the two sides of every pulley differ by the whole friction. A dither whose amplitude
 //! is near the friction moves the tendons only at its peaks, so the finger settles slowly. A larger dither that decays
-//! over some periods, called a burst, removes this difference, as an alternating field that decays demagnetises iron.
+//! over some periods, called a burst, removes this difference, just as a decaying alternating field demagnetises iron.
 //! Afterwards the small dither suffices.
 
 use super::full_rate::FULL_RATE;
@@ -49,7 +49,7 @@ pub(super) struct DitherBurst {
 pub(super) struct DitherBurstState {
     /// From 0 to 1.
     envelope: f64,
-    /// Whether a fast motion has not yet caused a burst.
+    /// Whether there was a fast motion whose burst is still to come.
     awaited: bool,
     /// Time for which the envelope still stays risen, s.
     staying: f64,

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Firmness of the softest joint for which the amplitude is not changed, 1/rad. The firmness is the stiffness of a
+/// If the softest joint has this firmness, 1/rad, the amplitude is not changed. The firmness is the stiffness of a
 /// joint divided by the sum of the magnitudes of the torques of its four tendons at the pretension.
 const FIRMNESS: f64 = 2.0;
 
@@ -22,11 +22,11 @@ const TOUCHING: f64 = 0.7;
 /// Time constant with which the factor [`TOUCHING`] begins and ceases to act, s.
 const CHANGING: f64 = 0.05;
 
-/// Pulleys that dither keeps sliding act like viscous friction. A finger that was pushed therefore approaches its rest
-/// position with a time constant that is inversely proportional to the stiffness of the joints and to the amplitude of
-/// the dither. In a pose in which the tip is close to the axis of a joint, this joint is soft. A nearly straight finger
-/// is soft along its links. In both cases the amplitude is larger. In poses with stiff joints a smaller amplitude
-/// suffices, and the tip, which has a long lever, moves less.
+/// Pulleys on which the dither keeps the tendons sliding act like viscous friction. A finger that was pushed therefore
+/// approaches its rest position with a time constant that is inversely proportional to the stiffness of the joints and
+/// to the amplitude of the dither. In a pose in which the tip is close to the axis of a joint, this joint is soft. A
+/// nearly straight finger is soft along its links. In both cases the amplitude is larger. In poses with stiff joints a
+/// smaller amplitude suffices, and the tip, which has a long lever, moves less.
 #[derive(Clone, Debug)]
 pub(super) struct DitherScale {
     /// For each joint, 1 / the sum of the magnitudes of the torques of the four tendons at the pretension, 1/(N cm).

@@ -54,8 +54,8 @@ pub(super) struct PeriodicDisturbanceState {
 impl PeriodicDisturbance {
     /// `frequency` is omega in rad/s, and `rate` is in Hz.
     pub fn new(observers: &[TendonObserver; 4], frequency: f64, rate: f64) -> Self {
-        // At 500 Hz, the delay is so long that some fingers with the stiffest joint springs oscillate with the
-        // prediction.
+        // At 500 Hz, the delay is so long that some fingers with the stiffest joint springs oscillate if the
+        // prediction is used.
         let leads: [Vector2<f64>; 4] = match rate < FULL_RATE {
             true => [Vector2::zeros(); 4],
             false => std::array::from_fn(|motor| lead(&observers[motor], frequency / rate)),

@@ -151,7 +151,8 @@ mod tests {
 
     pub(crate) const RATE: f64 = 1000.0;
 
-    /// Sine of amplitude 0.3 rad and 8 rad/s in joint 0.
+    /// Returns joint angles and motion of a path: a sine in joint 0 with the amplitude 0.3 rad and the angular
+    /// frequency 8 rad/s.
     pub(crate) fn path(seconds: f64) -> (Vector3<f64>, Motion) {
         let wave = |derivative: i32| {
             Vector3::x() * (0.3 * 8f64.powi(derivative) * (8.0 * seconds + f64::from(derivative) * FRAC_PI_2).sin())

@@ -2,8 +2,9 @@
 //!
 //! The gauges do not measure the friction of the pulleys. It holds the joints back: they lag the reference by about
 //! K_theta^-1 F, where F is the torque of the friction. After the motion they creep to their rest position, because
-//! pulleys that the dither keeps sliding act like viscous friction. If the tip is close to the axis of joint 0, or the
-//! finger is nearly straight, K_theta is small in one direction. The lag is then larger than 5 % of a step of 5 mm.
+//! pulleys on which the dither keeps the tendons sliding act like viscous friction. If the tip is close to the axis of
+//! joint 0, or the finger is nearly straight, K_theta is small in one direction. The lag is then larger than 5 % of a
+//! step of 5 mm.
 //!
 //! The additional stiffness is sigma R k R^T, a share of the stiffness that the tendons give the joints. It raises the
 //! share that K_theta uses by the same sigma in every direction. So it helps most in the directions in which K_theta is
@@ -62,7 +63,7 @@ pub(super) struct StiffeningState {
     rest: Vector3<f64>,
     /// From 0 to 1.
     envelope: f64,
-    /// Whether a fast motion lasts.
+    /// Whether a fast motion is in progress.
     fast: bool,
 }
 

@@ -53,7 +53,7 @@ pub(crate) struct TensionDither {
     inverse_common: Vector4<f64>,
     /// Wanted amplitude of each tendon as a fraction of its tension, divided by n.
     part: Vector4<f64>,
-    /// The same for the smallest amplitude to which [`DitherScale`] may reduce the wanted one.
+    /// Like `part`, but for the smallest amplitude to which [`DitherScale`] may reduce the wanted one.
     least: Vector4<f64>,
     /// Largest tension of each tendon, N.
     most: Vector4<f64>,

@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_consecutive_and_values_have_places() {
+    fn numbers_are_consecutive_and_every_kind_has_one_to_four_values() {
         for (index, &kind) in EventKind::ALL.iter().enumerate() {
             assert_eq!(usize::from(kind.number()), index + 1);
             assert_eq!(EventKind::from_number(kind.number()), Some(kind));

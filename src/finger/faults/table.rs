@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_are_sentences_without_their_ends() {
+    fn texts_are_sentences_without_the_full_stop() {
         for kind in FaultKind::ALL {
             let row = kind.description();
             for part in [row.name, row.text, row.cause, row.remedy] {

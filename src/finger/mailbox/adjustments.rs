@@ -34,7 +34,7 @@ impl Mailbox {
         Ok(())
     }
 
-    /// Replaces gravity, m/s^2 in the finger's frame. A faulted finger takes it when it recovers.
+    /// Replaces gravity, m/s^2 in the finger's frame. A faulted finger takes the new value when it recovers.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted.

@@ -21,11 +21,12 @@ pub struct PreparedPath<'a> {
 }
 
 impl Mailbox {
-    /// Sends a path that begins in period `origin`. `change` gets a copy of the set point that was sent last, moves it
-    /// to the end of the path, and returns the extent of the path. If the path changes the stiffness, the copy has the
-    /// stiffness with which the path begins. `spring` is the number of the spring phase
-    /// ([`FingerReport::springs`](crate::finger::FingerReport::springs)) for which the path was computed. Returns the
-    /// number of the path, or none if another spring phase has begun.
+    /// Sends a path. `when` holds the number of the spring phase
+    /// ([`FingerReport::springs`](crate::finger::FingerReport::springs)) for which the path was computed, the period in
+    /// which the path begins, and the validity of the path. `change` gets a copy of the set point that was sent last,
+    /// moves it to the end of the path, and returns the extent of the path. If the path changes the stiffness, the copy
+    /// has the stiffness with which the path begins. Returns the number of the path, or none if another spring phase
+    /// has begun.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. If `change` refuses the set point, the inner result is its error.
@@ -41,9 +42,10 @@ impl Mailbox {
         Ok(prepared.map(|prepared| prepared.map(PreparedPath::send)))
     }
 
-    /// Prepares a path, as [`Mailbox::send_path`] sends it. `command` changes the set point before the path begins, as
-    /// [`Mailbox::try_send`] does, and says which part it replaces. The same rule for the order of fingers applies as
-    /// for [`Mailbox::prepare`].
+    /// Prepares a path, as [`Mailbox::send_path`] sends it. `spring`, `origin` and `valid` are the parts of its
+    /// parameter `when`. `command` changes the set point before the path begins, as [`Mailbox::try_send`] does, and says
+    /// which part it replaces. A caller that prepares several fingers must do this in the order of their numbers, as for
+    /// [`Mailbox::prepare`].
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. If `command` or `change` refuses the set point, the inner result is
@@ -153,8 +155,8 @@ impl PlannersEnd {
         (begin.unwrap_or_else(|| self.reports.read().set_point.stiffness), begin)
     }
 
-    /// Returns the path that the finger follows after a change that replaces `replaced`, if the path may still change
-    /// the stiffness.
+    /// Returns the extent of the path that the finger follows after a change that replaces `replaced`, if the path may
+    /// still change the stiffness.
     pub(super) fn path_kept_by(&mut self, replaced: Replaced) -> Option<PathExtent> {
         match replaced {
             Replaced::Other => self.path_ahead(),

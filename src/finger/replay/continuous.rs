@@ -18,8 +18,8 @@ const MOST_SOURCES: usize = 4096;
 const MOST_READY: usize = 8;
 
 /// Recomputes the cycles of one finger. Keyframes and controllers must arrive before the cycles that need them. The
-/// cycles must arrive in their order. Cycles and controllers may be missing: the replay continues with the next
-/// keyframe before a cycle whose controllers are known.
+/// cycles must arrive in their order. Cycles and controllers may be missing. The replay then resumes at the next cycle
+/// that has a keyframe and whose controllers are known.
 #[derive(Default)]
 pub struct ContinuousReplay {
     hand: Option<ConfiguredHand>,

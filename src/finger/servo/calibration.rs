@@ -22,7 +22,7 @@ impl Calibrating {
         self.before.as_ref().map_or(&self.run.adjustable, |before| &before.adjustable)
     }
 
-    /// Returns the data of the spring, if the finger is still a spring.
+    /// Returns the data with which the servo computes, if the finger still follows set points, as a spring.
     pub fn spring(&self) -> Option<&Adjustable> {
         self.before.as_ref().filter(|before| before.stage == Stage::Running).map(|before| &before.adjustable)
     }

@@ -107,8 +107,8 @@ impl FingerServo {
         self.last_answer = received.sequence;
         let reply = &received.reply;
         let (mut counted, mut clocked) = (self.sample_age as f64, None);
-        // This cycle's command took effect at this measurement, and was computed from the previous one. The age to note
-        // is therefore the time between the two measurements.
+        // This cycle's command took effect at this measurement, and was computed from the previous measurement. The age
+        // to note is therefore the time between the two measurements.
         if let Some(before) = self.sampled_at
             && counted * self.limits.period_ms < CLOCK_UNKNOWN_MS
         {
@@ -124,7 +124,8 @@ impl FingerServo {
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
         self.supervision.note_reply(reply.status, counted, clocked);
-        // A board that had no valid zero at opening loses its counts together with the terms of its Configure.
+        // If the board had no valid zero at opening, ZERO_VALID cannot show that it has lost its counts. A board loses
+        // its counts together with the terms of its Configure frame, so CONFIGURED shows the loss.
         let lost = |bit: Status| self.status.has(bit) && !reply.status.has(bit);
         let zero_lost = !reply.status.has(Status::ZERO_VALID) && (lost(Status::ZERO_VALID) || lost(Status::CONFIGURED));
         self.status = reply.status;

@@ -10,9 +10,9 @@ impl FingerServo {
         self
     }
 
-    /// Begins the computation of a cycle in the period `period`, and takes the groups that take effect in it. This does
-    /// not depend on the board's reply, so that a lost reply does not separate a group. `now` returns the number of
-    /// the present period.
+    /// Begins the computation of a cycle in the period `period`, and takes the groups that take effect in it. The
+    /// groups do not wait for the board's reply, so that a lost reply does not separate a group. `now` returns the
+    /// number of the present period.
     pub fn take_groups(&mut self, period: u64, now: impl Fn() -> u64) {
         self.report.period = period;
         if !self.under_control() {

@@ -8,8 +8,8 @@ use crate::model::Part;
 use nalgebra::Vector4;
 
 /// Additional margin of the pose check in the stage Running, rad. After a blow, a joint whose tendons are slack can
-/// seem to be further beyond its limits than any joint at rest. Of 100 fingers hit by a force of 6 N, one seemed to be
-/// 0.55 rad beyond its limits, and returned.
+/// seem to be further beyond its limits than any joint at rest. Of 100 fingers hit by a force of 6 N, one had a joint
+/// that seemed to be 0.55 rad beyond its limits and then returned.
 const BLOW_MARGIN: f64 = 0.3;
 
 /// If less than this fraction of the scheduled cycles has run in an opening that times out, the fault names the machine

@@ -30,7 +30,7 @@ impl Ranges {
         let mut admitted = Vector3::from(joints);
         for joint in 0..3 {
             let (low, high) = (self.joint_limits.0[joint], self.joint_limits.1[joint]);
-            // A limit that is sent as `float` may be rounded beyond the limit. It must be accepted.
+            // An angle at a limit may be rounded beyond the limit when it is sent as `float`. It must be accepted.
             let rounding = f64::from(f32::EPSILON) * low.abs().max(high.abs());
             let value = joints[joint];
             if (value < low - rounding || value > high + rounding) && self.out_of_range == OutOfRange::Refuse {
@@ -84,15 +84,16 @@ impl Ranges {
     }
 }
 
-/// Returns a symmetric stiffness with these eigenvalues, or the nearest one between zero and `bound`. Returns none if
-/// it is stiffer than `bound` and must be refused.
+/// Returns the stiffness `symmetric`, whose smallest and largest eigenvalues are given, if all of its eigenvalues are
+/// from zero to `bound`. Otherwise returns the nearest stiffness for which this is true, or none if `symmetric` is
+/// stiffer than `bound` and must be refused.
 pub(super) fn within_bound(
     symmetric: Matrix3<f64>,
     (smallest, largest): (f64, f64),
     bound: f64,
     out_of_range: OutOfRange,
 ) -> Option<Matrix3<f64>> {
-    // A stiffness at the bound that is sent as `float` may be rounded beyond the bound. It must be accepted.
+    // A stiffness at the bound may be rounded beyond the bound when it is sent as `float`. It must be accepted.
     let too_stiff = largest > bound * (1.0 + 8.0 * f64::from(f32::EPSILON));
     if too_stiff && out_of_range == OutOfRange::Refuse {
         return None;

@@ -68,7 +68,7 @@ fn flat(value: &Value) -> Vec<&Value> {
     }
 }
 
-/// Whether a value equals this number, or equals it after rounding.
+/// Whether a value equals this number, or equals this number rounded to the digits that are stored.
 fn is(value: &Value, number: f64) -> bool {
     match value {
         Value::Integer(whole) => *whole.value() as f64 == number,

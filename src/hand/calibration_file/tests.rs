@@ -229,7 +229,7 @@ fn a_file_that_no_longer_fits_is_unchanged_and_the_reason_is_reported() {
 
 /// The program provides the hardware of finger 1, so that its port and board in the file do not matter.
 #[test]
-fn results_of_hardware_of_the_program_are_stored_beside_any_port() {
+fn results_of_hardware_of_the_program_are_stored_whatever_port_the_file_names() {
     let mut open = Configuration::default();
     open.fingers[0].provide(FingerNumber::ONE);
     let zeros = Zeros { encoder: [5; 4], gauge: [8190.0; 4], joint_error: Vector3::zeros(), range_error: None };

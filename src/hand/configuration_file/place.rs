@@ -25,8 +25,8 @@ struct Environment {
 /// Returns the configuration file, if there is one. An empty `SUN2XP_CONFIG` counts as unset.
 ///
 /// # Errors
-/// Returns an error if `SUN2XP_CONFIG` is set in a program with raised privileges. Such a program does not use the file
-/// that `SUN2XP_CONFIG` names, so it would open another hand.
+/// Returns an error if `SUN2XP_CONFIG` is set in a program with raised privileges. Such a program must not use the file
+/// that `SUN2XP_CONFIG` names, so without this error it would open another hand.
 pub(super) fn locate() -> Result<Option<PathBuf>, ConfigurationError> {
     let environment = Environment {
         raised_privileges: raised_privileges(),

@@ -86,7 +86,7 @@ mod tests {
         for rate in [500.0, 1000.0] {
             assert_eq!(Configured::simulated("nominal", rate, &text).is_ok(), stiff < bound(rate), "{rate} Hz");
         }
-        // A rate of the text that no hand can have is ignored like every other one.
+        // The rate of the text is ignored even if no hand can have it.
         for rate in ["7", "\"fast\""] {
             let hand = Configured::simulated("nominal", 500.0, &format!("[hand]\nrate = {rate}\n"));
             assert_eq!(hand.map(|hand| hand.configuration.hand.rate).ok(), Some(500.0), "{rate}");

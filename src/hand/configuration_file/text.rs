@@ -83,8 +83,8 @@ pub(super) fn parse_with(
 /// board.
 fn finger_of(common: &Table, own: &Table, name: Option<&str>) -> Result<(ConfiguredFinger, bool), Wrong> {
     let mut merged = common.clone();
-    // Both keys say where a finger is. If the finger's own table has one of them, the other one of the common table is
-    // not used.
+    // Both keys say where a finger is. If the finger's own table has only one of them, the other key is not taken from
+    // the common table.
     for (key, other) in [("board", "port"), ("port", "board")] {
         if own.contains_key(key) && !own.contains_key(other) {
             merged.remove(other);

@@ -10,8 +10,8 @@ pub(crate) struct ErrorKind {
     cause: Cause,
 }
 
-/// For the variants of [`HandError`] that only wrap an error of one of these types, this is the variant of the inner
-/// error. For all other variants, it is `None`.
+/// For the variants of [`HandError`] that only wrap an error of one of the types below, this is the variant of the
+/// inner error. For all other variants, it is `None`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cause {
     None,

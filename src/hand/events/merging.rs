@@ -27,7 +27,7 @@ pub struct MergedEvents {
 struct FingerEvents {
     reader: EventReader,
     next: Option<Event>,
-    /// The events of this finger that are published later have at least this time, ns.
+    /// Lower bound of the times of all events that were not published yet when this bound was read, ns.
     horizon: u64,
 }
 

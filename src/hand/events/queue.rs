@@ -1,5 +1,5 @@
-//! A queue of a hand's events. Planners take events, wait for them, or wait for a descriptor that is readable while
-//! there are events.
+//! A queue of a hand's events. Planners take events, wait for events, or poll a descriptor that is readable while there
+//! are events.
 
 use super::queue_state::QueueState;
 use super::readiness::Readiness;
@@ -31,8 +31,8 @@ impl EventQueue {
         Self { shared: Arc::new(QueueState::new(source)), readiness: Mutex::new(None) }
     }
 
-    /// Returns a queue of logs that do not belong to a hand, for benchmarks. Their writers notify `readers`. `period`
-    /// is in ns.
+    /// Returns a queue of the events in `logs`, which do not belong to a hand. It is for benchmarks. The writers of the
+    /// logs notify `readers`. `period` is in ns.
     #[cfg(feature = "internals")]
     pub fn of_logs(logs: Vec<EventLog>, readers: SharedPages<EventCount>, period: u64) -> Self {
         Self::new(Arc::new(EventSource::new(logs, readers, period)))

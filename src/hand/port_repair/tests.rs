@@ -44,7 +44,7 @@ fn kind(error: &HandError) -> Option<FaultKind> {
     }
 }
 
-/// The comparison also ensures that the numbers of a hand's boards still differ after a recovery.
+/// The comparison also ensures that the unique numbers of a hand's boards still differ after a recovery.
 #[test]
 fn a_board_with_another_number_is_refused_and_gets_no_terms() {
     let (mut link, known) = opened(board(), true);

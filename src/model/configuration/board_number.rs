@@ -45,7 +45,7 @@ impl From<BoardNumber> for String {
     }
 }
 
-/// The bytes in hexadecimal, with spaces between them.
+/// Writes the bytes in hexadecimal, with spaces between them.
 impl fmt::Display for BoardNumber {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         let bytes = self.0.map(|byte| format!("{byte:02X}"));

@@ -27,8 +27,9 @@ pub enum Scheme {
 pub enum Law {
     /// tau = J^T Kx J (theta_d - theta), eqs. 3 and 6. It is a spring for small deflections.
     Report,
-    /// tau = J^T Kx (x_d - x). It is a spring at any deflection. Because it does not distinguish two joint solutions
-    /// with the tip at x_d, a spring in joint space acts while joint 2 is bent to the opposite side from theta_d.
+    /// tau = J^T Kx (x_d - x). It is a spring at any deflection. It does not distinguish the two joint solutions with
+    /// the tip at x_d, which bend joint 2 to opposite sides. While joint 2 is bent to the opposite side from theta_d, a
+    /// spring in joint space therefore acts instead.
     #[default]
     Exact,
 }

@@ -21,7 +21,8 @@ impl ConfiguredFinger {
         (self.port, self.board) = ("simulated".into(), None);
     }
 
-    /// Returns whether two fingers are on one port: their ports have the same path, or one board has both fingers.
+    /// Returns whether two fingers are on one port: their ports have the same path, or their `board` keys name the same
+    /// number.
     pub fn shares_port(&self, other: &Self) -> bool {
         let named = |finger: &Self| finger.port != "simulated";
         self.board.is_some() && self.board == other.board || named(self) && named(other) && self.port == other.port

@@ -5,8 +5,8 @@ use crate::model::fingers::Fingers;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// Admissible rates of a hand, Hz. The gains for 500 Hz are stable at rates down to 470 Hz. At a rate of 450 Hz the
-/// finger oscillates.
+/// Admissible rates of a hand, Hz. With the gains for 500 Hz, the finger is stable at rates down to 470 Hz, and
+/// oscillates at a rate of 450 Hz.
 pub const RATES: RangeInclusive<f64> = 500.0..=5000.0;
 
 /// The largest magnitude of a component of gravity, m/s^2.
@@ -15,8 +15,8 @@ pub const LARGEST_GRAVITY: f64 = 100.0;
 /// Permitted baud rates of a port, bit/s.
 pub const BAUDS: RangeInclusive<u32> = 9600..=12_000_000;
 
-/// The behaviour of the motors when commands stop: because the hand is closed or stopped, a finger faults, or the
-/// planner exits or dies.
+/// The behaviour of the motors when commands stop. Commands stop when the hand is closed or stopped, when a finger
+/// faults, and when the planner exits or dies.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -91,7 +91,7 @@ pub struct ConfiguredHand {
     pub rate: f64,
     /// The clock that determines the rate.
     pub clock: PeriodClock,
-    /// Whether the servo threads must be real-time.
+    /// What opening the hand does to make the servo threads real-time.
     pub real_time: RealTime,
     /// The behaviour of the motors when commands stop.
     pub end_state: EndState,
@@ -99,7 +99,7 @@ pub struct ConfiguredHand {
     pub hold_time_ms: u16,
     /// Largest motor torque that *hold* keeps, N cm.
     pub hold_torque_limit: f64,
-    /// Time in which closing the hand ramps the torque down with *release*, ms: 0 to 5000.
+    /// Time in which the torque is ramped down when the hand is closed with the end state *release*, ms: 0 to 5000.
     pub release_ramp_ms: u16,
     /// Time without a command after which the board goes to its end state, ms: 2 to 1000.
     pub watchdog_ms: u16,

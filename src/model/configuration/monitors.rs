@@ -16,8 +16,8 @@ pub struct ConfiguredMonitors {
     /// Disagreement of gauges and encoders that is always tolerated, as an error of the mean tension, N. The mean
     /// weights each tendon in proportion to its pretension and its compliance.
     pub disagreement: f64,
-    /// Friction along a tendon, as a fraction of its tension. The monitors expect the larger of this value and of
-    /// `friction.conduit` plus `friction.pulley`.
+    /// Friction along a tendon, as a fraction of its tension. The monitors expect this value, or the sum of
+    /// `friction.conduit` and `friction.pulley` if that sum is larger.
     pub friction_tolerance: f64,
     /// Relative uncertainty of the moment arms in `geometry.r`.
     pub moment_arm_tolerance: f64,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredTendon {
-    /// t_min of eq. 19, N. It is also the homing pretension.
+    /// t_min of eq. 19, N. It is also the smallest tension of the homing pretension, at which the encoders are zeroed.
     pub minimum: f64,
     /// t_max, N.
     pub maximum: f64,

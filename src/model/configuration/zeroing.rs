@@ -21,7 +21,7 @@ pub enum ZeroingMethod {
 pub struct ConfiguredZeroing {
     /// The method. Without it `ConfiguredFinger::zeroing_method` selects one.
     pub method: Option<ZeroingMethod>,
-    /// Joint angles of the pose, degrees.
+    /// Joint angles of the pose in which the finger is held with the method `Pose`, degrees.
     pub pose_degrees: [f64; 3],
     /// Angles of the lower stops, degrees. Without them the stops are 3 degrees beyond the soft limits.
     pub lower_stop_degrees: Option<[f64; 3]>,
@@ -32,7 +32,7 @@ pub struct ConfiguredZeroing {
     pub torque: f64,
     /// Speed at which a joint is moved, rad/s.
     pub speed: f64,
-    /// Time after which a routine fails, s.
+    /// Time after which a calibration is abandoned, s.
     pub time_limit_s: f64,
 }
 

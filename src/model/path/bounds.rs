@@ -4,7 +4,8 @@
 /// rate, acceleration and jerk are given at both ends.
 pub const COEFFICIENTS: usize = 8;
 
-/// The values of a polynomial lie within the range of its Bernstein coefficients.
+/// The Bernstein coefficients of a polynomial. The values of the polynomial over the unit interval lie within their
+/// range.
 type Bernstein = [f64; COEFFICIENTS];
 
 /// Bounds are accepted if they are outside the true range by at most this part of its width.

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 /// cm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// Beginning of the piece since the beginning of the path, s.
+    /// Time from the beginning of the path to the beginning of the piece, s.
     pub begin: f64,
     /// Length of the piece, s.
     pub length: f64,
@@ -38,12 +38,12 @@ impl Piece {
         Self { begin: 0.0, length: 1.0, coefficients }
     }
 
-    /// Returns the end of the piece since the beginning of the path, s.
+    /// Returns the time from the beginning of the path to the end of the piece, s.
     pub fn end(&self) -> f64 {
         self.begin + self.length
     }
 
-    /// Returns the motion at a time since the beginning of the path, s.
+    /// Returns the motion at `time`, s, counted from the beginning of the path.
     pub fn at(&self, time: f64) -> PieceMotion {
         let part = (time - self.begin) / self.length;
         // Horner's scheme for the polynomial and for its n-th derivatives, divided by n factorial.

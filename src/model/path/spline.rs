@@ -2,8 +2,8 @@
 //!
 //! Its pieces have degree 5, except at its ends. Of all curves through given places, with given rates and accelerations
 //! at both ends, the one with the smallest mean square jerk consists of such pieces. The spline here also begins with a
-//! given jerk, and ends without jerk. So its first and its last piece have degree 6, a single piece has degree 7, and
-//! its mean square jerk is larger.
+//! given jerk, and ends without jerk. So its first and its last piece have degree 6, or its only piece has degree 7.
+//! The mean square jerk of the spline is therefore larger.
 
 use crate::model::path::hermite::{AtKnot, coefficients};
 use crate::model::path::piece::Piece;

@@ -26,8 +26,9 @@ impl ConfiguredFinger {
 
     /// Checks that h^2 k r^2 + 2 h b is at most the inertia of each rotor. h is the step, k the stiffness of the
     /// tendon, r the radius of the motor, and b the viscous friction. A simulation of a rotor diverges if the sum
-    /// exceeds four times the inertia. The observers of state feedback, too, can follow the motion of a rotor within
-    /// the limit. `keys` are the keys of inertia, stiffness and friction, and `values` are their values.
+    /// exceeds four times the inertia. If the sum is at most the inertia, the observers of state feedback can also
+    /// follow the motion of the rotor. `keys` are the keys of inertia, stiffness and friction, and `values` are their
+    /// values.
     fn check_step(&self, keys: [&'static str; 3], values: [&[f64; 4]; 3]) -> Result<(), Unusable> {
         let ([key, key_of_stiffness, key_of_viscous], [inertia, stiffness, viscous]) = (keys, values);
         for motor in 0..4 {

@@ -45,7 +45,8 @@ impl ConfiguredFinger {
             .moment_arm_ratio
             .iter()
             .try_for_each(|row| each("simulation.moment_arm_ratio", row, 0.5, 2.0, ""))?;
-        // geometry.r itself has passed its check, so its remedy, to check the signs, does not apply here.
+        // geometry.r itself has passed its check. So the remedy in the text of the error, to check the signs of R, does
+        // not apply here.
         self.true_tendons().map(|_| ()).or_else(|_| {
             let reason = "gives the simulated finger moment arms with which its tendons cannot all pull while the \
                           joints are at rest: set ratios that are nearer to 1";

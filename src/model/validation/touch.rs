@@ -11,7 +11,7 @@ impl ConfiguredTouch {
         if count > MOST_ELEMENTS {
             return unusable(
                 "touch.elements",
-                format!("has {count} elements, but a finger has at most {MOST_ELEMENTS}: remove the others"),
+                format!("has {count} elements, but a finger has at most {MOST_ELEMENTS}: remove the rest"),
             );
         }
         for element in &self.elements {

@@ -131,7 +131,9 @@ impl Trouble {
             .and_then(|address| port.with_finger(address, |finger| act(finger)))
         {
             Some(true) => "ok".into(),
-            Some(false) => format!("error finger {number} has no part with this number"),
+            Some(false) => {
+                format!("error finger {number} does not have the part that this order names: name a part that it has")
+            }
             None => no_finger(number),
         };
         match *self {

@@ -25,8 +25,8 @@ const ACTIONS: [Entry; 10] = [
         "state FINGER",
         "answer with the true joint angles (rad), tip (cm), tensions (N), motor torques (N cm), three instants on the \
          board's clock (ms), and the status bits of a Reply. The instants are: now, the last obeyed Command, and the \
-         end state that silence or a Stop caused. An instant is NaN if the event has not occurred since the last \
-         Configure",
+         beginning of the end state that silence or a Stop caused. An instant is NaN if the event has not occurred \
+         since the last Configure",
     ),
     ("quit", "end the program"),
 ];
@@ -47,8 +47,8 @@ const DEFECTS: [Entry; 19] = [
     ("jump FINGER ENCODER COUNTS", "add COUNTS to the count of an encoder"),
     ("zero-lost FINGER", "declare the encoder counts invalid"),
     ("emergency FINGER", "activate the emergency stop input"),
-    ("supply FINGER", "fail the motor supply"),
-    ("sensor FINGER", "fail a sensor"),
+    ("supply FINGER", "let the motor supply fail"),
+    ("sensor FINGER", "let a sensor fail"),
     ("reset FINGER", "interrupt the board's power for a moment"),
     ("mend FINGER", "repair all of the above"),
 ];

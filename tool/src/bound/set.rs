@@ -110,7 +110,8 @@ pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -
         )
         .into());
     }
-    // The nominal plant without walls is the first one. It limits the bound if no other plant has a lower one.
+    // The nominal plant without walls is the first one. It limits the bound if no other plant that counts has a lower
+    // bound.
     let counts = |&(index, member): &(usize, &Member)| index == 0 || member.uncovered == 0;
     let numbered = plants.iter().enumerate().filter(counts);
     let least = numbered.min_by(|(_, one), (_, other)| one.bound.total_cmp(&other.bound));
@@ -196,10 +197,12 @@ impl SetBound {
             place(least.walls)
         )?;
         match &least.limit {
-            LimitFound::Unstable(sample) => writeln!(out, "    above this, unstable: {}", sample.text())?,
+            LimitFound::Unstable(sample) => {
+                writeln!(out, "    above the bound, the finger is unstable at {}", sample.text())?
+            }
             LimitFound::ScaledBelowHalf { joints_degrees } => writeln!(
                 out,
-                "    above this, the servo would scale Kx down by more than half at {}",
+                "    above the bound, the servo would scale Kx down by more than half at {}",
                 pose(joints_degrees)
             )?,
         }

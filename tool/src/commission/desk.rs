@@ -51,8 +51,8 @@ impl Desk<'_> {
         Ok(outcome)
     }
 
-    /// Asks the person to prepare what follows. Returns false, and notes it, if this cannot be done. The step must then
-    /// end, because the finger could move while a hand is in its way.
+    /// Asks the person to prepare what follows. If the person cannot do it, adds [`Wrong::NotPrepared`] to the outcome
+    /// and returns false. The step must then end, because the finger could move while a person's hand is in its way.
     pub fn prepare(&mut self, outcome: &mut Outcome, act: Act) -> Result<bool, Failure> {
         let prepared = self.person.ask(act)? == Answer::Done;
         if !prepared {

@@ -39,7 +39,7 @@ struct Weighed {
     heaviest: f64,
 }
 
-/// Whether a count is at an end of the converter's range, so that the true one may be beyond it.
+/// Whether a count is at an end of the converter's range, so that the true count may be beyond this end.
 fn at_end(count: f64, noise: f64) -> bool {
     let full = |bits: u32| f64::from((1 << bits) - 1);
     count < AT_END || (noise < QUIET && BITS.into_iter().any(|bits| (count - full(bits)).abs() < QUIET))

@@ -1,4 +1,4 @@
-//! The machine of a commissioning that is a finger at its port.
+//! Implements [`Machine`] for a finger at its port.
 
 use super::machine::{AtRest, BoardSeen, Bound, Machine, Reading, Refused};
 use crate::calibrate::with_progress;

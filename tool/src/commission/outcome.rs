@@ -20,7 +20,7 @@ impl Outcome {
         self.found.push(line.into());
     }
 
-    /// Adds the result behind a key of the configuration, for the comment above it.
+    /// Adds the result from which the value of a configuration key follows, for the comment above this key.
     pub fn about(&mut self, key: &'static str, text: impl Into<String>) {
         self.keys.push((key, text.into()));
     }

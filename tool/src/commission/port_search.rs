@@ -43,11 +43,12 @@ impl Chosen {
 /// A finger of a board: the number of the board and the address. Fingers of one board may share its number.
 pub type Taken = (BoardNumber, u8);
 
-/// Searches these ports for the board of a finger. `taken` belong to other fingers of the hand.
+/// Searches these ports for the board of a finger. `taken` lists the boards and addresses of the other fingers of the
+/// hand.
 ///
 /// # Errors
-/// Returns the reason if every finger that answers is in `taken`, or if none answers. If several others answer, returns
-/// the reason unless exactly one of them has the number of `finger` as its address.
+/// Returns the reason if no finger answers, or if every finger that answers is in `taken`. If several fingers that are
+/// not in `taken` answer, returns the reason unless exactly one of them has the number of `finger` as its address.
 pub fn search(patterns: &[String], baud: u32, finger: FingerNumber, taken: &[Taken]) -> Result<Chosen, String> {
     let searched = search_boards(patterns, &[baud]);
     let answers = searched.iter().flat_map(|port| {

@@ -67,7 +67,7 @@ impl ProgressFile {
     }
 
     fn parse(text: &str, path: &Path) -> Result<Self, Failure> {
-        // Another process has created the file, and has not written it yet.
+        // A process creates the file empty, and writes it afterwards.
         if text.is_empty() {
             return Ok(Self::default());
         }

@@ -63,7 +63,8 @@ impl Session<'_> {
     pub fn closing(&self) -> Result<String, Failure> {
         let left = ProgressFile::read(&self.file)?.left(self.finger.get());
         if left.is_empty() {
-            let later = "At any later time, sun2xp health compares its state with that of today.";
+            let later =
+                "At any later time, sun2xp health compares the finger's state at that time with its state today.";
             return Ok(format!("The finger is commissioned. {later}"));
         }
         let names = left.iter().map(|step| step.name()).collect::<Vec<_>>().join(", ");
@@ -84,6 +85,6 @@ impl Session<'_> {
 
 /// The date and time, UTC.
 fn now() -> String {
-    // A clock before 1970 is wrong anyway.
+    // If the clock shows a time before 1970, it is wrong, and the beginning of 1970 is noted instead.
     utc(SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()))
 }

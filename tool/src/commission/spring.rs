@@ -47,7 +47,7 @@ pub fn spring(desk: &mut Desk) -> Result<Outcome, Failure> {
         way.norm() * 10.0,
         force.norm()
     ));
-    outcome.found(format!("the tip came to rest {:.2} mm from its pose", residual * 10.0));
+    outcome.found(format!("the tip came to rest {:.2} mm from its position before the push", residual * 10.0));
     if (stiffness / sent - 1.0).abs() > STIFFNESS {
         outcome.wrong(Wrong::SpringStiffness(stiffness, sent));
     }

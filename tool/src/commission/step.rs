@@ -72,13 +72,13 @@ impl Step {
             }
             Self::Zeros => "Zeros gauges and encoders, then makes the finger a soft spring. Takes up to a minute.",
             Self::Tendons => {
-                "Moves every joint between its stops and presses against the lower ones, with up to 0.6 of \
+                "Moves every joint between its stops and presses against the lower stops, with up to 0.6 of \
                  finger.tendon.maximum. This measures the stretch of the tendons. Then zeros gauges and encoders \
                  again, with this stretch. Takes two minutes."
             }
             Self::Bound => "Computes the largest stiffness at which the finger is stable. Takes one to two minutes.",
             Self::Computer => "Checks whether this computer runs the finger in time. The motors are off.",
-            Self::Spring => "Makes the finger a spring, and measures it while you push.",
+            Self::Spring => "Makes the finger a spring, and measures its stiffness while you push.",
         }
     }
 

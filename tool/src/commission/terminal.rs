@@ -61,7 +61,8 @@ impl Terminal {
         if self.quiet {
             return;
         }
-        // Without a reader there is nobody to show it to, and the next question fails.
+        // An error is ignored. If the reader of standard output has ended, nobody needs the line, and the next question
+        // fails.
         let _ = writeln!(io::stdout(), "{}", painted(&self.screen, look, text));
     }
 

@@ -28,8 +28,8 @@ pub fn zeros(desk: &mut Desk) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// Zeros the finger by its method. Returns whether it was done. If `held` is true, the person possibly still holds the
-/// finger.
+/// Zeros the finger by its method. Returns false if the finger was not zeroed, or if the person cannot do what the tool
+/// asks for. If `held` is true, the person possibly still holds the finger.
 pub fn zero(desk: &mut Desk, outcome: &mut Outcome, held: bool) -> Result<bool, Failure> {
     let method = desk.finger.zeroing_method();
     let at_pose = method == ZeroingMethod::Pose;

@@ -99,7 +99,7 @@ fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) 
         let by = match limit {
             _ if capable => "CAP_SYS_NICE".into(),
             Some(limit) => format!("the rtprio limit {limit}"),
-            None => "the rtprio limit: unlimited".into(),
+            None => "the rtprio limit, which is unlimited".into(),
         };
         return Finding::good(subject, format!("{wanted} is permitted by {by}"));
     }
@@ -141,8 +141,9 @@ fn cores(configuration: &Configuration, allowed: &[usize], isolated: &[usize]) -
     let configured = if wanted.is_empty() { "none, so the scheduler selects them".into() } else { numbers(&wanted) };
     let found = format!("configured: {configured}; permitted: {}; isolated: {}", numbers(allowed), numbers(isolated));
     if let Some(core) = wanted.iter().find(|core| !allowed.contains(core)) {
-        let advice =
-            format!("The servo cannot run on core {core}: set finger.core to a permitted core (taskset -p $$)");
+        let advice = format!(
+            "The servo cannot run on core {core}: set finger.core to a permitted core (taskset -cp $$ lists them)"
+        );
         return lacking(configuration, subject, found, advice);
     }
     if let Some(core) = wanted.iter().find(|core| !isolated.contains(core)) {

@@ -49,7 +49,7 @@ impl Output {
         }
     }
 
-    /// Writes everything.
+    /// Writes everything that is still in the buffer.
     ///
     /// # Errors
     /// Returns the error that the system reports.

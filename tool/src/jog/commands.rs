@@ -159,7 +159,7 @@ impl Command {
     }
 }
 
-/// Recovers a finger, unless an emergency stop has come before.
+/// Recovers a finger, unless an emergency stop came before the recovery began.
 fn recover(hand: &Hand, finger: i32, stopped: &dyn Fn() -> bool) -> Result<String, Refused> {
     let recovering = Recovering::begin(hand, finger)?;
     // The recovery would undo a stop that came before it began. Later stops end it.

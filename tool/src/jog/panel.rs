@@ -168,7 +168,7 @@ mod tests {
         assert_eq!(panel.result, Some(("too strong".into(), true)));
         press(&mut panel, 0.4, false);
         assert!(shown(&panel).contains("0.20 N") && shown(&panel).contains("wait for it"), "{}", shown(&panel));
-        // An emergency stop drops the next one.
+        // An emergency stop drops the next push.
         press(&mut panel, 0.4, true);
         conclude(&mut panel, 0.4, None);
         assert!(shown(&panel).contains("0.20 N") && shown(&panel).contains("wait for it"), "{}", shown(&panel));

@@ -61,7 +61,7 @@ mod tests {
         let carry_out = |command, stops| stopper.carry_out(&command, stops, |_| 1);
         let end_of_push = Command::Push { finger: 1, force: [0.0; 3] };
         assert_eq!(carry_out(Command::Open, 0), Some(1));
-        // The number of stops is 0. Any other number counts as that of a command that was sent before a later stop.
+        // The number of stops is 0. A command with another number is treated as one that was sent before a later stop.
         assert_eq!(carry_out(Command::Open, 1), None);
         assert_eq!(carry_out(Command::Push { finger: 1, force: [0.0, 0.0, 0.1] }, 1), None);
         assert_eq!(carry_out(end_of_push, 1), Some(1), "a stop does not let a push go on");

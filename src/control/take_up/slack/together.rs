@@ -65,7 +65,7 @@ impl SlackTakeUp {
         }
     }
 
-    /// Restarts winding in the tendons that seemed to be taut but are slack.
+    /// Makes the motors of the tendons that seemed to be taut but are slack wind in again.
     fn touch_again(&self, slack: &mut Slack, taut: [bool; 4], travel: &Vector4<f64>) {
         if !slack.gauges.iter().all(Gauge::is_tared) {
             // All tendons seemed to be taut at the start, so the gauges were not read.

@@ -157,7 +157,7 @@ pub const KINDS: [Kind; 20] = [
     }),
 ];
 
-/// The part of a seed, counted from 0.
+/// The part that is wrong in the case with this seed, counted from 0.
 fn part(seed: u64) -> usize {
     (seed / 4 + seed) as usize % 4
 }

@@ -56,7 +56,7 @@ fn a_supply_that_stays_off_after_the_emergency_stop_is_named() {
 }
 
 #[test]
-fn lost_replies_are_read_again_and_the_weighed_tendons_are_kept() {
+fn a_reading_without_replies_is_repeated_and_the_weighed_tendons_are_kept() {
     let (world, belief) = world(|_| ());
     let mut person = Helper::new(&world);
     // Up to three failed readings in a row are repeated without a question.

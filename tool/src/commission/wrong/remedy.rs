@@ -73,9 +73,10 @@ impl Wrong {
                 format!("Check the cable, the supply and the amplifier of gauge {gauge}, and that the weight bends it")
             }
             Self::GaugeScale(gauge, _) if self.suspect() => format!(
-                "gauge.newton_per_count is corrected. But sound parts deviate by less than this, so the cause is \
-                 probably the wiring of gauge {gauge} or a wrong mass: check the masses, the supply of its bridge, the \
-                 gain of its amplifier, and the wires of the bridge. After a repair do the step gauges again"
+                "gauge.newton_per_count is corrected. But the tolerances of sound parts do not explain so large an \
+                 error, so the cause is probably the wiring of gauge {gauge} or a wrong mass: check the masses, the \
+                 supply of its bridge, the gain of its amplifier, and the wires of the bridge. After a repair do the \
+                 step gauges again"
             ),
             Self::GaugeScale(..) => "Nothing to do: gauge.newton_per_count is corrected".into(),
             Self::GaugeZero(..) => "Nothing to do: gauge.zero is corrected".into(),
@@ -121,8 +122,8 @@ impl Wrong {
                     .into()
             }
             Self::PoseRefused(_) => {
-                "If a jig held the finger, the finger's gauges probably lag, and it trembled in spite of the jig: \
-                 zero the finger at its stops. For that, leave with q, set zeroing.method = \"stops\" for this finger \
+                "If a jig held the finger, its gauges probably lag, and the finger trembled in spite of the jig: zero \
+                 the finger at its stops. For that, leave with q, set zeroing.method = \"stops\" for this finger \
                  in the configuration file, and start the tool again. The tool reads the file only when it starts"
                     .into()
             }

@@ -105,7 +105,9 @@ impl Wrong {
             Self::SpringStiffness(found, sent) => {
                 write!(f, "the measured stiffness is {found:.1} N/cm, and {sent:.1} N/cm were sent")
             }
-            Self::SpringReturn(millimetres) => write!(f, "the tip came to rest {millimetres:.1} mm from its pose"),
+            Self::SpringReturn(millimetres) => {
+                write!(f, "the tip came to rest {millimetres:.1} mm from its position before the push")
+            }
             Self::NotWeighed(tendon) => write!(f, "no weight hung on tendon {tendon}, so its gauge was not tested"),
             Self::NotPrepared => write!(f, "the step was not done, because you could not do what it asked for"),
             // Only `NotPushed` is left, because the caller handles all other cases.

@@ -111,7 +111,8 @@ fn the_locked_memory_that_is_needed_depends_on_the_rate() {
         assert_eq!(verdict(locked + 2, rate), Rating::Good, "2 MiB more than {locked} MiB at {rate} Hz");
     }
 
-    // OpenHand does not know the doctor, but names an amount too.
+    // The message with which OpenHand reports the missing permission names an amount too. This amount must satisfy the
+    // doctor even at the highest rate.
     let advice = MissingPermission::Memory(io::Error::from_raw_os_error(libc::ENOMEM)).to_string();
     let named = advice.split_once("memlock limit to ").and_then(|(_, rest)| rest.split_once(" MiB")?.0.parse().ok());
     let named = named.unwrap_or_else(|| panic!("no amount: {advice}"));

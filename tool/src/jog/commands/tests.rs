@@ -92,7 +92,7 @@ fn relative_commands_after_a_recovery_add_up() {
     until("the servo takes the last step", || at_goal(hand.report(1).expect("there").set_point.joints.into()));
 }
 
-/// The recovery would undo the stop, and the finger would tighten its tendons after it.
+/// Otherwise the recovery would undo the stop, and the finger would tighten its tendons after the stop.
 #[test]
 fn a_stop_before_a_recovery_begins_prevents_it() {
     let (hand, configuration) = simulated();
