@@ -77,7 +77,7 @@ proptest! {
         prop_assume!(bad != good);
         let mut decoder = Decoder::default();
         prop_assert!(decoded(&mut decoder, &bad, 64).is_empty());
-        // The delimiter ends any open frame, so the next one is complete.
+        // The delimiter ends any open frame, so the next frame is complete.
         bad = [&[0], &good[..]].concat();
         prop_assert_eq!(decoded(&mut decoder, &bad, 64), vec![content]);
         prop_assert!(decoder.counters().damaged >= 1);
@@ -110,7 +110,7 @@ proptest! {
             prop_assert_eq!((message.address, message.sequence, message.frame.kind()), (address, sequence, kind));
             let again = WireFrame::new(&message);
             prop_assert_eq!(again.as_bytes().len(), wire.len());
-            // Reserved bits of the flags are dropped. Every other bit must be restored.
+            // Reserved bits of the flags are dropped. All other bits must be restored.
             if kind != Kind::Command {
                 prop_assert_eq!(again.as_bytes(), &wire[..]);
             }

@@ -18,7 +18,7 @@ const MOST_READS: u32 = 100_000;
 /// follow.
 const LATE: u64 = 2 * READ;
 
-/// A simulated board that at some point begins to send one frame without end, and nothing else.
+/// A simulated board that at some point begins to send the same frame again and again, and nothing else.
 struct Flood {
     board: SimulatedBoard,
     frame: Frame,
@@ -26,7 +26,7 @@ struct Flood {
     sequence: u8,
     /// Type of the request that triggers the flood.
     begins_with: Option<Kind>,
-    /// Whether the flood takes over the sequence number of each such request, as an answer does.
+    /// Whether that frame gets the sequence number of every request of this type, as an answer does.
     answers_all: bool,
     begun: bool,
     answers: Vec<u8>,
@@ -190,7 +190,7 @@ fn a_handshake_with_a_board_that_refuses_without_end_ends_at_its_deadline() {
 fn a_stop_is_sent_and_ends_at_its_deadline() {
     for frame in unasked() {
         let mut link = Link::new(Flood::of(frame));
-        // The servo does not wait for the confirmation.
+        // A deadline in the past, which a servo passes in order not to wait for the confirmation.
         assert!(!link.stop(1, 0).expect("the port is there"), "{frame:?}");
         assert!(link.transport().reads <= 1, "{frame:?}");
         let deadline = link.transport().now + 100 * MS;

@@ -15,7 +15,7 @@ struct NoisyCable {
     random: Pcg64,
     /// One byte in this many is disturbed, in each direction. 0 means practically none.
     one_in: u64,
-    /// Whether a byte was disturbed since this was last cleared.
+    /// Whether a byte was disturbed since this flag was last cleared.
     hit: bool,
 }
 
@@ -101,7 +101,7 @@ fn noise_costs_the_periods_that_it_hits_and_no_wrong_value_passes() {
         hit_cycles += u32::from(hit);
         hit_before = hit;
     }
-    // A disturbed delimiter also costs the next frame. Every other disturbance costs its own period only.
+    // A disturbed delimiter also costs the next frame. Any other disturbance costs only its own period.
     assert!((4000..6000).contains(&hit_cycles), "{hit_cycles}");
     assert!(unanswered > 4000 && f64::from(unanswered) < 1.1 * f64::from(hit_cycles), "{unanswered} of {hit_cycles}");
     assert!(link.counters().damaged > 1000);

@@ -218,7 +218,7 @@ fn a_port_that_cannot_be_opened_names_the_reason() {
     let file = tempfile::NamedTempFile::new().unwrap();
     assert_eq!(errno(&file.path().to_string_lossy()), libc::ENOTTY);
     assert_eq!(errno(&std::env::temp_dir().to_string_lossy()), libc::ENOTTY);
-    // The system's own errno: there is no device behind the file.
+    // Here the library passes on the system's errno: there is no device behind the file of a socket.
     let folder = tempfile::tempdir().unwrap();
     let socket = folder.path().join("socket");
     let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();

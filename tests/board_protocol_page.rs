@@ -151,7 +151,7 @@ fn times_at_the_usual_rates() {
     assert!(rows.len() >= 6);
     for row in rows {
         let baud: u32 = row[0].parse().unwrap();
-        // A rate far too high, so that the error names all its numbers.
+        // The rate is far too high, so the result is an error. Its fields contain all numbers of the row.
         let [one, three] = [1, 3].map(|fingers| capacity(baud, fingers, 1e5).unwrap_err());
         let expected = [
             baud.to_string(),

@@ -10,7 +10,7 @@ use sun2xp::board::protocol::{Command, Decoder, Frame, Message, Reply, WireFrame
 struct Dice(Pcg64);
 
 impl Dice {
-    /// 0 to `sides` - 1.
+    /// Returns a random number from 0 to `sides` - 1.
     fn throw(&mut self, sides: u64) -> usize {
         (self.0.next_u64() >> 16) as usize % sides as usize
     }

@@ -40,7 +40,7 @@ fn newton_centimetres(count: i64, unit: u32) -> f64 {
 
 #[test]
 fn a_torque_unit_of_nearly_twice_the_limit_is_refused() {
-    // 0.54 units would round to one unit, which is 1.85 times the limit.
+    // The limit is 0.54 units. It would round to one unit, which is 1.85 times the limit.
     let unit = (4.75e7f64 / 0.54) as u32;
     let error = terms(4.75, 1.0, 2.34).configure(&board(unit)).expect_err("too coarse");
     assert!(matches!(error, TermsError::CoarseUnit { motor: 1, .. }), "{error}");

@@ -33,7 +33,7 @@ const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/board-protocol.md"
 
 /// Largest distance of a finger from its target, rad.
 const CLOSE: f64 = 0.02;
-/// On a busy machine the finger moves more slowly than real time.
+/// Time after which a wait fails. On a busy machine the finger moves more slowly than it would in real time.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 fn succeeds(command: &mut Command) {
@@ -177,7 +177,7 @@ const TOLERATED_PAUSE: Duration = Duration::from_millis(50);
 
 fn configuration(boards: &[Board; 3], folder: &Path) -> Configuration {
     // The boards let a finger move for at most 2 ms after a Command, so a late Command is harmless at this rate. A busy
-    // machine may delay servo or board by more than the default watchdog.
+    // machine may delay servo or board by more than the default watchdog time, so this configuration has a longer one.
     let mut text = "[hand]\nrate = 500.0\nwatchdog_ms = 1000\n[finger.controller]\nset_point_speed = 1.0\n".to_string();
     for (finger, board) in (1..).zip(boards) {
         text += &format!("[finger.{finger}]\nport = \"{}\"\n", board.port);

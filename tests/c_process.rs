@@ -13,8 +13,9 @@ use std::fs;
 use std::process::Command;
 use std::time::Duration;
 
-/// A scratch folder with a configuration in which sun2xp_zero assumes that the finger is in a known pose. This takes a
-/// second. A search for the stops takes most of a minute, and these tests are about the call, not about its result.
+/// A scratch folder with a configuration in which sun2xp_zero assumes that the finger is in a known pose. Such a call
+/// takes a second. A search for the stops takes most of a minute, and these tests are about the call, not about its
+/// result.
 fn bench() -> Bench {
     let bench = Bench::new();
     let configuration = "[finger]\nport = \"simulated\"\n[finger.zeroing]\nmethod = \"pose\"\n";

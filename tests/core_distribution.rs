@@ -71,7 +71,7 @@ proptest! {
         prop_assert!((lowest - 1e-15..=highest + 1e-15).contains(&scale), "{scale}, not {lowest} to {highest}");
     }
 
-    /// Every other solution with the same torque is larger in the 1-, 2- and infinity-norm: R's null vector is all
+    /// All other tensions that give the same torque are larger in the 1-, 2- and infinity-norm: R's null vector is all
     /// positive, so any other choice above t_min adds a positive multiple of it.
     #[test]
     fn tensions_are_the_least(direction in prop::array::uniform3(-1.0..1.0f64), more in 1e-6..10.0f64) {
@@ -144,8 +144,8 @@ fn without_stiffness_only_damping_is_left() {
     assert!(law.torques(&set_point.into(), &Vector3::zeros(), &rates).angle(&-rates) < 1e-6);
 }
 
-/// Section 5.5 prints +1.09 for entry (2, 4). With this value and the printed ghost row the matrix is singular, and
-/// with any other ghost row the hand cannot hold.
+/// Section 5.5 of the report prints +1.09 for entry (2, 4) of R. With this value and the printed ghost row the matrix
+/// is singular. With any other ghost row, the tendons cannot all pull while the joints are at rest.
 #[test]
 fn printed_r_is_refused() {
     for ghost in [None, Some([1.0; 4])] {

@@ -17,8 +17,8 @@ fn configured() -> InverseKinematics {
     InverseKinematics::new(LINKS, ConfiguredFinger::default().joint_limits())
 }
 
-/// Joint angles within the limits of the default finger. These limits admit only one of the two elbows, and only some
-/// of its solutions.
+/// Joint angles within the limits of the default finger. Of the two elbows, which differ in the sign of joint 2, these
+/// limits admit only one, and only some of the solutions with this elbow.
 fn admissible() -> impl Strategy<Value = Vector3<f64>> {
     let degrees = (-60.0..60.0f64, -30.0..100.0f64, 5.0..120.0f64);
     degrees.prop_map(|(a, b, c)| Vector3::new(a, b, c).map(f64::to_radians))
@@ -121,7 +121,8 @@ fn a_tip_on_the_axis_of_joint_0_leaves_joint_0_where_it_is() {
 fn refusals_name_cause_and_numbers() {
     let refusal = |tip: Vector3<f64>| configured().joints(&tip, &Vector3::zeros()).unwrap_err().to_string();
     assert!(refusal(Vector3::new(0.0, 0.0, 14.0)).contains("10.444 cm"), "too far");
-    // 0.5 cm beyond the axis of joint 1. The finger cannot fold closer than 1.08 cm.
+    // The target is 0.5 cm beyond the axis of joint 1. The folded finger brings its tip no closer to this axis than
+    // 1.08 cm.
     let near = refusal(Vector3::new(0.0, 0.0, 4.056));
     assert!(near.contains("0.500 cm") && near.contains("1.080 cm"), "{near}");
     let behind = refusal(Vector3::new(9.0, -2.0, -6.0));

@@ -81,7 +81,7 @@ fn a_box_on_a_table_rests_where_its_corners_carry_its_weight() {
 }
 
 /// Returns the motion of a flat box along three fingertips, on which it lies as on a table. Gravity leans by this
-/// angle against the normal of the tips.
+/// angle against the normal of the plane of the tips.
 fn slides_on_three_tips(degrees: f64) -> Vector3<f64> {
     let plate = ObjectShape::Box { size: [8.0, 8.0, 1.0] };
     let configured = ConfiguredObject { shape: plate, position: [0.0; 3], ..Default::default() };

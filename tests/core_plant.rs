@@ -207,7 +207,7 @@ fn friction_holds_a_small_force_and_yields_to_a_large_one() {
     let run = |newton: f64| {
         let mut plant = Plant::new(&ConfiguredFinger::default(), Vector3::zeros()).unwrap();
         let start = plant.tip();
-        // Across the finger's plane, 0.5 mN m at a lever of 0.08 m holds about 6 mN.
+        // Across the finger's plane, a friction of 0.5 mN m at a lever of 0.08 m holds about 6 mN.
         plant.set_external_force(Vector3::new(newton, 0.0, 0.0));
         for _ in 0..2000 {
             plant.step([0.0; 4]);

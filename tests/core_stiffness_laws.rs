@@ -36,7 +36,8 @@ fn theta() -> impl Strategy<Value = Vector3<f64>> {
 /// at 5 mm.
 #[test]
 fn near_its_axis_joint_0_is_held() {
-    // Joint 1 at 90 degrees; l0 = -l2 C12 puts the tip on the axis.
+    // Joint 1 is at 90 degrees, so the reach is l0 + l2 C12, where C12 is the cosine of the sum of the angles of joints
+    // 1 and 2. At a reach of 0 the tip is on the axis.
     let folded = |reach: f64| Vector3::new(0.3, FRAC_PI_2, ((reach - 3.556) / 4.0).acos() - FRAC_PI_2);
     let away = Vector3::new(0.1, 0.0, 0.0);
     for law_of in [Law::Report, Law::Exact] {
@@ -101,7 +102,8 @@ proptest! {
         prop_assert!((law().spring(&point.into(), &theta) - expected * away).amax() < 1e-9);
     }
 
-    /// tau = J^T f with the force of the definition, at any deflection. A tip at its anchor has no torque.
+    /// tau = J^T f with the force of the definition, at any deflection. If the tip is at its anchor, the torque
+    /// is zero.
     #[test]
     fn exact_law_is_the_spring_at_any_deflection(
         theta in theta(), desired in theta(), root in prop::array::uniform9(-1.5..1.5f64),

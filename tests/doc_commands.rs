@@ -1,4 +1,5 @@
-//! Every command of the pages that runs tests runs at least one: the test program and the filter exist.
+//! Checks the `cargo test` commands on the pages of the documentation: each command with `--test` or `--lib` runs at
+//! least one test, so its test program and its filter exist.
 
 use std::fs;
 use std::path::{Path, PathBuf};

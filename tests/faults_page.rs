@@ -76,7 +76,7 @@ fn causes_and_remedies_are_not_only_references_to_another_text() {
 #[test]
 fn numbers_of_faults_never_change() {
     assert!(FaultKind::ALL.len() >= 49);
-    // Three numbers that programs may have been compiled with. The page and the header hold the others.
+    // Three numbers that programs may have been compiled with. The committed page and header contain the other numbers.
     for (kind, number) in [(FaultKind::BrokenTendon, 2), (FaultKind::Watchdog, 16), (FaultKind::WarmMotor, 45)] {
         assert_eq!(kind.number(), number);
     }

@@ -71,7 +71,8 @@ impl Planner {
                 Ok::<_, Infallible>(())
             });
             let Ok(change) = change.expect("not faulted");
-            // The planner sends groups faster than the servos take them. `Hand::send_group` refuses a group here.
+            // There is no room if the planner sends groups faster than the servos take them. In this case
+            // `Hand::send_group` refuses the group.
             if !change.has_room() {
                 return;
             }

@@ -62,7 +62,7 @@ fn fingers_with_the_tendons_of_real_hands_open_and_go_where_they_are_sent() {
         finger.simulation = hand.simulation();
     }
     let hand = open(configuration);
-    // Errors of the gauges displace a finger that was not calibrated by up to 0.03 rad.
+    // Errors of the gauges displace an uncalibrated finger by up to 0.03 rad.
     let settling = Settling { tolerance: 0.06, rest: Duration::from_millis(300), patience: Duration::from_secs(10) };
     for target in [TARGET, [-0.3, 1.0, 1.5], TARGET] {
         for finger in 1..=3 {
@@ -114,7 +114,7 @@ fn a_pushed_finger_gives_way_like_its_spring() {
     let (before, at_rest) = (hand.position(1).expect("position"), tip());
     let force = Vector3::new(0.0, 0.0, -1.0);
     hand.push_simulated(1, force.into()).expect("pushed");
-    // The initial stiffness is 3 N/cm. The tip must move to where this spring yields, and stay there.
+    // The initial stiffness is 3 N/cm. The tip must move by the deflection of this spring, and stay there.
     let expected = force / 3.0;
     let limit = Instant::now() + Duration::from_secs(10);
     let mut since = Instant::now();
@@ -145,7 +145,7 @@ fn refusals_change_nothing() {
     let errnos = refused.map(|result| result.expect_err("refused").errno());
     use libc::{EDOM, EINVAL, ERANGE};
     assert_eq!(errnos, [EINVAL, EINVAL, EINVAL, ERANGE, ERANGE, EDOM]);
-    // A cycle that would have used a set point is certainly over.
+    // Waits until a cycle that would have used a refused set point is certainly over.
     let cycles = hand.report(3).expect("report").losses.cycles;
     while hand.report(3).expect("report").losses.cycles < cycles + 5 {
         std::thread::yield_now();

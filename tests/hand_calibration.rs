@@ -74,7 +74,7 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
     assert!(!hand.store_calibration(3).expect("nothing is left to store"));
 }
 
-/// The finger takes up slack with its new zeros when it is stopped.
+/// The finger is stopped while it takes up slack with its new zeros.
 #[test]
 fn results_are_stored_although_the_finger_faults_before_it_is_a_spring_again() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -159,7 +159,7 @@ fn fingers_are_zeroed_against_their_stops_and_identified() {
         finger.joints.maximum_degrees = [30.0, 50.0, 90.0];
         finger.tendon.maximum = 35.0;
     }
-    // If the zero were 0, the noise below it would be clipped.
+    // If the zeros of the gauges were 0 counts, noise below 0 counts would be clipped.
     configuration.fingers[0].gauge.zero = [204.0; 4];
     configuration.fingers[1].simulation.tendon_stiffness = [330.0, 270.0, 315.0, 285.0];
     let hand = Hand::open(configuration).expect("open");
@@ -181,7 +181,7 @@ fn fingers_are_zeroed_against_their_stops_and_identified() {
     for (tendon, truth) in [330.0, 270.0, 315.0, 285.0].into_iter().enumerate() {
         assert!((found.tendon_stiffness[tendon] / truth - 1.0).abs() < 0.02, "{found:?}");
     }
-    // The findings are in force at once, for that finger only, and both fingers are under control.
+    // The findings are in force at once, for finger 2 only, and all fingers are under control.
     assert_eq!(hand.calibrated(2).expect("there").tendon.stiffness, <[f64; 4]>::from(found.tendon_stiffness));
     assert_eq!(hand.calibrated(1).expect("there").tendon.stiffness, [300.0; 4]);
     // The range of the damping ratio depends on the stiffness of the tendons.

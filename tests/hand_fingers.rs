@@ -67,7 +67,7 @@ fn one_of_three_fingers_on_a_port() {
     }
     let hand = Hand::open_limp(configuration, Some(PathBuf::from("hand.toml")), fingers(&[2])).expect("open");
     assert!(matches!(hand.report(1), Err(HandError::NotOpened(FingerNumber::ONE))));
-    // On a busy machine replies may be lost soon, but the board has obeyed some commands before.
+    // On a busy machine the finger may soon lose replies, but its board obeys some commands before that.
     let obeyed = |finger| port.with_finger(finger, |finger| finger.commanded_at()).expect("the board has it");
     let patience = Instant::now() + Duration::from_secs(10);
     while obeyed(2).is_none() {
@@ -127,7 +127,7 @@ fn the_bound_can_fall_below_the_initial_stiffness() {
     assert!(refused.to_string().contains("stiffness.initial"), "{refused}");
 }
 
-/// A simulated board, with a link to its port in a folder.
+/// Starts a simulated board, and makes `link` a symbolic link to its port.
 fn board(link: &Path, members: &[FingerNumber], number: u32) -> SimulatedPort {
     let board = SimulatedBoard::new(&slow(), members).expect("a board").numbered(number);
     let port = SimulatedPort::start(board, Pace::patient(500.0), Priority::default()).expect("a port");

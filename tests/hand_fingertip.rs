@@ -31,7 +31,7 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
 /// Waits until a cycle that uses the last set point is over.
 fn taken_in(hand: &Hand, finger: i32) {
     let cycles = hand.report(finger).expect("report").losses.cycles;
-    until("cycles", || hand.report(finger).expect("report").losses.cycles > cycles + 3);
+    until("some cycles pass", || hand.report(finger).expect("report").losses.cycles > cycles + 3);
 }
 
 #[test]
@@ -182,7 +182,7 @@ fn damping_is_checked_against_the_stiffest_kx_of_a_path() {
     }
     hand.send_damping(1, 1.1).expect("admitted with 5 N/cm");
     hand.send_damping(1, 1.0).expect("admitted");
-    // A Kx that is sent ends the change along the path.
+    // After a Kx is sent, the Kx no longer changes along the path.
     hand.send_stiffness(1, kx(1.0)).expect("sent");
     hand.send_damping(1, 1.5).expect("admitted with 1 N/cm");
     hand.send_damping(1, 1.0).expect("admitted");

@@ -52,7 +52,7 @@ fn a_wait_ends_with_its_time_limit_or_with_a_fault() {
     let hand = open();
     hand.push_simulated(2, [0.0, 3.0, 0.0]).expect("pushed");
     sent(&hand, &[FingerCommand::new(2).joints([0.2, 0.6, 1.1])]);
-    // The finger comes to rest somewhere else.
+    // Because of the push, the finger comes to rest away from its set point.
     hand.wait(&[2], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     let began = Instant::now();
     let error = hand.wait(&[1, 2, 3], Until::Arrived, Duration::from_millis(300)).expect_err("pushed away");
@@ -88,7 +88,7 @@ fn a_group_with_a_refused_command_changes_no_finger() {
     while !matches!(hand.report(2).expect("a report").stage, Stage::Faulted(_)) {
         std::thread::yield_now();
     }
-    // The fault is reported rather than a damping that does not fit, whichever finger the damping is for.
+    // The fault is reported rather than a damping that is not admitted, whichever finger the damping is for.
     let bad = good.damping(99.0);
     for others in [FingerCommand::new(2), FingerCommand::new(2).damping(99.0)] {
         for first in [good, bad] {
@@ -142,7 +142,7 @@ fn a_group_with_paths_is_sent_as_a_whole() {
     let pose = |joints| [PathPose { time: 0.5, pose: Pose::Joints(joints), stiffness: None }];
     let (near, far) = (pose([0.1, 0.5, 1.0]), pose([9.0, 0.5, 1.0]));
     let soft = FingerCommand::new(1).stiffness(kx(1.0));
-    // Every part but one is admitted.
+    // In each case all parts but one are admitted.
     for (commands, paths) in [
         (vec![soft], vec![(2, &near[..]), (3, &far[..])]),
         (vec![soft, FingerCommand::new(3).joints([9.0; 3])], vec![(2, &near[..])]),
@@ -206,8 +206,8 @@ fn kinematics_agree_with_each_other_and_with_the_tip() {
         assert!(difference < 3.0, "finger {finger} at rest: {torques:?}");
     }
     // Finger 2 has another base than fingers 1 and 3.
-    let tips = [1, 2, 3].map(|finger| hand.palm_pose(finger).expect("a pose").base);
-    assert!(tips[0] != tips[1] && tips[1] != tips[2]);
+    let bases = [1, 2, 3].map(|finger| hand.palm_pose(finger).expect("a pose").base);
+    assert!(bases[0] != bases[1] && bases[1] != bases[2]);
     assert_eq!(hand.jacobian(1, Some([f64::NAN, 0.0, 0.0])).expect_err("NaN").errno(), libc::EINVAL);
     hand.close();
 }
@@ -228,7 +228,7 @@ fn gravity_turns_while_the_hand_is_open() {
         hand.set_gravity([9.81 * angle.sin(), 0.0, 9.81 * angle.cos()]).expect("a gravity");
         std::thread::sleep(Duration::from_millis(2));
     }
-    // The torques of a finger that holds its pose under this gravity.
+    // Returns the torques of the fingers, which hold their poses under this gravity.
     let torques = |gravity| {
         hand.set_gravity(gravity).expect("a gravity");
         hand.wait(&[1, 2, 3], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));

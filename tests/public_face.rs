@@ -18,7 +18,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).into()
 }
 
-/// The items of the crate's page.
+/// The items of the crate's root, src/lib.rs.
 fn items() -> Vec<Item> {
     let page = fs::read_to_string(root().join("src/lib.rs")).expect("the crate's page");
     syn::parse_file(&page).expect("Rust").items

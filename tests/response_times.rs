@@ -8,7 +8,7 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::cell::Cell;
 use sun2xp::realtime::{PeriodicThread, response_times};
 
-/// A simulated thread: the rest of its present cycle.
+/// A simulated thread, and the rest of its present cycle.
 struct Running<'a> {
     thread: &'a PeriodicThread,
     /// Beginning of the present cycle, or of the next one.
@@ -95,7 +95,7 @@ fn simulate(threads: &[PeriodicThread], cores: usize, ticks: u64, seed: u64) -> 
 
 fn thread() -> impl Strategy<Value = PeriodicThread> {
     let parts = (0..5u64, 0..8u64, 0..30u64, 0..12u64);
-    // Mostly of the same period, as servo threads are.
+    // Most threads have the same period, as servo threads do.
     let period = prop_oneof![3 => Just(60u64), 1 => 25..90u64];
     (prop_oneof![4 => (0..2usize).prop_map(Some), 1 => Just(None)], 1..4u8, period, parts).prop_map(
         |(core, priority, period, (wake_up, before, waiting, after))| PeriodicThread {
@@ -136,8 +136,8 @@ fn no_cycle_takes_longer_than_its_bound() {
     assert!(4 * bounded > all, "only {bounded} of {all} threads have a bound");
 }
 
-/// Without wake-up and waiting, and with equal phases, the bound is reached. This detects an analysis that is always
-/// too pessimistic.
+/// Without wake-up and waiting, the bound is reached when all threads begin a cycle at the same time. This test detects
+/// an analysis that is always too pessimistic.
 #[test]
 fn the_bound_is_tight() {
     let threads = [(3, 7, 3), (2, 12, 3), (1, 20, 5)].map(|(priority, period, after)| PeriodicThread {

@@ -142,8 +142,9 @@ fn other_fingers(scheme: Scheme) -> Vec<(&'static str, ConfiguredFinger)> {
     ]
 }
 
-/// The tendons of each finger limit its stiffness, not the loop, because the gains of state feedback follow from the
-/// configuration. The gains of Figure 10 do not: with them, at least half of these fingers are unstable in some pose.
+/// The stiffness of each finger is limited by its tendons and not by the loop, because the gains of state feedback
+/// follow from the configuration. The gains of Figure 10 do not: with them, at least half of these fingers are unstable
+/// in some pose.
 #[test]
 fn state_feedback_is_made_for_the_finger_that_is_configured() {
     for (name, finger) in other_fingers(Scheme::StateFeedback) {

@@ -57,7 +57,8 @@ fn a_line_shows_its_slope_and_a_hysteresis_its_mean() {
     assert!((fits::slope(&up.chain(down).collect::<Vec<_>>()) - 2.0).abs() < 1e-12);
 }
 
-/// x[k+1] = A x[k] with these modes, observed through a mixture.
+/// Returns `count` observations of x[k+1] = A x[k], where A has these modes. Each value of an observation is a mixture
+/// of the components of x.
 fn decay(modes: &[(f64, f64)], count: usize) -> Vec<DVector<f64>> {
     let size = 2 * modes.len();
     let mut a = DMatrix::zeros(size, size);
@@ -147,7 +148,8 @@ fn a_controller_that_ignores_tendon_stretch_is_detected() {
     }
 }
 
-/// A servo that gives less than the commanded stiffness reports it. This must not count as a stiffness error.
+/// A servo that gives less than the commanded stiffness reports the scale. The difference must not count as a stiffness
+/// error.
 #[test]
 fn a_pose_that_supports_less_stiffness_shows_its_scale_and_no_error() {
     let case = case(Scheme::StateFeedback);

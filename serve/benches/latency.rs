@@ -100,7 +100,7 @@ fn records_until(offer: &Offer, ended: impl Fn() -> bool) -> Result<Vec<CycleRec
     }
 }
 
-/// Returns the times from each SendPos to the beginning of the exchange with its motor command, us.
+/// Returns the time from each SendPos to the beginning of the exchange that sends its motor command to the board, us.
 fn latencies(sent: &[u64], records: &[CycleRecord]) -> Vec<f64> {
     let mut found = Vec::new();
     let mut from = 0;

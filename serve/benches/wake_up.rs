@@ -1,7 +1,8 @@
-//! Measures whether clients delay the servos: compares the wake-up of the servo threads with two writers and ten
-//! readers to that with the server alone, in alternating turns. One writer owns the hand. The other one sends with an
-//! epoch that is not in force. The clients are processes of their own, and take processor time of this machine. A third
-//! turn therefore has the same clients at another server, in a process of its own. Prints Markdown.
+//! Measures whether clients delay the servos. In alternating turns, it measures the wake-up latency of the servo
+//! threads with the server alone, and with two writers and ten readers as clients. One writer owns the hand. The other
+//! one sends with an epoch that is not in force. The clients are processes of their own, and take processor time of
+//! this machine. In a third kind of turn, the same clients are therefore connected to another server, which is a
+//! process of its own. Prints Markdown.
 //!
 //! Real clients are on other machines, and the servos have a core of their own. On a machine with two cores, this
 //! command gives the servos core 1, and everything else core 0:
@@ -24,10 +25,10 @@ use sun2xp_remote_client::RemoteHand;
 use sun2xp_remote_protocol::{HandKeys, Part, Place, Target};
 use zenoh::Wait;
 
-/// Time after clients have started or ended that is not measured.
+/// Time that is not measured at the beginning of a turn, after clients have started or ended.
 const SETTLING: Duration = Duration::from_secs(2);
 
-/// Largest ratio of the latency with clients to the latency without clients.
+/// Largest permitted ratio of the 99.9 % latency with clients to the 99.9 % latency without clients.
 const GOAL: f64 = 1.1;
 
 #[derive(Parser)]
@@ -59,7 +60,7 @@ struct Arguments {
     bench: bool,
 }
 
-/// Median and 99.9 % of the wake-ups of all fingers, us.
+/// Median and 99.9th percentile of the wake-up latency, us. Each is the median of the figures of the three fingers.
 type WakeUp = [f64; 2];
 
 fn main() -> Result<(), Failure> {
@@ -78,7 +79,7 @@ fn main() -> Result<(), Failure> {
     Ok(attempts.check([("the clients", measured.len())])?)
 }
 
-/// Measures neighbouring turns, with servers of their own: without clients, with clients at another server, and with
+/// Starts two servers, and measures three neighbouring turns: without clients, with clients at another server, and with
 /// clients at the server. These turns are repeated together, so that a ratio compares turns at nearly the same time.
 fn neighbours(arguments: &Arguments) -> Result<[WakeUp; 3], Failure> {
     let other = Other::start(arguments.plain)?;
@@ -114,8 +115,9 @@ fn print(arguments: &Arguments, measured: &[[WakeUp; 3]], attempts: &Attempts) {
     println!("\n{attempts}.");
     if !measured.is_empty() {
         let [alone, elsewhere] = [0, 1].map(|side| middle(measured.iter().map(|turn| turn[2][1] / turn[side][1])));
-        println!("Ratio of the 99.9 % with the clients to that of the neighbouring turn, as the median of all turns:");
-        println!("{alone:.2} to the server alone (goal: at most {GOAL}), {elsewhere:.2} to clients at another server");
+        println!("Ratio of the 99.9 % with the clients to the 99.9 % of a neighbouring turn, median of all turns:");
+        println!("{alone:.2} relative to the server alone (goal: at most {GOAL}),");
+        println!("{elsewhere:.2} relative to clients at another server");
     }
 }
 
@@ -123,8 +125,8 @@ fn middle(values: impl Iterator<Item = f64>) -> f64 {
     percentile(&values.collect::<Vec<_>>(), 0.5)
 }
 
-/// Measures the wake-ups in one turn. The servo of a finger that has stopped does less work, so its wake-ups do not
-/// count.
+/// Measures the wake-ups in one turn. The servo of a finger that has stopped does less work, so a turn in which a
+/// finger has stopped is an error.
 fn measure(offer: &Offer, seconds: f64) -> Result<WakeUp, Failure> {
     sleep(SETTLING);
     let fingers = 1..=3;
@@ -174,7 +176,7 @@ fn offer_until_input_ends(tls: bool) -> Result<(), Failure> {
     if let Some(folder) = offer.folder() {
         println!("{}", folder.display());
     }
-    // The input has no lines.
+    // The input has no lines, so this call returns when the input ends.
     let _ = std::io::stdin().read_line(&mut String::new());
     Ok(())
 }
@@ -235,7 +237,8 @@ fn client(role: &str, endpoint: &str, folder: Option<&str>) -> Result<(), Failur
             let hand = RemoteHand::watch(&configuration(endpoint, "carol", folder)?)?;
             loop {
                 sleep(Duration::from_millis(100));
-                // A state that other work has delayed is refused. The reader still receives every state.
+                // The call fails if other work has delayed the newest State. The reader receives every State all the
+                // same.
                 let _ = hand.position(1);
             }
         }

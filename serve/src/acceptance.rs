@@ -35,7 +35,7 @@ impl Rejection {
 /// What the server remembers of the Targets of one epoch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Acceptance {
-    /// Sequence number and time sent of the newest Target.
+    /// The fields `sequence` and `sent` of the newest Target.
     newest: Option<(u64, u64)>,
 }
 
@@ -99,7 +99,7 @@ mod tests {
         assert_eq!(acceptance.test(&target(5, 51, 0), true, NOW, 100), Err(Rejection::Replayed));
         assert_eq!(acceptance.test(&target(4, 60, 0), true, NOW, 100), Err(Rejection::Replayed));
         assert_eq!(acceptance.test(&target(6, 49, 0), true, NOW, 100), Err(Rejection::Replayed));
-        assert!(acceptance.test(&target(6, 50, 0), true, NOW, 100).is_ok(), "several Targets may have one time");
+        assert!(acceptance.test(&target(6, 50, 0), true, NOW, 100).is_ok(), "several Targets may have the same time");
         assert_eq!(acceptance.test(&target(8, 70, 200), true, NOW, 100), Err(Rejection::Late));
         assert_eq!(acceptance.test(&target(7, 70, 0), true, NOW, 100), Err(Rejection::Replayed), "8 came before");
     }

@@ -22,7 +22,7 @@ use zenoh::{Session, Wait};
 /// without an answer.
 const WAITING: usize = 256;
 
-/// Capacity of the queue of the other queries, which have some hundred bytes each.
+/// Capacity of the queue of the other queries. Each of them takes up a few hundred bytes.
 const OTHERS: usize = 16_384;
 
 /// Interval at which a thread checks whether the server has ended.

@@ -72,7 +72,7 @@ fn check_key(key: &Path, user: u32) -> Result<(), ServeError> {
     // This inspects a link itself and not the file behind it, because a link can lead to the key of somebody else.
     let found = symlink_metadata(key).map_err(|error| unreadable(key, &error))?;
     if !found.is_file() {
-        return Err(ServeError::certificate(key, "is not a regular file: put the key of the authority itself there"));
+        return Err(ServeError::certificate(key, "is not a regular file: put a copy of the authority's key there"));
     }
     if found.uid() != user {
         let remedy = "run the command as that user, or choose an empty folder";
@@ -106,7 +106,8 @@ fn check_certificate(text: &str, pair: &KeyPair) -> Result<(), String> {
     if !found.is_ca() {
         return Err(format!("is not the certificate of an authority: {remedy}"));
     }
-    // A certificate identifies its authority by the name and the key of the authority.
+    // A certificate identifies its authority by the name and the key of the authority. Every certificate that this
+    // command signs gives the name `NAME` for its authority.
     if common_name(&found) != Some(NAME) {
         return Err(format!(
             "is not the certificate of an authority that this command made (its common name is not `{NAME}`): {remedy}"

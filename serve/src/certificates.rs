@@ -1,5 +1,5 @@
 //! `sun2xp serve --make-certificates`: a small certificate authority for a laboratory, and certificates of servers and
-//! clients. The common name of a certificate is the name of its owner.
+//! clients. The common name of a certificate is the name of the server or client to which the certificate belongs.
 
 use crate::ServeError;
 use crate::authority;
@@ -33,8 +33,8 @@ const CLOCK_DIFFERENCE: Duration = Duration::days(1);
 /// The certificates to make.
 #[derive(Clone, Debug, Default)]
 pub struct Wanted {
-    /// Names of the servers of hands, and of routers. They obey the same rules as the names of clients. A client that
-    /// connects to one of them must use its name, one of `addresses`, or loopback.
+    /// Names of the servers of hands, and of routers. The names obey the same rules as the names of clients. A client
+    /// that connects to a server or router must use the name of this server or router, one of `addresses`, or loopback.
     pub servers: Vec<ClientName>,
     /// Other names and addresses by which clients reach the servers.
     pub addresses: Vec<String>,
@@ -57,7 +57,8 @@ pub fn make(folder: &Path, wanted: &Wanted) -> Result<Vec<PathBuf>, ServeError> 
     match make_files(folder, wanted, &mut made) {
         Ok(()) => Ok(made),
         Err(error) => {
-            // The error says what is wrong. A folder in which somebody else has put something stays.
+            // Errors of the removal are ignored: `error` already says what is wrong. A folder in which somebody else
+            // has put something stays.
             for file in &made {
                 let _ = remove_file(file);
             }
@@ -157,8 +158,8 @@ fn leaf(
         });
     }
     let [certificate, key] = files(folder, name.as_str());
-    // A client's certificate must not pass as the certificate of a server. A server may connect to a router, so its
-    // certificate is valid for a client too.
+    // A client's certificate must not pass as the certificate of a server. A server may connect to a router, and
+    // is then a client. So its certificate must also pass as the certificate of a client.
     let mut uses = vec![ExtendedKeyUsagePurpose::ClientAuth];
     if !addresses.is_empty() {
         uses.push(ExtendedKeyUsagePurpose::ServerAuth);

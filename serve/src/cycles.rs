@@ -68,7 +68,7 @@ impl Cycles {
     fn take_finger(&mut self, finger: Finger, report: &FingerReport, goals: &Goals, taken: &mut Taken) {
         let index = finger.index();
         self.records.clear();
-        // The finger has a report, so the hand has the finger.
+        // The call fails only if the hand does not have the finger. But the finger has a report, so the hand has it.
         let _ = self.hand.records_after(i32::from(finger.number()), self.last[index], &mut self.records);
         for at in 0..self.records.len() {
             let record = self.records[at];
@@ -174,7 +174,7 @@ fn keep_newest(records: &mut Vec<Record>, most: usize) -> usize {
     before - records.len()
 }
 
-/// The stage as it is sent.
+/// Returns a stage in the form in which the protocol sends it.
 #[must_use]
 pub fn stage(stage: &Stage) -> SentStage {
     match stage {

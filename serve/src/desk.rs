@@ -163,8 +163,8 @@ impl Desk {
         Ok(number)
     }
 
-    /// Begins the time limit for the silence of the owner with this epoch at `now`, ns. Returns whether this client
-    /// still owns the hand.
+    /// Begins the time limit for this client's silence at `now`, ns, if the client still owns the hand with this epoch.
+    /// Returns whether it still does.
     pub fn begin(&mut self, client: &ClientName, epoch: u64, now: u64) -> bool {
         if !self.ownership.admits(client, epoch) {
             return false;
@@ -248,7 +248,7 @@ impl Desk {
                 (self.silence, self.stop_at) = (None, Some(now + GRACE));
             }
             Some(silence) => self.fingers.advance(&silence, now),
-            // An acquire recovers fingers. The others wait for them.
+            // An acquire is recovering fingers. The set points of the fingers that run stay valid meanwhile.
             None if self.ownership.owner().is_some() => self.fingers.keep_waiting(&self.silence_from(now)),
             None => {}
         }

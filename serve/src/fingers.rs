@@ -77,7 +77,7 @@ impl Fingers {
             if !report.expired {
                 let mut command = FingerCommand::new(number).validity(silence.of_other());
                 command.pose = Some(Pose::Joints(report.reference.joints.into()));
-                // A finger that has stopped meanwhile refuses this, and has no path any more.
+                // A finger that has stopped meanwhile refuses the command, and has no path any more.
                 let _ = self.hand.send_group(&[command]);
             }
         }
@@ -91,9 +91,9 @@ impl Fingers {
         self.keep_valid(silence);
     }
 
-    /// Applies the parts of a Target that are new, all of them or none, and renews the validity of everything else. If
-    /// a servo is so late that it has no room for another group, or if a finger is caught during the call, no part is
-    /// applied yet. The parts stay new, and the owner repeats them.
+    /// Applies the parts of a Target that are new, all of them or none, and renews the validity of the set points of
+    /// all fingers. If a servo is so late that it has no room for another group, or if a finger is caught during the
+    /// call, no part is applied yet. The parts stay new, and the owner repeats them.
     ///
     /// A finger that stops or is caught in the period after the call discards its part. The hand cannot know this in
     /// advance.
@@ -125,7 +125,7 @@ impl Fingers {
         Ok(())
     }
 
-    /// Renews the validity of every finger. A finger that was caught follows again, from where it is.
+    /// Renews the validity of the set point of every finger. A finger that was caught follows again, from where it is.
     pub fn keep_valid(&mut self, silence: &Silence) {
         for number in self.numbers() {
             let index = number as usize - 1;
@@ -171,7 +171,7 @@ impl Fingers {
             }
             if let Destination::Path { end, until } = goal.destination {
                 if now >= until && (report.reference.joints - end).amax() < AT_END {
-                    // The finger follows the end of the path as a set point that it has reached.
+                    // From now on, the end of the path is an ordinary destination, to which the whole way was sent.
                     (self.goals[index].destination, self.goals[index].whole) = (Destination::Joints(end), true);
                 } else if self.admitted(number, &goal, &report, &report.reference.joints) < 1.0 {
                     // The finger lags behind its path. It leaves the path and moves straight to the last pose.
@@ -215,7 +215,7 @@ impl Fingers {
         if let Some((kx, damping)) = goal.spring.filter(|_| spring) {
             command = command.stiffness(rows(&kx)).damping(damping);
         }
-        // A finger that has stopped meanwhile refuses the command. The next call detects that.
+        // A finger that has stopped meanwhile refuses the command. The next report of the finger shows the stop.
         if self.hand.send_group(&[command]).is_ok() {
             (self.goals[index].destination, self.goals[index].kept) = (goal.destination, goal.kept);
             self.goals[index].note_sent(report, whole);

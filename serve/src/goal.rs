@@ -111,7 +111,7 @@ impl Goal {
 
     /// Returns the goal after a part with a new command number, taken at `now`, ns. `destination` is the destination
     /// of the part. If it is none, the goal keeps its destination. If neither the part nor an earlier one has a Kx, the
-    /// goal keeps the spring in `report`, or the spring from before the catch if the finger was caught.
+    /// goal takes the spring in `report`, or the spring from before the catch if the finger was caught.
     #[must_use]
     pub fn with(&self, part: &Part, destination: Option<Destination>, report: &FingerReport, now: u64) -> Self {
         let inherited = self.inherited.filter(|_| report.expired);

@@ -7,8 +7,9 @@
 
 use sun2xp::nalgebra::{Matrix3, Vector3};
 
-/// Returns how far the set point may be on the way from `joints` to `goal`, rad, as a fraction of the way, 0 to 1.
-/// `jacobian`, cm/rad, is that of the tip at `joints`, `stiffness` is Kx, N/cm, and `force` is the largest force, N.
+/// Returns the admitted fraction, 0 to 1, of the way from `joints` to `goal`, both in rad: the set point may be
+/// this far along the way. `jacobian`, cm/rad, is that of the tip at `joints`, `stiffness` is Kx, N/cm, and `force` is
+/// the largest force, N.
 #[must_use]
 pub fn admitted_part(
     jacobian: &Matrix3<f64>,

@@ -19,7 +19,7 @@ fn main() -> ExitCode {
             return ExitCode::from(WRONG_USAGE);
         }
         Err(help) => {
-            // A help text that nobody can read is no error.
+            // A help text or version that cannot be written is not an error.
             let _ = help.print();
             return ExitCode::SUCCESS;
         }

@@ -47,7 +47,7 @@ impl Ownership {
         self.owner.as_ref().is_some_and(|owner| owner.client == *client && owner.epoch == epoch)
     }
 
-    /// Returns the other owner because of whom an acquire by this client is refused; none if it is admitted.
+    /// Returns the owner because of whom an acquire by this client is refused; none if the acquire is admitted.
     #[must_use]
     pub fn other_owner(&self, client: &ClientName, take_over: bool) -> Option<&Owner> {
         self.owner.as_ref().filter(|owner| owner.client != *client && !take_over)

@@ -1,5 +1,5 @@
-//! Places of queries that wait for their answer. A client that asks faster than it reads takes no place from the
-//! Requests of other clients.
+//! Limits how many queries may wait for their answers: each waiting query has a place, and each client has a fixed
+//! number of places. So a client that asks faster than it reads takes no place from the Requests of other clients.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ const OF_STATUS: usize = 64;
 /// The number of waiting queries of each client. The entry without a name counts the waiting gets of the Status.
 type Counts = BTreeMap<Option<ClientName>, usize>;
 
-/// The places.
+/// The places of all waiting queries.
 #[derive(Clone, Default)]
 pub struct Places(Arc<Mutex<Counts>>);
 

@@ -1,5 +1,5 @@
 //! The callbacks of queries. They run in the threads of zenoh that receive Targets, so they never wait. They never drop
-//! a query either, because the thread that drops a query sends its end.
+//! a query either, because the thread that drops a query also sends the end of the query, and this sending can block.
 
 use crate::answers::Answers;
 use crate::places::Place;
@@ -9,11 +9,11 @@ use std::sync::Arc;
 use sun2xp_remote_protocol::{Action, Answer};
 use zenoh::query::Query;
 
-/// A query whose answer is not known yet. Dropping it ends the query without an answer, in another thread.
+/// A query whose answer is not known yet. Dropping this value ends the query without an answer, in another thread.
 struct Waiting {
     answers: Answers,
     query: Option<Query>,
-    /// None if too many Requests of the client wait. Then there is no answer.
+    /// None if too many Requests of the client wait. Then the query gets no answer.
     place: Option<Place>,
 }
 
@@ -36,7 +36,7 @@ impl Drop for Waiting {
     }
 }
 
-/// Takes a query under a key of Requests for an action.
+/// Takes a query whose key belongs to the Requests for this action.
 pub fn on_request(shared: &Arc<Shared>, answers: &Answers, action: Action, query: Query) {
     // A key with a wildcard belongs to no client.
     let Some(client) = shared.keys.client_of_request(action, query.key_expr().as_str()) else {

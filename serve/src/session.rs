@@ -44,7 +44,7 @@ pub fn open(settings: &Settings, access: &str, largest: u16) -> Result<Session, 
         .map_err(|_| failed("Zenoh, the network library, has failed: please report this defect".into()))?;
     opened.map_err(|error| {
         let text = error.to_string();
-        // zenoh appends the place in its sources.
+        // zenoh appends ` at `, and the file and line of its own source code that made the error.
         let cause = text.split(" at /").next().unwrap_or(&text).trim_end_matches('.');
         failed(format!(
             "{cause}. The server can listen only at addresses of this machine and at free ports. With TLS, it also \
@@ -79,16 +79,17 @@ fn config(settings: &Settings, access: &str, largest: u16) -> Result<Config, Ser
         ("scouting/delay", "0".into()),
         ("scouting/multicast/enabled", "false".into()),
         ("scouting/gossip/enabled", "false".into()),
-        // When zenoh receives a declaration, its functions recurse once for each part of the key. They run before
-        // access control. So a long key with many parts exhausts the stack. Two limits bound the length of a
-        // key: the size of a batch, which the two sides agree on when they connect, and the size of a message of
-        // several batches.
+        // When zenoh receives a declaration, it calls functions that recurse once for each part of the key, before
+        // access control checks the declaration. So a long key with many parts would exhaust the stack. Two limits
+        // bound the length of a key: the size of a batch, which the two sides agree on when they connect, and the size
+        // of a message of several batches.
         ("transport/link/tx/batch_size", largest.to_string()),
         ("transport/link/rx/max_message_size", largest.to_string()),
         ("transport/link/tx/queue/congestion_control/block/wait_before_close", LONGEST_WAIT.into()),
     ];
     if largest == LARGEST_OF_HAND {
-        // A State can need several of these smaller batches. The default queue of 2 batches may not hold a State.
+        // These batches are smaller than those of zenoh's default, so a State can need several batches. The default
+        // queue of 2 batches may not hold a State.
         entries.push(("transport/link/tx/queue/size/data", "16".into()));
     }
     if let Some(files) = &settings.tls {

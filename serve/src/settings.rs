@@ -201,7 +201,7 @@ pub fn client_name(text: &str) -> Result<ClientName, String> {
     check_client(&name).map(|()| name)
 }
 
-/// Checks that the files of a client with this name are visible.
+/// Checks that the files of the certificate of a client with this name are not hidden.
 ///
 /// # Errors
 /// Returns the reason if the name begins with a dot.

@@ -11,7 +11,7 @@ use sun2xp_remote_protocol::{FINGERS, FaultText, FingerStatus, Status};
 pub fn status(hand: &Hand, limits: &Limits, desk: &Desk, now: u64) -> Status {
     let mut fingers = [const { None }; FINGERS];
     for number in hand.fingers().members() {
-        // The hand has the finger, so it has a status.
+        // The hand has this finger, so the status of the finger can be read.
         fingers[number.index()] = of_finger(hand, number.get()).ok();
     }
     Status {

@@ -44,8 +44,8 @@ fn a_part_with_a_path_and_a_stiffness_is_applied_as_a_whole() {
     assert_eq!(rig.report(1).set_point.stiffness[(0, 0)], STIFF[0][0]);
 }
 
-/// At both limits of a joint, the hand tolerates the rounding error that the larger limit has as `float`. At the lower
-/// limit of joint 2, 5 degrees, this tolerance is more than the rounding error of the lower limit itself.
+/// At both limits of a joint, the hand tolerates the error that rounding to `float` causes at the larger limit. At the
+/// lower limit of joint 2, 5 degrees, this tolerance is more than the rounding error of the lower limit itself.
 #[test]
 fn the_lead_bounds_the_force_toward_a_limit_that_was_rounded() {
     let mut rig = Rig::new("lead_force = 1.0");

@@ -8,8 +8,8 @@ use std::time::Instant;
 use sun2xp_remote_protocol::{Action, Code};
 use zenoh::Wait;
 
-/// Number of queries of a flood. It exceeds the number of queries of one client that may wait, and the capacity of the
-/// queue of Answers.
+/// Number of queries of each kind in a flood: gets of the Status, and Requests of one client. It exceeds the number of
+/// queries of either kind that may wait, and the capacity of the queue of Answers.
 const MANY: usize = 500;
 
 #[test]

@@ -1,4 +1,5 @@
-//! The named hands that differ from their configuration, commanded over the network.
+//! Commands the named simulated hands over the network. These hands differ from the configuration that their controller
+//! uses.
 
 mod common;
 

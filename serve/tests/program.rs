@@ -19,7 +19,7 @@ fn run(arguments: &[&str]) -> Output {
     Command::new(PROGRAM).args(arguments).output().expect("the program")
 }
 
-/// A running program. Dropping it kills it.
+/// A running program. Dropping this value kills the program.
 struct Running(Child);
 
 impl Drop for Running {
@@ -111,8 +111,9 @@ fn an_ignored_signal_stays_ignored() {
     let folder = tempfile::tempdir().expect("a folder");
     let port = free_port();
     let (mut running, _) = start(folder.path(), &table(port), || at_hangup(libc::SIG_IGN));
-    // A server that ends in an orderly way may still publish States, and its exit status is 0 too. So the mask decides:
-    // the lowest bit is that of signal 1.
+    // States and exit status do not show whether the server ignores SIGHUP: a server that ends in an orderly way may
+    // still publish States, and its exit status is 0 too. The mask of ignored signals shows it. The lowest bit is that
+    // of signal 1, SIGHUP.
     let status = read_to_string(format!("/proc/{}/status", running.0.id())).expect("the status of the process");
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).expect("the ignored signals").trim();
     assert_eq!(u64::from_str_radix(ignored, 16).expect("a mask") & 1, 1, "SIGHUP is not ignored: {ignored}");

@@ -248,7 +248,7 @@ fn a_path_does_not_outlive_its_owner() {
     alice.repeat_until(&[path], "path", |alice| (alice.status()?.counts.taken > 3).then_some(()));
     let silent_from = report(&rig).losses.cycles;
     let caught = wait_for("catch", || Some(report(&rig)).filter(|report| report.expired));
-    // The client may have slept before it fell silent.
+    // On a busy machine, this thread may notice the catch late.
     assert!(caught.losses.cycles - silent_from < 10 * CAUGHT, "{}", caught.losses.cycles - silent_from);
     assert!((caught.set_point.joints[0] - end[0]).abs() > 0.1, "the path has not ended");
     rig.server.end();

@@ -254,8 +254,8 @@ impl PlannersEnd {
         Ok(())
     }
 
-    /// Gives `order`. If `adjustable` is present, this data is written first, so that a servo that has the order also has
-    /// the data.
+    /// Gives `order`. If `adjustable` is present, this data is written first, so that a servo that has the order also
+    /// has the data.
     fn order(&mut self, order: Order, adjustable: Option<Adjustable>) -> Result<Option<u32>, Fault> {
         let report = *self.reports.read();
         match report.stage {

@@ -54,7 +54,7 @@ fn a_benchmark_that_can_measure_nothing_prints_its_table_and_the_reason() {
         assert!(printed.contains(row), "{row:?} is missing:\n{printed}");
     }
     assert!(!printed.contains("NaN"), "{printed}");
-    // Three attempts of `throughput`, and ten of each other benchmark.
+    // `throughput` makes three attempts, and every one of the other benchmarks makes ten.
     let attempts = 3 + 10 * (BENCHMARKS.len() - 1);
     assert_eq!(reasons.matches("Other work on the machine can cause this.").count(), attempts, "{reasons}");
     assert!(reasons.matches("Too many open files").count() >= attempts, "{reasons}");

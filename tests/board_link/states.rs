@@ -109,15 +109,15 @@ fn a_hold_of_no_torque_is_a_hold_and_a_refused_configure_does_not_end_it() {
     cycle(&mut link, 0, pull(0));
     let deadline = in_time(&mut link, 1);
     assert!(link.stop(1, deadline).unwrap());
-    let holding = |link: &mut Link<SimulatedCable>| link.transport().board().finger(1).unwrap().status();
-    assert!(holding(&mut link).has(Status::HOLDING));
+    let status = |link: &mut Link<SimulatedCable>| link.transport().board().finger(1).unwrap().status();
+    assert!(status(&mut link).has(Status::HOLDING));
     let bad = Configure { version: 1, watchdog_ms: 0, ..Default::default() };
     let frame = WireFrame::new(&Message { address: 1, sequence: 9, frame: Frame::Configure(bad) });
     link.transport().write(frame.as_bytes()).unwrap();
-    assert!(holding(&mut link).has(Status::HOLDING));
+    assert!(status(&mut link).has(Status::HOLDING));
     let deadline = in_time(&mut link, 10);
     link.shake_hands(1, &terms(EndState::Hold), deadline).unwrap();
-    assert!(!holding(&mut link).has(Status::HOLDING));
+    assert!(!status(&mut link).has(Status::HOLDING));
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! Writes one object a line: JSON for any language, and single lines for a C program without a JSON parser.
+//! Writes JSON for any language. Each vector, and each step of a conversation, is on a line of its own, so that a C
+//! program needs no JSON parser.
 
 /// Writes an object of `"name": value` pairs. The values must already be JSON.
 pub fn object(pairs: &[(&str, String)]) -> String {

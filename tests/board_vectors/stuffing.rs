@@ -1,4 +1,4 @@
-//! Stuffing that is independent of the library's: it splits the frame at zeros.
+//! Byte stuffing (COBS) that is independent of the library's: it splits the frame at zeros.
 
 /// Encodes a frame for the line. A run without a zero must not exceed 253 bytes, because a longer run needs another
 /// encoding.

@@ -1,4 +1,5 @@
-//! Zeros against the truth: all named hands, both methods of zeroing, and random poses, zeros and seeds.
+//! Compares joint angles after zeroing with the true ones: for all named hands, for zeroing against the stops and at a
+//! pose, and for random poses, zeros and seeds.
 
 use crate::bench::Bench;
 use nalgebra::{Vector3, Vector4};
@@ -59,7 +60,8 @@ fn zero(bench: &mut Bench) -> Result<(), Obstacle> {
     Ok(())
 }
 
-/// Largest error of a joint angle of the finger as a spring, degrees. The error of each joint is averaged over 0.5 s.
+/// Makes the finger a spring, and returns its largest error of a joint angle, degrees. The error of each joint is
+/// averaged over 0.5 s.
 fn error(bench: &mut Bench) -> f64 {
     bench.follow_belief();
     bench.run(1.0, &Activity::TakeUpSlack);

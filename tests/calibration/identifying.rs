@@ -58,8 +58,8 @@ fn harsh_joint_friction_is_found() {
     }
 }
 
-/// A finger whose gauges show these fractions of the true tension, and whose motors give these fractions of the
-/// commanded torque.
+/// Identifies a finger whose gauges show these fractions of the true tension, and whose motors give these fractions of
+/// the commanded torque. Returns the finger and the findings.
 fn with_gains(gauges: [f64; 4], motors: [f64; 4], reference: GaugeReference) -> (ConfiguredFinger, Identified) {
     let mut truth = ConfiguredFinger::default();
     for (scale, gain) in truth.gauge.newton_per_count.iter_mut().zip(gauges) {

@@ -226,7 +226,7 @@ fn a_limp_finger_that_nothing_holds_is_refused() {
             trial.truth.simulation.joint_coulomb_friction = [friction; 3];
             trial.zero(&mut trial.limp(), |_, plant| plant.release())
         });
-        // Other fingers fall, or reach their stops, before the routine can push them.
+        // The remaining fingers fall, or reach their stops, before the routine can push them.
         let pushed = tally.refused.iter().filter(|(_, obstacle)| matches!(obstacle, Obstacle::NotHeld { .. }));
         assert!(tally.accepted == 0 && pushed.count() > 25, "{:?}", tally.refused);
     }

@@ -1,4 +1,5 @@
-//! Identification of fingers with friction, stiction or hardening tendons, and of fingers that were measured badly.
+//! Identification of fingers with friction, stiction or hardening tendons, and of fingers whose configured stiffness,
+//! gauge gains or moment arms are wrong.
 
 use crate::bench::Bench;
 use sun2xp::calibration::{Findings, Identified, Obstacle, Task};

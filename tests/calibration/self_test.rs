@@ -1,4 +1,4 @@
-//! The self-test names every kind of wrong wiring, and nothing on a finger that is wired correctly.
+//! The self-test names every kind of wrong wiring, and passes a finger that is wired correctly.
 
 use crate::bench::Bench;
 use rand_pcg::Pcg64;

@@ -63,8 +63,8 @@ impl PauseWatch {
         self.shared.processes().push((process, part));
     }
 
-    /// Closes all files and discards the measurements until the guard is dropped. Tests that count the resources of the
-    /// process need this.
+    /// Keeps all files closed and discards the measurements until the guard is dropped. Tests that count the resources
+    /// of the process need this.
     pub fn rest(&self) -> Rest<'_> {
         let [asked, done] = &self.shared.rests;
         asked.store(true, Relaxed);
@@ -112,7 +112,7 @@ pub fn name_pauses() -> &'static PauseWatch {
     })
 }
 
-/// Time before a failure that is searched for pauses.
+/// A failure report covers the pauses within this time before the failure.
 const BEFORE_A_FAILURE: Duration = Duration::from_secs(30);
 
 /// A failure reports the largest total of the pauses within a span of this length. A hand with the default watchdog

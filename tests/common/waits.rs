@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::time::Duration;
 
-/// The role of a thread on the path from servo to finger and back. Only one thread of a role can delay a byte at a
-/// time.
+/// The role of a thread on the path from servo to finger and back. At any time, only one thread of a role can delay a
+/// byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
     /// Servo threads of the library.

@@ -110,7 +110,7 @@ fn every_key_is_read_and_a_misspelt_one_is_refused_with_its_line() {
     }
 }
 
-/// Returns whether a comment contains a range that is not part of another one.
+/// Returns whether a comment contains this range, and not only as a part of another range.
 fn mentions(comment: &str, range: &str) -> bool {
     let numeric = |c: char| c.is_ascii_alphanumeric() || c == '-';
     comment.match_indices(range).any(|(start, _)| {
@@ -151,7 +151,7 @@ fn every_range_is_documented() {
     assert!(documented > 40, "only {documented} ranges found");
 }
 
-/// With larger numbers a finger oscillates, or presses on its stop until the time limit of its zeroing.
+/// With numbers above these ranges a finger oscillates, or presses on its stop until the time limit of its zeroing.
 #[test]
 fn numbers_with_which_a_finger_fails_are_refused() {
     usable("[finger]\ncontroller.damping_ratio = 0.45\nzeroing.torque = 95\n");

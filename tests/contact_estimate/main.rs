@@ -1,5 +1,5 @@
-//! Contact without sensors: the estimate against an independent derivation of the dynamics, and a short version of
-//! `benches/contact`.
+//! Tests the estimate of contacts without touch sensors: against an independent derivation of the dynamics, and with a
+//! short version of `benches/contact`.
 
 #[allow(dead_code)]
 #[path = "../../benches/contact/after_motion.rs"]

@@ -69,8 +69,8 @@ fn motion_causes_no_false_alarm() {
 }
 
 /// If the tendons of a hand rub, the error of the estimate depends on the direction of motion. An estimate that learned
-/// this error during a motion would keep the error in a contact right after the motion: the mean error was 0.32 N cm on
-/// the sheathed hand.
+/// this error during a motion would keep the error in a contact right after the motion. With such an estimate, the mean
+/// error was 0.32 N cm on the sheathed hand.
 #[test]
 fn a_contact_right_after_a_motion_has_no_error_of_the_motion() {
     for (name, most) in [("nominal", 0.03), ("sheathed, calibrated", 0.15)] {

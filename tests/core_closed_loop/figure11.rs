@@ -129,12 +129,12 @@ fn the_model_keeps_its_estimate_while_tensions_carry_no_information() {
     stuck.wanted = Activity::Tense(Vector4::repeat(40.0));
     stuck.estimate(2000, Some(9.0));
     stuck.wanted = Activity::Tense(Vector4::repeat(WANTED));
-    // After one cycle the pull is still at the limit.
+    // In the next cycle the pull that acted is still at the limit, so the model does not learn from it.
     let after = stuck.estimate(1, Some(9.0));
     assert!((after - before).abs() < 0.03, "{before}, {after}");
 }
 
-/// Moves a finger whose motors give 1.2 times the commanded torque to a pose for 2 s, with exact sensors. Returns the
+/// Sends a finger to a pose for 2 s, with exact sensors. Its motors give 1.2 times the commanded torque. Returns the
 /// final error of the joints and their speed, rad and rad/s. `geometry` selects whether the adapted M also converts
 /// motor angles to joint angles.
 fn with_adapted_kinematics(pose: Vector3<f64>, geometry: bool) -> (f64, f64) {

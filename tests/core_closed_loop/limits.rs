@@ -52,7 +52,7 @@ fn a_joint_beyond_its_limit_is_pushed_back() {
         let finger = finger_with(scheme);
         let mut servo = Loop::new(&finger, 1000.0);
         let (_, high) = finger.joint_limits();
-        // A limp finger bent by a force, which would push joint 1 to its stop.
+        // A force bends a limp finger. Without the soft joint limit, the force would push joint 1 to its stop.
         let limp = spring(Vector3::zeros(), 0.0);
         let beyond = |servo: &Loop| servo.plant.joints()[1] - high[1];
         servo.plant.set_external_force(Vector3::new(0.0, 0.0, -0.3));

@@ -117,7 +117,7 @@ fn without_damping_the_finger_does_not_rest() {
         finger.controller.motor_damping = Some(0.0);
         finger.controller.rate_time = Some(0.0);
         let mut servo = Loop::new(&finger, 1000.0);
-        // The finger swings so that tendons become slack and overloaded in turn.
+        // The finger swings so much that tendons become slack and overloaded in turn.
         servo.right_alarms = &[
             Symptom::BrokenTendon,
             Symptom::SlackTendon,

@@ -16,8 +16,8 @@ fn turned(angle: f64) -> Vector3<f64> {
     Vector3::new(2.0, 9.6 * angle.cos(), 9.6 * angle.sin())
 }
 
-/// Largest distance of the tip from its place without gravity, cm, in 2 s. `gravity` returns the true gravity at a
-/// time, s.
+/// Largest distance of the tip from its place without gravity, cm, in the last 2 of 3 s. `gravity` returns the true
+/// gravity at a time, s.
 fn deviation(finger: &ConfiguredFinger, gravity: impl Fn(f64) -> Vector3<f64>) -> f64 {
     let mut servo = Loop::in_gravity(finger, finger, &gravity(0.0), RATE);
     let (pose, links) = (servo.plant.joints(), finger.links());
@@ -48,11 +48,11 @@ fn a_hand_that_turns_once_a_second_holds_its_pose_as_one_at_rest() {
         println!("{scheme:?}: {turning:.4} cm, at rest {at_rest:.4} cm");
         assert!(turning < at_rest + increase, "{scheme:?}: {turning} cm while it turns, {at_rest} cm at rest");
         // Without compensation the finger sags.
-        let stale = {
+        let uncompensated = {
             let mut finger = finger.clone();
             finger.controller.gravity_compensation = false;
             deviation(&finger, |time| turned(TAU * time))
         };
-        assert!(stale > at_rest + 0.1, "{scheme:?}: {stale} cm without compensation");
+        assert!(uncompensated > at_rest + 0.1, "{scheme:?}: {uncompensated} cm without compensation");
     }
 }

@@ -25,7 +25,8 @@ pub struct IndependentFinger {
 impl IndependentFinger {
     /// A finger at rest at the pose, degrees, with a least tension of 5 N and no joint torque.
     pub fn new(pose: [f64; 3], gravity: Vector3<f64>, force: Vector3<f64>, torque: [f64; 4]) -> Self {
-        // Row 3 makes tendons 2 and 3 equal. Then rows 1 and 2 make tendons 1 and 4 equal: 2 * 0.62 t2 = 2 * 1.09 t1.
+        // Without joint torque, row 3 of R makes the tensions of tendons 2 and 3 equal. Then rows 1 and 2 make those of
+        // tendons 1 and 4 equal, and 2 * 0.62 t2 = 2 * 1.09 t1.
         let home_tension = [5.0, 5.0 * 1.09 / 0.62, 5.0 * 1.09 / 0.62, 5.0];
         let theta = Vector3::from(pose.map(f64::to_radians));
         let mut state = State::zeros();

@@ -35,7 +35,8 @@ impl Fingers {
         let mut keeping = goal;
         if goal.destination == Destination::None {
             match goal.kept.filter(|_| report.expired) {
-                // The place where a finger has become a spring can be slightly beyond a limit.
+                // The kept place can be the pose that the finger held when it became a spring. This pose can be
+                // slightly beyond a limit.
                 Some(place) => keeping.destination = Destination::Joints(self.clamped(number, &place.into())?.into()),
                 None => keeping.kept = Some(report.set_point.joints),
             }
@@ -56,7 +57,8 @@ impl Fingers {
         Ok(if whole { goal } else { pulled })
     }
 
-    /// Returns the place on the way to the destination that the lead admits, and whether it is the destination.
+    /// Returns the farthest place on the way to the destination that the lead admits, and whether this place is the
+    /// destination itself.
     pub(super) fn led(
         &self,
         number: i32,
@@ -87,9 +89,9 @@ impl Fingers {
         }
     }
 
-    /// Returns the joint angles within the limits that the hand uses if `joints` are sent, rad; none if the hand
-    /// refuses `joints`. The check is the hand's own. If it were stricter, angles that only the hand admits would be
-    /// sent without the bound of the lead.
+    /// Returns the joint angles, rad, that the hand uses if `joints` are sent: they are within the limits. Returns none
+    /// if the hand refuses `joints`. The check is the hand's own. If it were stricter, angles that only the hand admits
+    /// would be sent without the bound of the lead.
     pub(super) fn within_limits(
         &self,
         finger: FingerNumber,

@@ -41,7 +41,7 @@ pub(super) fn run<R: Reply>(
         shared.busy.store(false, Ordering::Release);
         return Some((reply, ended(&shared.desk.lock(), epoch)));
     }
-    // A closure whose thread cannot be started is dropped, with everything that it owns.
+    // If the thread cannot be started, its closure is dropped with everything that it owns. `kept` keeps the reply.
     let kept = Arc::new(Mutex::new(Some(reply)));
     let (of_thread, of_reply) = (shared.clone(), kept.clone());
     let started = spawn("sun2xp request", Priority::default(), move |_| {

@@ -25,7 +25,7 @@ pub(super) fn recover_for_new_owner(shared: &Shared, stops: &Stops) -> Result<()
 }
 
 /// Recovers this finger, or every finger if `finger` is none. `stops` was read when the request was admitted. A finger
-/// that was stopped since stays stopped.
+/// that is stopped after this moment stays stopped.
 pub(super) fn recover(shared: &Shared, finger: Option<Finger>, stops: &Stops) -> Result<(), HandError> {
     let recovered = recover_fingers(shared, finger, stops);
     let stopped = shared.desk.lock().stop_again(stops);
@@ -40,7 +40,7 @@ fn recover_fingers(shared: &Shared, finger: Option<Finger>, stops: &Stops) -> Re
         None => hand.fingers().members().map(|member| member.get()).collect(),
     };
     let begun = numbers.into_iter().map(|number| Recovering::begin(hand, number)).collect::<Result<Vec<_>, _>>()?;
-    // The recoveries would undo the stops that came before they began. Later stops end them.
+    // A recovery would undo a stop that came before the recovery began. A later stop ends the recovery.
     shared.desk.lock().stop_again(stops)?;
     let reconnected: Vec<_> = begun.iter().map(Recovering::reconnect).collect();
     let recovered: Vec<_> = begun

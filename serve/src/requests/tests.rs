@@ -82,7 +82,7 @@ fn a_finger_whose_set_point_expires_while_an_acquire_recovers_another_is_recover
     join(&shared);
 }
 
-/// Such a finger is not recovered, because the owner may have fallen silent since its request.
+/// The finger is not recovered, because the owner may have fallen silent since its request.
 #[test]
 fn a_finger_whose_set_point_expires_during_a_recovery_for_the_owner_stays_stopped() {
     let shared = shared();
@@ -94,7 +94,7 @@ fn a_finger_whose_set_point_expires_during_a_recovery_for_the_owner_stays_stoppe
     join(&shared);
 }
 
-/// The finger would otherwise tighten its tendons before it is stopped again.
+/// If the recovery began, the finger would tighten its tendons before it is stopped again.
 #[test]
 fn a_stop_since_the_request_prevents_the_recovery() {
     let shared = shared();

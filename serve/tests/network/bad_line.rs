@@ -1,4 +1,5 @@
-//! Lines that lose packets or delay them: no wrong set point is applied, none out of order, and motion stays smooth.
+//! Lines that lose packets or delay them: no wrong set point is applied, the set points are applied in order, and the
+//! motion stays smooth.
 
 use super::line::{Direction, Line};
 use super::observer::has_stiffness;
@@ -26,7 +27,7 @@ const LARGEST_VELOCITY: f64 = 3.1;
 /// encoders.
 const WINDOW: u64 = 20_000_000;
 
-/// What the board saw of finger 1.
+/// What the telemetry of the hand has shown of finger 1.
 #[derive(Debug, Default)]
 struct Seen {
     /// The set points of joint 1 while the finger followed the planner, one for each cycle, rad.
@@ -70,7 +71,8 @@ impl Seen {
     }
 }
 
-/// Lets the planner close finger 1 in equal steps over a line that `spoil` has spoiled, and returns what the board saw.
+/// Lets the planner close finger 1 in equal steps over a line that `spoil` has spoiled, and returns what the telemetry
+/// has shown.
 fn ramp(line: Line, name: &str, catch_ms: u32, spoil: impl FnOnce(&Line)) -> Seen {
     let mut rig = Rig::new(line, name, catch_ms);
     let planner = rig.planner(Motion::Ramp);
@@ -94,8 +96,8 @@ fn ramp(line: Line, name: &str, catch_ms: u32, spoil: impl FnOnce(&Line)) -> See
 /// Checks that the planner has sent every set point that was applied, that the set points are in order, and that the
 /// finger moves smoothly.
 fn assert_ordered(seen: &Seen, name: &str) {
-    // At the moment at which the line is spoiled, the finger follows the planner. It is caught only when the newest
-    // Target is `catch_ms`, 100 ms or more, old.
+    // At the moment at which the line is spoiled, the finger follows the planner. It is caught only when the age of the
+    // newest Target reaches `catch_ms`, which is at least 100 ms in these tests.
     assert!(seen.set_points.len() >= 20, "{name}: only {} cycles followed the planner", seen.set_points.len());
     for pair in seen.set_points.windows(2) {
         assert!(pair[1] >= pair[0], "{name}: {} follows {}", pair[1], pair[0]);

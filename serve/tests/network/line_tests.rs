@@ -120,7 +120,7 @@ fn packets_pass_the_line_and_a_cut_stops_one_direction_or_both() {
     wait_for(&line, Direction::Right, before.0, 1);
     assert_eq!(line.counts(Direction::Right), (before.0 + 1, before.1 + 1));
     line.set_both(Conditions::default());
-    // Nothing of what was sent during the cut comes later.
+    // Nothing that was sent during the cut arrives later.
     assert!(passes(&left, &right, &mut bytes), "{bytes:?}");
     line.set_both(Conditions::CUT);
     let before = line.counts(Direction::Left);

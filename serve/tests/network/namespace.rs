@@ -7,7 +7,7 @@ use std::os::fd::AsRawFd;
 use std::process::Command;
 use std::thread;
 
-/// A network namespace. It ends when the last thread, program or descriptor of it does.
+/// A network namespace. The kernel removes it when no thread, program or descriptor uses it any more.
 pub struct Namespace(File);
 
 impl Namespace {

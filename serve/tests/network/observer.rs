@@ -1,4 +1,5 @@
-//! What a hand does, cycle by cycle, as its telemetry shows it: at the board, and independent of the network.
+//! What a hand does, cycle by cycle, as its telemetry shows it. The telemetry is read on the machine of the hand, so it
+//! does not depend on the network.
 
 use std::time::{Duration, Instant};
 use sun2xp::Stage;
@@ -15,7 +16,7 @@ pub struct Observer {
 }
 
 impl Observer {
-    /// Attaches to the hand with this name of telemetry. The thread must be in the network namespace of the hand.
+    /// Attaches to the hand whose telemetry has this name. The thread must be in the network namespace of the hand.
     pub fn attach(name: &str) -> Self {
         let deadline = Instant::now() + APPEARS;
         loop {

@@ -1,4 +1,4 @@
-//! Outages: the planner or the line fails, and the hand is observed at the board.
+//! Outages: the planner or the line fails, and the telemetry of the hand shows what the fingers do.
 
 use super::line::{Direction, Line};
 use super::observer::{Observer, has_stiffness};

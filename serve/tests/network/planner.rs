@@ -59,7 +59,7 @@ impl Motion {
     }
 }
 
-/// The process of a planner. Dropping it kills it.
+/// The process of a planner. Dropping this value kills the process.
 pub struct Planner {
     process: Child,
 }

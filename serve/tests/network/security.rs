@@ -114,7 +114,7 @@ fn a_client_that_is_not_listed_or_may_only_read_commands_nothing() {
     assert_eq!(stranger.ask(Action::Stop, None).expect("an answer").code, Code::NotOwner);
     let status = planner.until(|_| true);
     assert_eq!(status.owner.map(|owner| owner.to_string()).as_deref(), Some("planner"));
-    // Whoever may read may stop.
+    // A client that may read may also stop fingers.
     assert_eq!(screen.ask(Action::Stop, Some(Finger::ALL[0])).expect("an answer").code, Code::Done);
     server.end();
 }

@@ -48,7 +48,7 @@ impl Served {
         line.left.run(|| Observer::attach(&self.name))
     }
 
-    /// What a client at the right end of the line needs, as text.
+    /// The configuration of a client at the right end of the line, as text.
     pub fn remote(&self, client: &str) -> String {
         let file = |name: String| self.folder.path().join(name).display().to_string();
         format!(

@@ -1,5 +1,5 @@
-//! What a bad line does to packets, on the clock of the caller: loses some, delays the others, and may let a later
-//! packet overtake an earlier one.
+//! A model of a bad line, on the clock of the caller. The line loses some packets, delays the others, and may let a
+//! later packet overtake an earlier one.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -42,7 +42,7 @@ enum Stage {
     /// The common tension rises to its higher level.
     Rise,
     Grow,
-    /// The number of the present period, from 1, as in `Measure`.
+    /// Contains the number of the present period, counted from 1. `Measure` contains such a number too.
     Settle(usize),
     Measure(usize),
     Fade,

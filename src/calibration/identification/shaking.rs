@@ -3,8 +3,8 @@
 //!
 //! The friction of the pulleys makes the gauges differ from the tensions at the joints, in proportion to the tension.
 //! The two levels separate this friction from the Coulomb friction of the joints. The two directions are oblique: every
-//! tendon moves in both, and different tendons move toward their motors in the one and in the other, so that each
-//! tendon's share of the friction can be found.
+//! tendon moves in both, but the tendons that move toward their motors are not the same in both, so that each tendon's
+//! share of the friction can be found.
 
 use super::joint_friction::{JointFriction, STROKES, Stroke};
 use super::motor_friction::MotorFriction;

@@ -43,9 +43,9 @@ impl Mailbox {
     }
 
     /// Prepares a path, as [`Mailbox::send_path`] sends it. `spring`, `origin` and `valid` are the parts of its
-    /// parameter `when`. `command` changes the set point before the path begins, as [`Mailbox::try_send`] does, and says
-    /// which part it replaces. A caller that prepares several fingers must do this in the order of their numbers, as for
-    /// [`Mailbox::prepare`].
+    /// parameter `when`. `command` changes the set point before the path begins, as [`Mailbox::try_send`] does, and
+    /// says which part it replaces. A caller that prepares several fingers must do this in the order of their numbers,
+    /// as for [`Mailbox::prepare`].
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. If `command` or `change` refuses the set point, the inner result is

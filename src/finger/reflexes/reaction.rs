@@ -51,8 +51,8 @@ impl ReactionLimits {
         }
     }
 
-    /// Returns the set point after a reaction, or none for a stop. A grip without effect leaves the set point where it
-    /// is. `report` is the report of the last cycle. `followed` is the set point that the finger follows.
+    /// Returns the set point after a reaction, or none for a stop. A grip without effect does not move the anchor of
+    /// the spring. `report` is the report of the last cycle. `followed` is the set point that the finger follows.
     pub(in crate::finger) fn react(
         &self,
         reaction: &Reaction,

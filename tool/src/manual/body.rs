@@ -14,7 +14,7 @@ pub fn section(page: &mut Roff, title: &str, lines: &[&str]) {
 pub fn body(page: &mut Roff, lines: &[&str]) {
     for paragraph in lines.split(|line| line.trim().is_empty()).filter(|paragraph| !paragraph.is_empty()) {
         page.control("PP", []);
-        // A line of prose may introduce preformatted lines: "Returns 0, or -1 with".
+        // A line of prose, for example "Returns 0, or -1 with", may introduce preformatted lines.
         for run in paragraph.chunk_by(|left, right| left.starts_with(' ') == right.starts_with(' ')) {
             if run[0].starts_with(' ') {
                 preformatted(page, run);

@@ -27,7 +27,7 @@ pub fn page(file: &str) -> Page {
         } else if let Some(line) = trimmed.strip_prefix('#') {
             comment.push(line.strip_prefix(' ').unwrap_or(line));
         } else if tables {
-            // A comment that an empty line follows is not about one key, but about all keys that follow.
+            // A comment before an empty line is not about one key, but about all keys that follow.
             body(&mut text, &std::mem::take(&mut comment));
         }
     }

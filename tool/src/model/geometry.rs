@@ -75,7 +75,7 @@ pub struct Link {
     pub mass: f64,
     /// Centre of mass in the frame of the link.
     pub centre: [f64; 3],
-    /// Moments of inertia about the axes through the centre of mass.
+    /// Moments of inertia about axes through the centre of mass that are parallel to those of the link's frame.
     pub inertia: [f64; 3],
 }
 
@@ -99,7 +99,7 @@ pub struct Object {
 /// A plane in the palm's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Table {
-    /// Unit normal on the side of the object.
+    /// Unit normal of the plane. It points to the side on which the object is.
     pub up: [f64; 3],
     /// A point of the plane.
     pub point: [f64; 3],

@@ -1,6 +1,6 @@
 //! A hand as MJCF, the format of MuJoCo: <https://mujoco.readthedocs.io/en/stable/XMLreference.html>. Each tendon is an
-//! element `fixed`: a linear combination of joint angles, whose coefficients are the moment arms R. So the controls t,
-//! N, cause the joint torques R t (eq. 13).
+//! element `fixed`: a linear combination of joint angles, whose coefficients are the moment arms R. The controls are
+//! the tensions t, N. So they cause the joint torques R t (eq. 13).
 
 use super::geometry::{Finger, Geometry, Link, Object};
 use super::shape::{Form, Shape};

@@ -12,8 +12,8 @@ use sun2xp::nalgebra::Vector3;
 pub fn urdf(geometry: &Geometry, configuration: &Configuration) -> String {
     let mut xml = Xml::new("Written by sun2xp model. Lengths are in m, masses in kg, angles in rad.");
     xml.open("robot", &[("name", &"sun2xp")]);
-    // Without this element MuJoCo would merge each fingertip with the last link, because the tip does not move in that
-    // link.
+    // Without this element MuJoCo would merge each fingertip with the last link, because the tip does not move relative
+    // to that link.
     xml.open("mujoco", &[]);
     xml.empty("compiler", &[("fusestatic", &"false"), ("discardvisual", &"false"), ("balanceinertia", &"false")]);
     xml.close();
@@ -85,8 +85,8 @@ fn joint(
         "limit",
         &[("lower", &stops[0]), ("upper", &stops[1]), ("effort", &effort), ("velocity", &configured.motion.speed)],
     );
-    // The soft limits of the controller. The gains of a planner are not known: `k_velocity` is 0, and `k_position` is
-    // left out.
+    // The soft limits of the controller. The two gains of this element depend on the planner and are not known here. So
+    // `k_velocity` is 0, and `k_position` is left out.
     let soft = [("soft_lower_limit", limits[0]), ("soft_upper_limit", limits[1]), ("k_velocity", 0.0)];
     let soft: Vec<Attribute> = soft.iter().map(|(key, value)| (*key, value as _)).collect();
     xml.empty("safety_controller", &soft);
@@ -95,7 +95,8 @@ fn joint(
     xml.close();
 }
 
-/// Returns the largest torque, N m, that tendons within their bounds exert on a joint with these moment arms, cm.
+/// Returns the largest torque, N m, that the tendons can exert on a joint while all tensions are within their bounds.
+/// `arms` are the moment arms of the joint, cm.
 fn largest_torque(arms: &[f64; 4], finger: &ConfiguredFinger) -> f64 {
     let (least, most) = (finger.tendon.minimum, finger.tendon.maximum);
     let towards = |sign: f64| -> f64 {

@@ -24,7 +24,7 @@ pub fn write(folder: &Path, hand: &HandState, screen: &Buffer) -> io::Result<[Pa
     write_new(folder, &format!("sun2xp-{}-{time}", hand.name), &contents)
 }
 
-/// Writes the files under this name. If the name is taken, adds the first number that is free to it.
+/// Writes the files under this name. If the name is taken, appends the first free number to it.
 fn write_new(folder: &Path, name: &str, contents: &[Vec<u8>; 3]) -> io::Result<[PathBuf; 3]> {
     for number in 0..MOST {
         let suffix = if number == 0 { String::new() } else { format!("-{number}") };

@@ -94,7 +94,7 @@ impl Wanted {
             match Reader::attach(Some(&name)) {
                 Ok(reader) if reader.description().process == process => return Ok(reader),
                 Ok(_) => {}
-                // This hand may be that of the process. If no other hand is, the caller gets this error.
+                // This hand may belong to the process. If no other hand belongs to it, the caller gets this error.
                 Err(error) => refusal = error,
             }
         }
@@ -164,7 +164,7 @@ mod tests {
         let (hand, source) = watched("stalled");
         drop(hand);
         let mut count = 0;
-        // The machine of the tests may be busy.
+        // The time limit is long, because the machine that runs the tests may be busy.
         while !matches!(source.news.recv_timeout(Duration::from_secs(60)).expect("news"), News::Ended(_)) {
             count += 1;
         }

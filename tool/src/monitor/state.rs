@@ -66,7 +66,8 @@ pub struct EventState {
     pub monotonic: u64,
     /// What happened, in words.
     pub text: String,
-    /// Number of such events in short succession. Time and text are those of the last one.
+    /// Number of events of the same finger, kind and part that came in short succession and share this entry. Time and
+    /// text are those of the last one.
     pub count: u32,
     #[serde(skip)]
     kind: (EventKind, Part),

@@ -22,8 +22,8 @@ impl Screen {
         io::stdin().is_terminal() && io::stdout().is_terminal()
     }
 
-    /// Takes the terminal. `urgent` gets each key and change of size first, in the thread that reads them, so that it
-    /// does not wait for a slow terminal.
+    /// Takes the terminal. `urgent` gets each key and change of size first. It runs in the thread that reads them, so
+    /// it does not wait for a slow terminal.
     ///
     /// # Errors
     /// Returns an error if the terminal does not permit raw mode.

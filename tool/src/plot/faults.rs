@@ -9,7 +9,8 @@ use super::{LONGEST_PAUSE, Plot, Selection};
 use crate::failure::Failure;
 use crate::trace::{Item, Mark as Happened, MarkKind, Row};
 
-/// Height of the rows of a finger and the space below them, pixels. The height of one row is in the units of the panel.
+/// Height of all rows of a finger together, and height of the space below these rows, pixels. The last constant is the
+/// height of the bar in one row, in units of the panel's y axis.
 const FINGER: f64 = 132.0;
 const GAP: f64 = 54.0;
 const ROW: f64 = 0.8;
@@ -21,10 +22,11 @@ const ROWS: [(&str, Colour); 4] =
 /// The row of the lost replies.
 const LOST: usize = 3;
 
-/// Height of a line of the list below, pixels, and the largest number of marks in the list. A mark may have several
-/// lines. If there are more marks, a line with the number of the others takes the place of the last one.
+/// Height of a line of the list below the panels, pixels, and the largest number of marks in this list. A mark may have
+/// several lines. If there are more marks, the list has one mark less than this number, and ends with a line that tells
+/// how many marks are left out.
 const LINE: f64 = 23.0;
-const MOST_LINES: usize = 18;
+const MOST_MARKS: usize = 18;
 
 /// Width of a text in the list, pixels, and the largest number of its lines. The texts of faults and warnings may have
 /// more than one line.
@@ -109,10 +111,10 @@ impl Faults {
     /// The marks of the list, in chronological order: all, or the most serious ones if there are too many.
     fn listed(&self) -> Vec<(f64, &Happened)> {
         let mut listed: Vec<(f64, &Happened)> = self.happened.iter().map(|(time, mark)| (*time, mark)).collect();
-        if listed.len() > MOST_LINES {
+        if listed.len() > MOST_MARKS {
             // Of equally serious marks, the first ones stay.
             listed.sort_by(|one, other| other.1.kind.cmp(&one.1.kind).then(one.0.total_cmp(&other.0)));
-            listed.truncate(MOST_LINES - 1);
+            listed.truncate(MOST_MARKS - 1);
         }
         listed.sort_by(|one, other| one.0.total_cmp(&other.0));
         listed

@@ -23,8 +23,8 @@ const AROUND: (f64, f64) = (-0.2, 1.3);
 /// A step of the set point is at least this large, degrees.
 const SMALLEST: f64 = 0.5;
 
-/// A joint has settled when it stays within this fraction of the step for this time, s. Later deviations do not count,
-/// for example because somebody pushes the finger.
+/// A joint has settled when its distance from the set point stays within this fraction of the step for this time, s.
+/// Later deviations, for example when somebody pushes the finger, do not count.
 const SETTLED: f64 = 0.05;
 const STAYS: f64 = 0.2;
 

@@ -23,7 +23,8 @@ const GAP: f64 = 84.0;
 /// Number of bins in a factor of ten.
 const BINS: f64 = 20.0;
 
-/// The times of the cycles of one finger: the time of the cycle, s, its wake-up and its end, us.
+/// The times of the cycles of one finger. For each cycle: its place on the time axis, s, and the times from its
+/// scheduled beginning to its wake-up and to the end of its computation, us.
 #[derive(Default)]
 struct Times(Vec<(f64, f32, f32)>);
 

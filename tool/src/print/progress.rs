@@ -24,7 +24,7 @@ pub struct Progress {
     lines: Mutex<Lines>,
 }
 
-/// When to print a line, and what is known.
+/// How far the work has come, and what determines when the next line is printed.
 struct Lines {
     began: Instant,
     printed: Option<Instant>,
@@ -45,7 +45,7 @@ impl Progress {
         Self { what, bar, lines: Mutex::new(Lines::new(total)) }
     }
 
-    /// Prints a line at once for each new name of [`Self::now`], where standard error is not a terminal.
+    /// Where standard error is not a terminal, prints a line at once for each new name that [`Self::now`] receives.
     pub fn with_every_name(self) -> Self {
         self.change(|lines| lines.named = true);
         self

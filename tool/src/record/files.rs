@@ -178,8 +178,9 @@ impl Files {
         }
     }
 
-    /// Deletes the oldest file if there are too many, and earlier ones that could not be deleted. Returns the reason if
-    /// the oldest file cannot be deleted. The recording then continues, because the cycles matter more than the space.
+    /// Deletes the oldest file if there are too many. Tries again to delete earlier files that could not be deleted.
+    /// Returns the reason if the oldest file cannot be deleted. The recording then continues, because the cycles matter
+    /// more than the space.
     fn delete_oldest(&mut self) -> Option<String> {
         self.undeleted.retain(|path| delete(path).is_err());
         let superfluous = self.limits.keep.is_some_and(|keep| self.paths.len() > keep as usize);
@@ -260,7 +261,7 @@ fn delete(path: &Path) -> io::Result<()> {
 }
 
 /// The failure of a file to which the writer of recordings cannot write. The text of the writer's error says only that
-/// writing failed, so the message contains the error of the system that caused it.
+/// writing failed. So the failure contains the error of the operating system that is the cause of the writer's error.
 fn unwritten(path: &Path, error: &(dyn Error + 'static)) -> Failure {
     match successors(Some(error), |&error| error.source()).find_map(|error| error.downcast_ref::<io::Error>()) {
         Some(of_system) => unwritable(path, of_system),

@@ -15,8 +15,8 @@ const HEADER: [u8; 4] = [0, 1, 0, 0];
 pub fn encode(sample: &Sample, bytes: &mut Vec<u8>) {
     bytes.clear();
     bytes.extend_from_slice(&HEADER);
-    // The fields begin at a multiple of eight. Numbers of eight bytes come first, and the four single bytes after them
-    // align the length of the string. So no field needs padding.
+    // CDR aligns each field relative to the end of the header. Numbers of eight bytes come first, and the four single
+    // bytes after them align the length of the string. So no field needs padding.
     for number in [sample.cycle, sample.began] {
         bytes.extend_from_slice(&number.to_le_bytes());
     }

@@ -23,7 +23,8 @@ pub const STATUS: &str = "/status";
 /// Channel of lost cycles.
 pub const LOST: &str = "/lost";
 
-/// Encoding of the messages for replay. Reading a recording takes the cycles from them, and not from the samples.
+/// Encoding of the messages for replay. The reader of a recording takes the cycles from these messages, and not from
+/// the samples.
 pub const POSTCARD: &str = "postcard";
 
 /// Returns the channel of a finger's samples.

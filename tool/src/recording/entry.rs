@@ -7,7 +7,7 @@ use sun2xp::telemetry::Message;
 #[derive(Clone, Debug)]
 #[expect(
     clippy::large_enum_variant,
-    reason = "most values are of the large variant, and a box is an allocation for each"
+    reason = "most values are of the large variant, and a box would cost an allocation for each"
 )]
 pub enum Item {
     /// A message of telemetry. In a status, `last` (the last cycle) is `None`.

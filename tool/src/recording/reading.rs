@@ -50,7 +50,7 @@ struct Mcap {
 /// A record that this program reads.
 #[expect(
     clippy::large_enum_variant,
-    reason = "most values are of the large variant, and a box is an allocation for each"
+    reason = "most values are of the large variant, and a box would cost an allocation for each"
 )]
 enum Found {
     Description(Box<Description>),

@@ -151,7 +151,7 @@ fn a_recording_that_is_cut_anywhere_is_readable_up_to_its_last_whole_chunk() {
         read.push(count);
     }
     assert!(read.is_sorted() && *read.last().expect("parts") > 300, "{read:?}");
-    // Altered bytes are an error or change nothing, and never a panic.
+    // Altered bytes cause an error or change nothing. They never cause a panic.
     for place in (0..whole.len()).step_by(whole.len() / 300) {
         let mut altered = whole.clone();
         altered[place] ^= 0x55;
@@ -187,7 +187,7 @@ fn the_times_of_a_black_box_do_not_depend_on_the_time_of_its_file() {
     let text = fs::read_to_string(&path).expect("text");
     let error = offset(&text).abs_diff(clock_offset());
     assert!(error < 1_000_000_000, "{error} ns");
-    // A file of an older library has only the time in whole seconds at which it was written.
+    // A file of an older library contains only the time at which it was written, in whole seconds.
     let (before, after) = text.split_once("\"clock_offset\":").expect("the key");
     let (_, after) = after.split_once(',').expect("the next key");
     let error = offset(&format!("{before}{after}")).abs_diff(clock_offset());

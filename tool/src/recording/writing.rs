@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 use sun2xp::model::FingerNumber;
 use sun2xp::telemetry::{Description, Message, Status, View};
 
-/// Longest time for which messages are collected before they are written as a chunk. Together with the batches of
-/// telemetry this is less than a second, so a crash of the recorder loses less than a second.
+/// Longest time for which messages are collected before they are written as a chunk. This time and the time that a
+/// batch of telemetry covers are together less than a second, so a crash of the recorder loses less than a second.
 const CHUNK_TIME: Duration = Duration::from_millis(500);
 
 /// Largest size of a chunk before compression, bytes. A chunk that reaches it is written earlier: three fingers at 5000
@@ -123,7 +123,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
                 self.write_json(EVENTS, event.time, &named)
             }
             Message::Object(object) => self.write_json(OBJECT, self.time, object),
-            // The last cycle is in the finger's own channels.
+            // The status is written without its last cycle, because that cycle is in the finger's own channels.
             Message::Status(status) => {
                 let status = Status { last: None, ..(**status).clone() };
                 self.write_json(STATUS, status.time, &status)

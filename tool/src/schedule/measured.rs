@@ -33,7 +33,7 @@ pub fn measure(configuration: &Configuration, duration: Duration, p999: bool) ->
 }
 
 /// Gives a finger as many reflexes as it can have. All of them fire again and again, so one of them reacts in every
-/// cycle. The measured computing time thus includes the aperiodic server at its limit.
+/// cycle. The measured computing time thus includes the largest amount of work that reflexes can cause.
 fn busy_with_reflexes(hand: &Hand, finger: FingerNumber) -> Result<(), Failure> {
     let reflex = Reflex {
         condition: Condition::ForceAbove(0.0),

@@ -130,7 +130,7 @@ fn task(hand: &Configuration, fingers: &[FingerNumber], period: f64, costs: &Cos
     // Fingers on one thread have the same core and priority, because the configuration was checked.
     let first = &hand.fingers[fingers[0].index()];
     let ports = lines(hand, fingers).count() as f64;
-    // Required times are rounded up, the available time is rounded down.
+    // Required times are rounded up, and the available time is rounded down.
     let needed = |microseconds: f64| (microseconds * 1e3).ceil() as u64;
     PeriodicThread {
         core: first.core,

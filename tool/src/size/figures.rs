@@ -63,7 +63,7 @@ struct Finger<'a> {
     radius: Vector4<f64>,
 }
 
-/// Returns the figures of a finger. The worst tendon determines each.
+/// Returns the figures of a finger. The worst tendon determines each figure.
 pub fn figures(configured: &ConfiguredFinger, rate: f64, wanted: &Wanted) -> Result<Vec<Figure>, Failure> {
     let radius = Vector4::from(configured.geometry.motor_radius);
     let finger = Finger { configured, mechanics: Mechanics::new(configured)?, radius };

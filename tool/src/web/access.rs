@@ -18,7 +18,8 @@ const TOKEN_BYTES: usize = 16;
 pub struct Access {
     /// The address of the server.
     pub address: SocketAddr,
-    /// The token that every request for data must contain. It is none on loopback without control.
+    /// The token that every request for data must contain. It is none if the server listens on loopback and its pages
+    /// may not move the hand.
     pub token: Option<String>,
     /// The name of this machine.
     pub machine: Option<String>,

@@ -12,8 +12,8 @@ use sun2xp::Hand;
 use sun2xp::model::configuration::Configuration;
 use tokio::sync::mpsc::UnboundedSender;
 
-/// Number of commands of pages that may wait. A recovery takes seconds, and commands wait for it. The end of a push may
-/// always wait, because the push would otherwise go on.
+/// Number of commands of pages that may wait. A recovery takes seconds, and commands wait for it. A command that ends a
+/// push is accepted even if more commands wait, because the push would otherwise go on.
 const WAITING: usize = 32;
 
 /// The thread that carries the commands out one after the other. It holds the hand only while it carries one out.

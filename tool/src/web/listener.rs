@@ -57,7 +57,8 @@ impl Connection {
         Self { stream, silence, deadline, accepted: Instant::now(), place }
     }
 
-    /// Returns whether the time for the header or the answer is over. If it is not, the task is woken when it is over.
+    /// Returns whether the time for the header or the answer is over. If this time is not over, the task is woken at
+    /// its end.
     fn late(&mut self, context: &mut Context) -> bool {
         while self.deadline.as_mut().poll(context).is_ready() {
             let Some(time) = self.place.time() else { return false };

@@ -93,7 +93,7 @@ pub struct LinkMessage {
 #[derive(Debug, Serialize)]
 pub struct Batch<'a> {
     pub number: u64,
-    /// Cycles that the reader of the hand has lost since it was attached, of all fingers.
+    /// Number of cycles, of all fingers together, that the reader of the hand has lost since the reader was attached.
     pub lost: u64,
     /// Cycles of all fingers in this batch, and in all batches up to this one.
     pub cycles: [u64; 2],

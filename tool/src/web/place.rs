@@ -15,7 +15,7 @@ const ANSWER: Duration = Duration::from_secs(60);
 #[derive(Clone)]
 pub struct Place(Arc<Mutex<Progress>>);
 
-/// How far a connection is.
+/// How far the exchange on a connection has come.
 enum Progress {
     /// The header of the request has not arrived as a whole.
     Header(OwnedSemaphorePermit),

@@ -12,7 +12,7 @@ use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders, Paragraph};
 
-/// Smallest room in which the histogram has more than one line.
+/// Smallest height inside the panel's borders at which the histogram has more than one line.
 const TALL: u16 = 13;
 
 /// Width of the labels.

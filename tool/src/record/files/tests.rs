@@ -124,7 +124,7 @@ fn marks_before_the_first_cycle_of_a_file_have_the_time_of_the_cycle_before() {
 }
 
 #[test]
-fn files_are_numbered_before_their_ending() {
+fn the_number_of_a_file_precedes_its_extension() {
     assert_eq!(numbered(Path::new("a/hand.mcap"), 2), Path::new("a/hand-2.mcap"));
     assert_eq!(numbered(Path::new("hand"), 11), Path::new("hand-11"));
 }

@@ -1,4 +1,4 @@
-//! Schedules that are computed by hand.
+//! Schedules whose expected times were calculated with pencil and paper.
 
 use super::super::fastest::Fastest;
 use super::*;
