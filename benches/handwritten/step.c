@@ -56,7 +56,7 @@ static void measure(const struct parameters *p, struct state *s, const struct fe
     s->report.under_tension = least >= p->tight && s->still_seconds >= REST;
 }
 
-/* The largest pulls of motors with the present heat. */
+/* Computes the largest pull that each motor may exert at its present heat. */
 static void warm_limits(const struct parameters *p, const struct state *s, double limit[TENDONS])
 {
     for (int i = 0; i < TENDONS; i++) {
@@ -65,8 +65,9 @@ static void warm_limits(const struct parameters *p, const struct state *s, doubl
     }
 }
 
-/* Eqs. 18 to 20 with an upper bound: the configured one or what motors with this limit can pull, whichever is less,
-   but at least the tension at rest. */
+/* Computes the tensions by eqs. 18 to 20, with an upper bound. The bound of a tendon is the configured maximum or the
+   tension that its motor can give with the pull `limit`, whichever is less, but at least the tension at rest. Returns
+   the factor by which the torques are scaled down to stay within the bounds. */
 static double distribute(const struct parameters *p, const double limit[TENDONS], const double torques[JOINTS],
                          double tensions[TENDONS])
 {

@@ -1,5 +1,5 @@
-/* The joint stiffness that the fingertip's stiffness requires, and the part of it that the tendons can carry. Only
- * step.c includes this file, so that the compiler sees the whole step. */
+/* The joint stiffness that the fingertip's stiffness requires, and the part of it that the tendons can carry. These
+ * functions are in a header that only step.c includes, so the compiler sees the whole step in one translation unit. */
 #include <math.h>
 
 #include "structures.h"

@@ -46,7 +46,7 @@ struct set_point {
     double damping;
 };
 
-/* The blended spring between two set points. */
+/* The fingertip's spring, which changes gradually from one set point to the next. */
 struct spring {
     double stiffness[TIP][TIP];
     double exact, damping;

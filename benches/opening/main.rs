@@ -26,7 +26,7 @@ struct Arguments {
     /// Number of processes for each row of the table.
     #[arg(long, default_value_t = 15)]
     runs: usize,
-    /// The shared library. Without this option, the one that cargo has built.
+    /// The shared library to measure. The default is the one that cargo has built.
     #[arg(long)]
     library: Option<PathBuf>,
     /// What a child process measures.

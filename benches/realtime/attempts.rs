@@ -43,7 +43,7 @@ impl Attempts {
         }
         let Self { disturbed, skipped } = self;
         Err(format!(
-            "nothing was measured with {missing}: {disturbed} measurements were disturbed, and {skipped} were skipped. \
+            "there is no result for {missing}: {disturbed} measurements were disturbed, and {skipped} were skipped. \
              Measure again when the machine has no other work"
         ))
     }

@@ -4,7 +4,7 @@ use crate::Failure;
 use crate::percentiles::Percentiles;
 use std::process::{Child, Command, Stdio};
 
-/// Latencies above this value count as this value, ns.
+/// In the percentiles, latencies above this value count as this value, ns.
 const LONGEST: u64 = 1_000_000;
 
 /// cyclictest with three threads, staggered over the period like servo threads.

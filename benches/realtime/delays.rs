@@ -46,8 +46,8 @@ impl Delays {
         100.0 * f64::from(within) / f64::from(all.max(1))
     }
 
-    /// Prints a row of the table. The machine counts as paused during a delay if the pauses within it add up to
-    /// `paused`, ns.
+    /// Prints a row of the table. The machine counts as paused during a delay if the pauses of one core within the
+    /// delay add up to at least `paused`, ns.
     pub fn print(mut self, what: &str, paused: u64, pauses: &Pauses) {
         if self.contacts() == 0 {
             println!("| {what} | not measured, because faults disturbed every measurement | | | | | | |");

@@ -57,7 +57,7 @@ impl Clock for RecordingClock {
         MonotonicClock.sleep_until(deadline);
         let late = MonotonicClock.now().saturating_sub(deadline);
         let mut late_times = self.0.borrow_mut();
-        // The capacity is never exceeded, because a servo must not allocate.
+        // A servo must not allocate, so times beyond the reserved capacity are not recorded.
         if late_times.len() < late_times.capacity() {
             late_times.push(late);
         }

@@ -52,7 +52,7 @@ impl Measured {
     /// Sends groups to the hand until `wanted` groups have taken effect, including those of earlier hands.
     ///
     /// # Errors
-    /// Says why a group has not taken effect. The earlier groups stay measured.
+    /// Says why a group has not taken effect. The results of the earlier groups are kept.
     pub fn send(&mut self, hand: &Hand, wanted: u32) -> Result<(), Failure> {
         while self.delays.len() < wanted as usize {
             self.send_next(hand)?;

@@ -27,7 +27,7 @@ const KINDS: [(Planners, &str); 3] = [
     (Planners::Calling, "two threads that call"),
 ];
 
-/// Median and 99 % of the wake-up latency of a finger, us.
+/// Median and 99th percentile of the wake-up latency of a finger, us.
 type WakeUp = (f64, f64);
 
 /// The wake-up latencies of each of [`KINDS`].

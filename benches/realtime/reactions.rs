@@ -3,8 +3,8 @@
 //! the fingers in other threads.
 //!
 //! The board tells which motor command is in force when the contact begins. The records of the servos tell which
-//! command is the first one with the set point of the reaction. Both commands have the numbers of their periods, so a
-//! delay includes the periods that a late servo skips.
+//! command is the first one with the set point of the reaction. A delay is the difference
+//! of the period numbers of these two commands, so it includes the periods that a late servo skips.
 
 use crate::Failure;
 use crate::attempts::Attempts;
@@ -49,9 +49,9 @@ const PRIORITY: u8 = 80;
 const BOARD_PRIORITY: u8 = 20;
 const WATCH_PRIORITY: u8 = 90;
 
-/// The machine counts as paused during a delay if the pauses of one core within the delay add up to this time, ns. A
-/// core pauses while it does not run its watch thread, whose priority is above that of all servos. Command and Reply
-/// take a part of each period. A board or a servo that loses this much of the rest can miss its period.
+/// The machine counts as paused during a delay if the pauses of one core within the delay add up to at least this
+/// time, ns. A core pauses while it does not run its watch thread, whose priority is above that of all servos. Command
+/// and Reply take a part of each period. A board or a servo that loses this much of the rest can miss its period.
 const PAUSE: u64 = PERIOD / 5;
 
 /// Longest time until the fingers are under control.

@@ -84,8 +84,8 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
     Ok(attempts.check([("three readers", made)])?)
 }
 
-/// Measures a hand of its own, first without readers and then with them. A turn without readers and the next one with
-/// them are repeated together, so that a ratio compares turns at nearly the same time.
+/// Opens a hand, and measures it in one turn without readers and then in one turn with them. If one of the two turns
+/// fails, both are repeated, so that a ratio compares turns at nearly the same time.
 fn neighbours(seconds: u64) -> Result<[Vec<Distribution>; 2], Failure> {
     let mut configuration = Configuration::default();
     configuration.telemetry.name = format!("bench-{}", std::process::id());
@@ -99,8 +99,8 @@ fn neighbours(seconds: u64) -> Result<[Vec<Distribution>; 2], Failure> {
     Ok([alone, read])
 }
 
-/// Returns the wake-up latency of each finger. The servo of a finger that has stopped does less work, so its latency
-/// does not count.
+/// Returns the wake-up latency of each finger. Returns an error if a finger has stopped, because the servo of such a
+/// finger does less work.
 fn measure(hand: &Hand, seconds: u64) -> Result<Vec<Distribution>, Failure> {
     let fingers = 1..=FINGERS as i32;
     sleep(SETTLING);

@@ -36,8 +36,8 @@ const GOAL: f64 = 30_000.0;
 /// control.
 const CONTROLLER_RATE: f64 = 10_000.0;
 
-/// Period until the fingers are under control, ns. Afterwards the servo has no fixed period, but still waits for
-/// replies for at most 85 % of this time.
+/// Period of the servos before the fingers are under control, ns. Afterwards a servo has no fixed period, but still
+/// waits for replies for at most 85 % of this time.
 const PERIOD: u64 = 1_000_000;
 
 /// Priority of the simulated boards, below the servos.
@@ -50,9 +50,9 @@ pub const OPEN: u8 = 0;
 pub const MEASURE: u8 = 1;
 const END: u8 = 2;
 
-/// A clock that sleeps only until the fingers are under control. At first they run at an ordinary rate: on a machine
-/// with other work, a servo that never sleeps would prevent the system from transporting the bytes of its own
-/// terminals.
+/// A clock that sleeps as usual until the fingers are under control. Afterwards it does not sleep. The servos begin at
+/// an ordinary rate because, on a machine with other work, a servo that never sleeps would prevent the system from
+/// transporting the bytes of its own terminals.
 #[derive(Clone)]
 pub struct UnlimitedClock {
     pub phase: Arc<AtomicU8>,

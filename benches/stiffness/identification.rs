@@ -18,7 +18,7 @@ pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obsta
 }
 
 /// Zeros the gauges of a finger and identifies it. Returns its configuration with the findings. The zeros of the
-/// encoders are right from the start.
+/// encoders in `truth` are correct, and are kept.
 pub fn identified(case: &Case, truth: &ConfiguredFinger) -> Result<ConfiguredFinger, Obstacle> {
     let mut belief = truth.clone();
     belief.zeroing.method = Some(ZeroingMethod::Kept);
@@ -50,7 +50,7 @@ impl UnknownFinger {
         Feedback { motor_counts, gauge_counts }
     }
 
-    /// Runs a cycle of the controller and the physics up to the next one.
+    /// Runs one cycle of the controller, and the physics for one period.
     fn advance(
         &mut self,
         controller: &Controller,

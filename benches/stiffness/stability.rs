@@ -34,7 +34,7 @@ pub struct Stability {
 const DENSITY: usize = 20;
 
 /// Returns poses within `limits`, with springs up to the bound and small loads. Without a load, tendons 1 and 4 would
-/// share t_min, where eq. 20 has a kink.
+/// both be at t_min, where eq. 20 has a kink.
 fn samples(case: &Case, limits: &[[f64; 2]; 3]) -> Vec<Sample> {
     let mut random = Pcg64::seed_from_u64(case.seed + 2);
     let bound = case.bound();
@@ -95,7 +95,8 @@ pub fn growth(case: &Case, description: &ConfiguredFinger, sample: &Sample) -> O
     const SETTLED: f64 = 2.0;
     const AT_REST: f64 = 1e-2;
     const WATCHED: f64 = 1.5;
-    /// Time between two samples, s. It is long enough to separate the remaining eigenvalues.
+    /// Time between two recorded differences, s. It is long enough to separate the eigenvalues that remain after the
+    /// fast modes have decayed.
     const STRIDE: f64 = 0.005;
     let Sample { pose, kx, .. } = sample;
     let held = Held { case, finger: description, belief: description, pose, kx, senses: Senses::Exact };

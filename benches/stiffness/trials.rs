@@ -51,7 +51,7 @@ pub enum Extent {
     Search,
     /// Pushes, rest and steps.
     Short,
-    /// Walls and bumps too.
+    /// Pushes, rest, steps, walls and bumps.
     All,
 }
 

@@ -1,7 +1,7 @@
 /* The example of section 2.2 of the report (Figure 4): a Dispatcher and two Servers in Occam. Its channels are
  * synchronous: a sender waits until the receiver takes the message. Spin finds the deadlock that the report describes:
  * the Dispatcher waits in a PAR for Server 1 to take a command, while Server 1 waits for the Dispatcher to take a
- * result, which the other branch of the PAR no longer does.
+ * result. The other branch of the PAR, which takes results, has already terminated.
  *
  * The same processes with the exchange of this library do not deadlock: -DBUFFERED replaces every channel by a buffer
  * that holds the newest message, like src/realtime/triple_buffer.rs.
@@ -33,7 +33,7 @@ proctype Forward()
     terminated++
 }
 
-/* The other branch: ALT takes a result, or finds none, computes and exits. */
+/* The other branch: an ALT takes a result or finds none. The branch then computes (left out here) and exits. */
 proctype Alt()
 {
     if

@@ -77,7 +77,7 @@ proctype Recoverer(byte f)
            limited = false;
            for (i : 0 .. FINGERS - 1) {
                seen[i] = report[i].stage;
-               /* Only the fingers that were repaired. */
+               /* Only the fingers that were repaired count. */
                limited = limited || (ON(p, i) && seen[i] == FAULTED && repairs[i] != before[i]);
                waits = waits || (ON(p, i) && seen[i] == OPENING && repairs[i] != before[i])
            };

@@ -45,7 +45,7 @@ def main() -> None:
         print(f"| {name} | {statistics.median(found):.0f} | {min(found):.0f} |")
     both = zip(times["`hand.position(1)`"], times["`Hand::position` in Rust"])
     more = statistics.median(one - other for one, other in both)
-    print(f"\n`hand.position(1)` takes {more:.0f} ns more than in Rust.")
+    print(f"\n`hand.position(1)` takes {more:.0f} ns more than `Hand::position` in Rust.")
 
 
 if __name__ == "__main__":

@@ -98,7 +98,7 @@ def main() -> None:
     with sun2xp.simulated(text=configuration(arguments.servo_core)) as hand:
         status = hand.status(1)
         for round in range(arguments.rounds):
-            # The order changes, so that a slow change of the machine does not look like an effect.
+            # The order changes, so that a slow change of the machine does not look like a difference of the planners.
             for load in loads[round % 3 :] + loads[: round % 3]:
                 distributions, count = measure(hand, arguments.seconds, load)
                 found[load].extend(distributions)

@@ -1,5 +1,5 @@
-"""The C interface from Python, without this package: cffi reads the whole header sun2xp.h and loads the shared library.
-This is how any language with a foreign function interface drives the hand.
+"""The C interface from Python, without the package sun2xp: cffi reads the whole header sun2xp.h, and loads the shared
+library. Any other language with a foreign function interface can drive the hand in the same way.
 
     python c_interface.py include/sun2xp.h target/release/libsun2xp.so
 """
@@ -11,7 +11,7 @@ import cffi
 
 
 def declarations(header: str) -> str:
-    """The declarations and constants of the header, without comments and without other lines of the preprocessor."""
+    """The declarations and constants of the header. Comments and all other preprocessor lines are left out."""
     text = re.sub(r"/\*.*?\*/", "", header, flags=re.DOTALL)
     # cffi knows size_t, and computes the sizes of structs itself.
     text = re.sub(r"#ifdef __(cplusplus|LP64__)\n.*?#endif", "", text, flags=re.DOTALL)

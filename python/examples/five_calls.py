@@ -1,5 +1,5 @@
-"""The five calls of 1990 from Python, without this package: cffi reads the declarations of the C header, and loads the
-shared library. This is how any language with a foreign function interface drives the hand.
+"""The five calls of 1990 from Python, without the package sun2xp: cffi reads the declarations of the C header, and
+loads the shared library. Any other language with a foreign function interface can drive the hand in the same way.
 
     python five_calls.py include/Sun2Xp.h target/release/libsun2xp.so
 """

@@ -1,5 +1,5 @@
-"""A finger as a spring: pushes the tip of a simulated finger with a rising force along each axis, and plots how far it
-gives way, with the straight lines of the stiffness that was sent.
+"""Measures a finger as a spring: pushes the tip of a simulated finger with a rising force along each axis, and plots
+how far the tip gives way, together with the straight lines that follow from the stiffness that was sent.
 
     python spring.py spring.png
 """

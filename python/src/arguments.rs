@@ -33,9 +33,9 @@ pub fn list(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
 
 /// Returns three numbers.
 pub fn vector(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
-    // These two kinds of objects are converted quickly. numpy converts all others to an array, whose shape is then
-    // checked. PyO3's conversion of a sequence would also accept bytes, and with numpy before 2.4 a column, which is
-    // an array with the shape (3, 1).
+    // Arrays of float64 with one dimension, lists and tuples are converted quickly. numpy converts all other objects to
+    // an array, whose shape is then checked. PyO3's conversion of a sequence would also accept bytes, and with numpy
+    // before 2.4 a column, which is an array with the shape (3, 1).
     if let Ok(array) = object.cast::<PyArray1<f64>>() {
         if is_regular(array)
             && let (3, [Some(x), Some(y), Some(z)]) = (array.len(), [0, 1, 2].map(|place| array.get_owned(place)))

@@ -47,7 +47,7 @@ impl Refusal {
         Ok(PyErr::from_value(class.call((self.text(),), Some(&details))?))
     }
 
-    /// The class of sun2xp/_errors.py. A program treats errors of different classes differently.
+    /// The name of the exception's class in sun2xp/_errors.py. Programs distinguish errors by their classes.
     fn class(&self) -> &'static str {
         match self {
             Self::Closed => "Closed",
@@ -125,10 +125,11 @@ impl Refusal {
         }
     }
 
-    /// Returns what the caller should do. A text of the library ends with the remedy, so this is the part of the text
-    /// after its last colon. In some texts, this part begins with a part of the cause.
+    /// Returns what the caller should do: the remedy of the fault, or without a fault the part of the text after its
+    /// last colon, because a text of the library ends with the remedy. In some texts, what follows the last colon
+    /// begins with a part of the cause.
     fn remedy(&self) -> String {
-        // The text about wrong wiring ends with the remedy for the wrong connection that was found.
+        // For wrong wiring, the text is used: it ends with the remedy for the wrong connection that was found.
         if let Some((_, fault)) = self.fault()
             && fault != FaultKind::WrongWiring
         {

@@ -78,7 +78,7 @@ impl Hand {
     #[new]
     fn new(opened: &Bound<'_, Opened>) -> PyResult<Self> {
         let hand = opened.get().0.lock().take();
-        // The hand is in the list below before `_opening` is dropped.
+        // The hand is in `HANDS` before `_opening` is dropped, so `close_all` cannot miss it.
         let (hand, _opening) = hand.ok_or_else(|| Refusal::Closed.raise(opened.py()))?;
         let shared = Arc::new(Shared { hand: RwLock::new(Some(hand)), generation: fork::generation() });
         let mut hands = HANDS.lock();

@@ -19,7 +19,7 @@ const CAPACITY: usize = 1000;
 /// Longest time for which the opening of a hand waits until the messages are in the log.
 const LONGEST_FLUSH: Duration = Duration::from_secs(1);
 
-/// The process that has the thread of Python: the value of `fork::generation` in it. No process has the initial value.
+/// The value of `fork::generation` in the process that has the thread of Python. No process has the initial value.
 static OWNER: AtomicU32 = AtomicU32::new(u32::MAX);
 
 struct Messages {

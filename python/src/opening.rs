@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use sun2xp::hand::{Configured, find_configuration};
 use sun2xp::{ConfigurationError, Hand};
 
-/// Opens the hand of a configuration file; without a path, of the file that the library finds.
+/// Opens the hand of a configuration file. Without a path, the library searches for the file.
 #[pyfunction]
 pub fn open_file(py: Python<'_>, path: Option<PathBuf>) -> PyResult<Opened> {
     opened(py, move || match path {

@@ -26,14 +26,14 @@ struct Cycles {
 /// Time, ns; finger; cycle; kind; text.
 type MarkTuple = (u64, Option<i32>, Option<u64>, &'static str, String);
 
-/// Everything in a file.
+/// What `read` has read of a file.
 #[derive(Default)]
 struct Contents {
     description: String,
     cycles: BTreeMap<i32, Cycles>,
     marks: Vec<MarkTuple>,
     complete: bool,
-    /// The earliest beginning of a cycle in the file, ns, also of a finger that is not read.
+    /// The earliest beginning of a cycle in the file, ns. Cycles of fingers that are not read count too.
     begin: Option<u64>,
 }
 

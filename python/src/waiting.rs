@@ -17,8 +17,9 @@ const STACK_BYTES: usize = 2 << 20;
 /// Interval at which a condition is polled.
 const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
-/// Calls `work` in a thread of its own, because it cannot be interrupted, and waits for its result. If the handler of a
-/// signal raises an exception, the wait ends with it, and the result of the thread is dropped when it comes.
+/// Calls `work` in a thread of its own, because `work` cannot be interrupted, and waits for its result. If the handler
+/// of a signal raises an exception, the wait ends with this exception, and the result of the thread is dropped when it
+/// comes.
 pub fn in_thread<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
     let (sender, mut receiver) = channel();
     let doing = "start a thread for the call";
@@ -70,8 +71,8 @@ pub fn duration(py: Python<'_>, name: &str, seconds: Option<f64>) -> PyResult<Op
     }
 }
 
-/// Returns the time for which a set point is valid; none for the configured time. A time that is too long for a
-/// `Duration` becomes `Duration::MAX`. This is longer than every time that a servo counts, so the set point does not
+/// Returns the time for which a set point is valid. `None` stands for the configured time. A time that is too long for
+/// a `Duration` becomes `Duration::MAX`. This is longer than every time that a servo counts, so the set point does not
 /// expire.
 pub fn validity(py: Python<'_>, seconds: Option<f64>) -> PyResult<Option<Duration>> {
     Ok(duration(py, "valid", seconds)?.or(seconds.map(|_| Duration::MAX)))

@@ -98,7 +98,7 @@ def test_an_interrupted_opening_does_not_wait_for_the_log(monkeypatch):
 
 
 def test_a_finger_that_was_pushed_away_still_counts_as_arrived(hand):
-    assert "has been at the set point" in sun2xp.Hand.wait.__doc__
+    assert "Both conditions still hold" in sun2xp.Hand.wait.__doc__
     hand.send_position(1, HOME)
     hand.wait(1, timeout=30)
     hand.push(1, [0.0, 0.0, -5.0])

@@ -31,7 +31,7 @@ def test_an_interrupted_calibration_stops_the_finger(hand):
 
     with pytest.raises(KeyboardInterrupt):
         hand.zero(2, interrupt, store=False)
-    # The servo carries out the stop at the beginning of its next cycle. The fixture ends a test that hangs.
+    # The servo carries out the stop at the beginning of its next cycle. The fixture `limit` ends a test that hangs.
     while hand.status(2).stage != "faulted":
         pass
     hand.recover(2)

@@ -1,4 +1,4 @@
-"""A hand moves."""
+"""The first steps with a hand: a finger moves, and wrong arguments are refused."""
 
 import time
 

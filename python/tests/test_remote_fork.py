@@ -6,7 +6,8 @@ import sys
 
 from remote_double import Double
 
-#: A thread has the lock of the Targets while the process forks, as the thread that sends them may have it.
+#: A program that forks while one of its threads holds the lock of the Sender. The thread that sends the Targets may
+#: also hold this lock at a fork.
 PROGRAM = """
 import os, signal, sys, threading, time
 import sun2xp, sun2xp.remote

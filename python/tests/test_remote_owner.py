@@ -261,7 +261,7 @@ def test_a_wait_for_a_finger_without_a_command_uses_the_records_of_the_epoch(ser
 
 @pytest.mark.parametrize("call", [lambda hand: hand.owned, lambda hand: hand.recover(1), lambda hand: hand.zero(1)])
 def test_a_call_that_may_end_the_epoch_holds_the_lock(remote, call):
-    """Otherwise an acquire of another thread could begin an epoch that this call ends at once."""
+    """Without the lock, an acquire of another thread could begin an epoch that this call ends at once."""
     free, lock = [], remote._network.sender.lock
 
     def try_lock():

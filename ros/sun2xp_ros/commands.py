@@ -20,7 +20,7 @@ from .waiting import WaitingTrajectories
 #: cm in a metre.
 CM_PER_M = 100.0
 
-#: Shortest time between two equal lines of the log, s, so that a stream of refused commands does not fill it.
+#: Shortest time between two equal lines of the log, s, so that a stream of refused commands does not fill the log.
 REPEAT = 1.0
 
 

@@ -88,7 +88,8 @@ class HandNode(Node):
         self._faults = [described.fault() for described in self._described]
         self._takes = Commands(self, self.hand, self.fingers, self._prefix)
         self._serves = Services(self, self.hand, self.fingers, self._takes.forget)
-        # The clock of ROS stands still while the simulated time does, and after the system's clock was set back.
+        # Timers on the clock of ROS would pause while the simulated time stands still, and after the system's clock was
+        # set back.
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(1.0 / rate, self._publish_measurements, clock=steady)
         self.create_timer(1.0 / slow, self._publish_diagnostics, clock=steady)
@@ -155,8 +156,8 @@ class HandNode(Node):
             self._publish_diagnostics()
 
     def _mean_rate(self, finger: int, state: sun2xp.JointState) -> Any:
-        """The mean rate since the previous message. The rate in a single cycle has the noise of the encoders. A message
-        that follows before the next cycle repeats the mean rate of the message before."""
+        """The mean rate since the previous message. The rate in a single cycle has the noise of the encoders. If the
+        finger has begun no new cycle since the previous message, the mean rate of that message is repeated."""
         if finger not in self._before:
             mean = state.rate
         else:

@@ -20,7 +20,7 @@ class Services:
     """Offers the services zero, recover and stop, for all fingers together and for each finger."""
 
     def __init__(self, node: Node, hand: sun2xp.Hand, fingers: Sequence[int], stopped: Callable[[int], None]) -> None:
-        """Calls `stopped` with each finger that the service `stop` has stopped."""
+        """The service `stop` calls `stopped` with each finger that it has stopped."""
         self._node = node
         self._stopped = stopped
         self._hand = hand
@@ -45,7 +45,8 @@ class Services:
             try:
                 done.set_result(self._answer(fingers, action, request, response))
             except BaseException as defect:
-                # The exception ends the node, as in any other callback. Without it, a planner would wait for ever.
+                # The exception ends the node, as in any other callback. If the exception were dropped, a planner would
+                # wait for its response for ever.
                 done.set_exception(defect)
 
         self._waiting.submit(work)

@@ -46,5 +46,5 @@ class WaitingTrajectories:
 
     def _end(self, one: _Waiting) -> None:
         self._waiting.remove(one)
-        # A ROS timer is periodic, so it is destroyed.
+        # A ROS timer is periodic, so it must be destroyed after its first call.
         self._node.destroy_timer(one.timer)

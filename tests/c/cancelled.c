@@ -45,7 +45,7 @@ static int wait_for_event(void)
     return sun2xp_wait_event(other, &event, 0.1) < 0 ? -1 : 0;
 }
 
-/* The reason of the last refused recovery. HandError returns it only in the thread of the call. */
+/* The reason of the last refused recovery. HandError returns it only in the thread that made the call. */
 static char refusal[1000];
 
 static int recover_finger(int finger)

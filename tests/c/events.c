@@ -51,7 +51,7 @@ static void taken_in_order(void)
         arrived |= Event.finger == 2 && Event.kind == SUN2XP_EVENT_ARRIVED;
     } while (Event.kind != SUN2XP_EVENT_SETTLED || Event.finger != 2);
     CHECK(arrived);
-    /* The record of the cycle of an event is there before the event. */
+    /* The record of a cycle can be read before the events of this cycle arrive. */
     Record.size = sizeof Record;
     CHECK(sun2xp_record(HAND, 2, Event.cycle, &Record) == 0 && Record.cycle == Event.cycle);
     CHECK(sun2xp_next_event(HAND, &Event) == 0 && sun2xp_wait_event(HAND, &Event, 0) == 0 &&

@@ -14,7 +14,7 @@ struct FingerTiming { short Size; };
 struct FingerTip { short Tip; };
 struct FingerRecord { short Pos; };
 
-/* Objects are the harder case: a library that calls them would crash. */
+/* These names are variables here, and not functions: a library that called one of them would crash. */
 int GetRecord = 1, ResetTiming = 2;
 
 #define OWN(Name) \

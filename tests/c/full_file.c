@@ -7,7 +7,7 @@
 #include <unistd.h>
 #include "Sun2Xp.h"
 
-/* Standard error is the object of this test. */
+/* CHECK prints to standard output, because this test replaces standard error. */
 #define CHECK_OUTPUT stdout
 #include "check.h"
 

@@ -1,4 +1,5 @@
-/* A planner reads the status while the servo thread of finger 1 is stopped as by a debugger, and afterwards. */
+/* A planner reads the status of finger 1 while the servo thread of this finger is stopped, as a debugger stops threads,
+   and again after the thread has been released. */
 #include <dirent.h>
 #include <errno.h>
 #include <string.h>
@@ -33,7 +34,7 @@ static int servo(void)
     return number;
 }
 
-/* Runs in a child: stops the thread, reports it to the parent, and releases the thread when the parent asks for it. */
+/* Runs in a child: stops the thread, tells the parent, and releases the thread when the parent asks for it. */
 static void hold(int thread, int held, int go)
 {
     char byte = 0;

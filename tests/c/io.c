@@ -1,4 +1,4 @@
-/* Hardware of the program: opening, moving, faults, recovery and the refusals of sun2xp_open_io. */
+/* Tests hardware that the program provides: opening, moving, faults, recovery and the refusals of sun2xp_open_io. */
 
 #include <errno.h>
 #include <math.h>

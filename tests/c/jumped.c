@@ -1,5 +1,5 @@
-/* An alarm handler that jumps out of slow calls, as planners of 1990 did to limit their time. The abandoned call
-   completes in the background. Later calls are served, or refused with EBUSY until it has completed. */
+/* An alarm handler that jumps out of slow calls, as planners of 1990 did to limit the time of a call. The abandoned
+   call completes in the background. Later calls are served, or refused with EBUSY until it has completed. */
 #include <errno.h>
 #include <setjmp.h>
 #include <signal.h>

@@ -42,7 +42,7 @@ int main(void)
         clock_gettime(CLOCK_MONOTONIC, &now);
     } while (now.tv_sec - begin.tv_sec + 1e-9 * (now.tv_nsec - begin.tv_nsec) < 2.0);
     /* 400 are due. A pause of the whole machine merges some of them. */
-    printf("%d alarms, %d of them elsewhere\n", (int)alarms, (int)strangers);
+    printf("%d alarms, %d of them on other threads\n", (int)alarms, (int)strangers);
     CHECK(alarms > 200);
     CHECK(strangers == 0);
 

@@ -1,5 +1,6 @@
-/* The configuration of the hand of OpenHand has hand.print_refusals = false. It is silent for the calls of 1990 after
-   CloseHand too, because they have only this hand. Its closed handle is not silent. C89. */
+/* The hand that OpenHand opens has hand.print_refusals = false. Refusals of the calls of 1990 are not reported after
+   CloseHand either, because these calls have only this hand. Refusals of calls with its closed handle are reported.
+   C89. */
 #include "Sun2Xp.h"
 #include "sun2xp.h"
 #include "check.h"

@@ -14,7 +14,8 @@ static int state_of(int finger)
     return Status.state;
 }
 
-/* This exit handler is registered before that of the library, so it runs after it. Its status becomes the program's. */
+/* This exit handler is registered before that of the library, so it runs after that of the library. The program ends
+   with the status that this handler passes to _exit. */
 static void look_at_the_closed_hand(void)
 {
     int finger;

@@ -41,7 +41,7 @@ int main(void)
     PAUSE_MS(2000);
     Status->size = sizeof *Status;
     CHECK(sun2xp_status(HAND, 1, Status) == 0);
-    printf("stretched, at 6 N/cm: %.3f of it\n", Status->stiffness_scale);
+    printf("finger 1 outstretched: %.3f of the commanded 6 N/cm\n", Status->stiffness_scale);
     CHECK(Status->stiffness_scale > 0.5 && Status->stiffness_scale < 1.0);
     CHECK(CloseHand() == 0);
     return 0;

@@ -7,7 +7,7 @@
 #include "check.h"
 #include "refused.h"
 
-static double distance(const double *One, const double *Other)
+static double square_of_distance(const double *One, const double *Other)
 {
     double x = One[0] - Other[0], y = One[1] - Other[1], z = One[2] - Other[2];
 
@@ -21,7 +21,7 @@ static void arrive(int finger, const double *Wanted, struct sun2xp_tip *Tip)
 
     for (tries = 0; tries < 500; tries++) {
         CHECK(sun2xp_tip(HAND, finger, Tip) == 0);
-        if (distance(Tip->position, Wanted) < 0.01)
+        if (square_of_distance(Tip->position, Wanted) < 0.01)
             return;
         PAUSE_MS(20);
     }

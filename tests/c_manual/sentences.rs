@@ -71,7 +71,7 @@ fn a_forked_child_makes_every_call() {
     }
 }
 
-/// tests/c/locked_memory.c shows that the member stays 1.
+/// tests/c/locked_memory.c tests that memory_locked stays 1 after munlockall.
 #[test]
 fn the_member_for_locked_memory_says_what_munlockall_does() {
     let text = Manual::read(HANDLES).member("sun2xp_status", "memory_locked");

@@ -1,5 +1,6 @@
 //! Faults injected into a moving finger at random moments. Each must get the right name, the motors must reach the end
-//! state in time, and the finger must recover. `docs/faults.md` has the figures of the long run.
+//! state in time, and the finger must recover. `docs/faults.md` has the figures of the ignored test
+//! `every_fault_a_hundred_times`.
 
 mod cases;
 #[allow(dead_code)]
@@ -209,7 +210,8 @@ fn a_finger_in_motion_gives_no_false_alarm_on_a_line_that_loses_one_reply_in_twe
             let mut configuration = Configuration::default();
             configuration.fingers[0].controller.scheme = Some(scheme);
             configuration.fingers[0].simulation.joint_coulomb_friction = [2e-3; 3];
-            // The simulated stiffness equals the configured one: an identified stiffness must not cause alarms either.
+            // The simulated stiffness equals the configured one, as after an identification. With the small tolerance
+            // of an identified stiffness there must be no alarm either.
             configuration.fingers[0].tendon.stiffness_tolerance = 0.03;
             let mut bench = Bench::new(configuration, 7);
             bench.with_cable(|cable| cable.inject(fault, 0.05, u64::MAX, 7));

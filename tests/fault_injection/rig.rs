@@ -197,7 +197,7 @@ impl Bench {
         self.world.place().hooks.ended.map(|ended| (ended - self.injected) as f64 * 1e-6)
     }
 
-    /// One period of a finger that moves from pose to pose, with pauses.
+    /// Runs one period. The finger gets a new random target every 200 to 800 ms.
     pub fn cycle(&mut self) {
         if self.now() >= self.next_target {
             let within = |bench: &mut Self, low: f64, high: f64| bench.random(low, high).to_radians();

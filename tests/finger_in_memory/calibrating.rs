@@ -114,7 +114,8 @@ fn an_adjustment_during_a_calibration_that_is_refused_is_in_force_afterwards() {
     assert!((report.cycle.joints - TARGET).amax() < 0.03, "{report:?}");
 }
 
-/// The routine finds the finger in motion, and refuses. The finger holds the set point of that moment.
+/// The routine finds the finger in motion, so the calibration is refused. The finger then holds the set point that was
+/// in force when the calibration began.
 #[test]
 fn a_path_ends_where_a_calibration_began() {
     for interpolate_ms in [None, Some(100.0)] {

@@ -1,4 +1,5 @@
-//! Commands that are damaged on the way to the board: none is ever executed, and each costs its own period.
+//! Commands that are damaged on the way to the board: the board executes none of them, and the period of each of them
+//! remains without a reply.
 
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;

@@ -46,7 +46,7 @@ fn gravity_that_changes_every_second_cycle_is_replayed_bit_for_bit() {
     let values: Vec<_> = controls(&recording).map(|control| control.input.gravity.expect("gravity")).collect();
     let changes = values.windows(2).filter(|pair| pair[0] != pair[1]).count();
     assert!(changes >= values.len() / 2 - 1, "{changes} of {}", values.len());
-    // A replay without the values computes something else.
+    // A replay without the recorded gravity computes something else.
     let mut without = recording.clone();
     without.cycles.iter_mut().filter_map(|record| record.control.as_mut()).for_each(|it| it.input.gravity = None);
     assert!(without.replay().expect("replayable").different > 1000);

@@ -154,7 +154,7 @@ fn nothing_random_leads_beyond_a_limit() {
 /// Torque limit of the motors whose board has a coarse torque unit, N cm. It is 100.6 units.
 const COARSE_LIMIT: f64 = 2.0125;
 
-/// The coarse torque unit, N cm: almost 1 % of the limit, which is the coarsest unit that the library accepts.
+/// The coarse torque unit, N cm: almost 1 % of the limit. The library accepts no unit above 1 % of the limit.
 const COARSE_UNIT: f64 = 0.02;
 
 /// The motor torque limit of the board is 30 000 torque units, far above that of the servo. The board therefore

@@ -1,4 +1,4 @@
-//! Limits the time that a finger may take to come under tension, and tests the fault that names the reason.
+//! Fingers whose time to come under tension is limited: after the limit, a fault names the reason.
 
 use crate::rig::{Bench, MILLISECOND};
 use sun2xp::board::Transport;
@@ -52,7 +52,8 @@ fn a_slack_tendon_is_reported_at_the_time_out() {
     }
 }
 
-/// The time starts again with each recovery. A wait before the recovery does not count.
+/// The time that `hand.open_timeout_ms` limits starts again with each recovery. A wait before the recovery does not
+/// count.
 #[test]
 fn a_finger_that_recovers_has_as_much_time_again() {
     let mut bench = Bench::with(impatient);

@@ -1,4 +1,5 @@
-//! Reflexes in the servo: how fast the command changes, which set point holds after a reaction, and when no rule fires.
+//! Reflexes in the servo: how fast the command changes, which set point is in force after a reaction, and when no rule
+//! fires.
 
 use crate::finger_on_a_cable::{ServedFinger, World};
 use crate::motion::{joints, send};

@@ -1,5 +1,5 @@
-//! The set point that a finger holds after opening, after a fault and after a calibration: its own, until the planner
-//! sends another.
+//! The set point that a finger holds after opening, after a fault and after a calibration: the pose in which it was
+//! found, until the planner sends another one.
 
 use crate::motion::{joints, send};
 use crate::rig::{Bench, TARGET};

@@ -70,7 +70,7 @@ fn an_expired_set_point_leaves_the_finger_where_it_is() {
     let away = (bench.report().cycle.joints - TARGET).amax();
     assert!(away > 0.05 && (held.joints - bench.report().cycle.joints).amax() < 0.01, "{away} {held:?}");
     assert_eq!(held.stiffness[(0, 0)], 1.0);
-    // Nothing expires twice. A change of the stiffness starts from the pose that is held.
+    // A set point expires only once. A change of the stiffness starts from the pose that is held.
     bench.cycles(1000);
     assert_eq!(bench.report().springs, springs + 1);
     bench
@@ -111,7 +111,7 @@ fn a_set_point_that_expires_can_stop_the_finger() {
     bench.opens();
 }
 
-/// Returns a change that moves the set point to [`TARGET`].
+/// Moves the set point to [`TARGET`].
 fn to_target(set_point: &mut SetPoint) -> Result<(), ()> {
     set_point.joints = TARGET;
     Ok(())

@@ -17,8 +17,8 @@ use sun2xp::hand::{Hand, HandError};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::now;
 
-/// Name of the environment variable that makes this test program a planner. Its value is the ports with commas
-/// between them, a line feed and the keys of `[hand]`.
+/// Name of the environment variable that makes this test program a planner. Its value consists of the ports, separated
+/// by commas, then a line feed, and then the keys of `[hand]`.
 const PLANNER: &str = "SUN2XP_TEST_PLANNER";
 
 /// Opens a hand and holds it in its pose, until this process is killed. If that fails, prints the error and exits. The
@@ -134,7 +134,7 @@ fn kill_a_planner(
         return Err("a finger was not ended by its watchdog".into());
     }
     assert!(asked.iter().all(|asked| in_end_state(asked.currents)), "motors are not in their end state");
-    // The planner sends a command after the end if it has not noticed yet that the finger was ended.
+    // The planner may send a command after the watchdog has ended a finger, if it has not noticed this yet.
     let after = asked.iter().map(|asked| asked.set_at.checked_sub(asked.arrived_at));
     after.collect::<Option<_>>().ok_or_else(|| "a command came after the end".into())
 }

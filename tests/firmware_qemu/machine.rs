@@ -195,12 +195,12 @@ pub struct Finger {
     torque_constants: [f64; 4],
     /// Time of the physics on the firmware's clock, us.
     time: Option<u32>,
-    /// Remaining time of less than a step, s.
+    /// Time that is left over after the last whole step of the physics, s.
     rest: f64,
     /// How much longer the finger may move before the next sample, s. A real finger does not wait. On a busy machine,
     /// however, planner, emulator and plant are all delayed by more than any control loop tolerates.
     motion_left: f64,
-    /// Faults that are present from now on.
+    /// Faults that every answer to the firmware contains.
     pub faults: Status,
     /// Counts of the tactile elements; 0xFFFF for one that cannot be read.
     pub touch: [u16; 2],

@@ -142,7 +142,7 @@ fn settles(emulated: Emulated) {
         let losses = hand.losses(1).map_err(text)?;
         let (from_simulated, from_truth) = (farthest(&positions, &expected), farthest(&joints, &expected));
         let found = format!(
-            "{from_simulated:.4} rad from the simulated hand, in truth {from_truth:.4} rad, {} of {} replies \
+            "measured {from_simulated:.4} rad and true {from_truth:.4} rad from the simulated hand, {} of {} replies \
              lost",
             losses.lost_replies, losses.cycles
         );

@@ -29,7 +29,7 @@ pub struct GraspingHand {
     _unread: Vec<(Consumer<CycleTiming>, BlackBox)>,
 }
 
-/// Returns a hand around a ball on a table.
+/// Returns the configuration of a hand whose fingers are around a ball on a table.
 pub fn around_a_ball(mass: f64, friction: f64, seed: u64) -> Configuration {
     let mut configuration = Configuration::default();
     configuration.hand.gravity = [0.0, 0.0, 9.81];

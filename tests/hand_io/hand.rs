@@ -1,4 +1,4 @@
-//! An open hand with hardware of the program, in real time.
+//! An open hand with hardware that the program provides, in real time.
 
 use super::plant_io::{PlantIo, Switches, starts_and_stops};
 use super::settling::{Settling, distance};
@@ -125,7 +125,8 @@ fn lost_exchanges_fault_the_finger_and_it_recovers() {
     assert_eq!(switches.lock().stops, 2);
 }
 
-/// The start takes longer than a servo may take to accept the finger.
+/// The start of the hardware takes longer than the 5 s after which a servo that does not take the finger is considered
+/// stalled.
 #[test]
 fn a_finger_recovers_although_its_hardware_starts_slowly() {
     let (hand, switches) = open(&patient(), &[1], true).expect("open");

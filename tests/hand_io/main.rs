@@ -1,4 +1,4 @@
-//! Hands whose hardware the program provides: a simulated finger implements the trait.
+//! Hands whose hardware the program provides: here, a simulated finger implements the trait `FingerIo`.
 
 mod board;
 mod hand;

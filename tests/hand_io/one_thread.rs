@@ -1,4 +1,5 @@
-//! Fingers that share a servo thread: tests what hardware that sends one telegram for all fingers relies on.
+//! Fingers that share a servo thread. Some hardware sends one telegram for all fingers of a thread. These tests check
+//! what such hardware relies on.
 
 use super::plant_io::PlantIo;
 use std::io;

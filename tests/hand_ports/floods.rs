@@ -84,7 +84,7 @@ impl Drop for FloodingBoard {
     }
 }
 
-/// Returns the frames of the floods. A servo waits for a Reply. The link discards all other frames.
+/// Returns the frames of the floods: one of the type for which a servo waits, and one of a type that the link discards.
 fn floods() -> [Frame; 2] {
     [Frame::Reply(Reply::default()), Frame::Stopped(Stopped::default())]
 }

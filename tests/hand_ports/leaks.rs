@@ -40,7 +40,8 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
-/// Permitted growth of the heap, bytes. If recoveries follow closely, the black boxes store a few more keyframes.
+/// Permitted growth of the heap, bytes. If recoveries follow each other closely, the black boxes store a few
+/// more keyframes.
 const COMES_AND_GOES: i64 = 128 * 1024;
 
 #[derive(Debug)]

@@ -17,7 +17,8 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Defect, Pace, SimulatedBoard, SimulatedPort};
 
-/// Three boards with a finger each, and their hand. The port of finger 2 is behind a link and may be reconnected.
+/// Three boards with a finger each, and their hand. The port of finger 2 is behind a symbolic link and may be
+/// reconnected.
 fn with_finger_2_on_a_link(folder: &Path) -> ([Board; 3], Hand) {
     let boards = [Board::start(&["1"]), Board::start_at(&at(folder), &["2"]), Board::start(&["3"])];
     let mut configuration = on_ports([&boards[0].port, &at(folder), &boards[2].port]);
@@ -31,7 +32,7 @@ fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
     let _turn = turn();
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("other.toml");
-    // The same kind and the same number, but other encoders.
+    // A board with this file has the same kind and the same number, but other encoders.
     fs::write(&file, "[finger]\nencoder.counts_per_revolution = [4096, 4096, 4096, 4096]\n").expect("written");
     let ([_first, mut second, _third], hand) = with_finger_2_on_a_link(folder.path());
     let refused = |board: &Board, kind: FaultKind| {

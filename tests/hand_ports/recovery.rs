@@ -59,7 +59,7 @@ fn an_emergency_stop_stops_every_finger_until_it_recovers() {
         }
         for finger in 1..=3 {
             recovers(&hand, finger);
-            // One finger recovers, and the next is unchanged.
+            // Finger 3 stays stopped until its own recovery.
             assert_eq!(fault(&hand, 3).is_some(), finger < 3);
         }
         goes(&hand, 2, START);
@@ -253,7 +253,7 @@ fn a_calibration_ends_if_its_finger_faults_and_recovers_between_two_polls() {
     close(hand);
 }
 
-/// If a recovery is refused because of the board, the finger keeps its line, and a later recovery can succeed.
+/// If a recovery is refused because of the board, the port keeps its link, and a later recovery can succeed.
 #[test]
 fn a_finger_that_was_refused_for_its_lost_zero_recovers_when_it_is_back() {
     let _turn = turn();

@@ -1,7 +1,7 @@
 //! Random shutdowns: in every stage of a hand, one thread or several threads at once close the hand, end it, or call
 //! exit.
 //!
-//! Each case runs in a process of its own, because a case can end with exit, and because the process of a deadlock can
+//! Each case runs in a process of its own, because a case can end with exit, and because a process with a deadlock can
 //! be killed. A run prints its seed. Set `SUN2XP_TEST_SEED` to repeat a run, and also `SUN2XP_TEST_CASE` to repeat only
 //! one case of it.
 

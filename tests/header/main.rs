@@ -10,7 +10,7 @@ use std::{env, fs};
 use sun2xp::finger::FaultKind;
 use sun2xp::finger::events::EventKind;
 
-/// The five calls of 1990 and HandError.
+/// The file with the five calls of 1990 and HandError.
 const CALLS_OF_1990: &[&str] = &["calls.rs"];
 
 /// The sections of sun2xp.h: heading and files.

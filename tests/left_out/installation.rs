@@ -10,16 +10,16 @@ use std::process::Command;
 /// The user `nobody`.
 const NOBODY: u32 = 65534;
 
-/// The list of Python packages of the copies of `tests/run`.
+/// The list of Python packages beside each copy of `tests/run`.
 const PYTHON_PACKAGES: &str = "mcap==1\n";
 
-/// Runs `tests/run` in a copy of its own, where the Python packages are installed.
+/// Runs a copy of `tests/run` in a folder of its own. The Python packages of its list are installed.
 fn run_script(programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
     run_script_beside(PYTHON_PACKAGES, programs, user)
 }
 
-/// Runs `tests/run` in a copy of its own. Only these programs and a few of the system's are available. The Python
-/// packages of the list `installed` are installed.
+/// Runs a copy of `tests/run` in a folder of its own. Only these programs and a few of the system's are available. The
+/// Python packages of the list `installed` are installed.
 fn run_script_beside(installed: &str, programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
     let _turn = turn();
     let folder = tempfile::tempdir().expect("a scratch folder");
@@ -54,7 +54,7 @@ const CARGO: (&str, &str) = ("cargo", "echo CI=$CI: cargo $*");
 const APT: (&str, &str) = ("apt-get", "echo apt-get $*");
 const SUDO: (&str, &str) = ("sudo", "echo sudo; exec \"$@\"");
 
-/// A probe that fails the first time and succeeds afterwards, as it does once packages are installed.
+/// A probe that fails the first time and succeeds afterwards, as a real probe does after the packages were installed.
 const CLANG_AFTER_APT: (&str, &str) =
     ("looks-for-clang", "if [ -e \"$0.asked\" ]; then exit 0; fi; : > \"$0.asked\"; exit 1");
 

@@ -47,6 +47,10 @@ fn every_snippet_in_rust_is_in_this_file() {
     // serve/tests/network has the snippet of docs/remote.md, because this package does not depend on the remote client.
     for block in blocks.iter().filter(|block| block.page != "docs/remote.md") {
         let indented: String = block.text.lines().map(|line| format!("    {line}\n").replace("    \n", "\n")).collect();
-        assert!(THIS_FILE.contains(&indented), "{}: copy this snippet into a test here:\n{indented}", block.page);
+        assert!(
+            THIS_FILE.contains(&indented),
+            "{}: copy this snippet into tests/snippets/in_rust.rs:\n{indented}",
+            block.page
+        );
     }
 }

@@ -8,7 +8,7 @@ use sun2xp::hand::Hand;
 use sun2xp::telemetry::{AttachError, Reader, hands};
 
 #[test]
-fn several_hands_have_names() {
+fn hands_with_the_same_name_are_numbered() {
     let name = name("several");
     let first = open(&name);
     let second = open(&name);

@@ -5,7 +5,7 @@ use std::time::Duration;
 use sun2xp::model::FingerNumber;
 
 #[test]
-fn a_sleeping_reader_loses_cycles_and_counts_them_and_nobody_else_does() {
+fn a_sleeping_reader_counts_the_cycles_that_it_loses_and_other_readers_lose_none() {
     let name = name("slow");
     let hand = open(&name);
     let (mut slow, mut awake) = (reader(&name), reader(&name));

@@ -60,7 +60,7 @@ fn numbers(state: &str, name: &str, count: usize) -> Vec<f64> {
 }
 
 #[test]
-fn port_orders_and_end() {
+fn a_board_prints_its_port_answers_orders_and_removes_its_link_when_it_ends() {
     let folder = tempfile::tempdir().unwrap();
     let link = folder.path().join("board");
     let mut board = Board::start(&["--finger", "2", "--link", &link.to_string_lossy()]);

@@ -27,7 +27,7 @@ fn schedule_with(configuration: &str, costs: &str, options: &[&str]) -> Output {
 const COSTS: &str = "wake_up = 100\nwrite = 10\nread = 5\ncompute = 15\n";
 
 #[test]
-fn a_hand_that_meets_its_deadlines() {
+fn the_schedule_of_a_hand_that_meets_its_deadlines_is_printed() {
     let output = schedule("[finger.1]\ncore = 0\n[finger.2]\ncore = 1\n[finger.3]\ncore = 2\n", COSTS);
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{output:?}");
@@ -46,7 +46,7 @@ fn a_hand_that_meets_its_deadlines() {
 }
 
 #[test]
-fn no_rate_below_the_lowest_is_named() {
+fn a_rate_below_the_lowest_that_can_be_configured_is_not_proposed() {
     let output = schedule("[finger]\ncore = 0\n", &COSTS.replace("100", "1600"));
     let text = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(1));
@@ -113,7 +113,7 @@ fn without_an_argument_the_tool_uses_the_file_of_open_hand() {
 }
 
 #[test]
-fn a_hand_that_may_miss_a_deadline_and_invalid_costs() {
+fn a_hand_that_may_miss_a_deadline_is_reported_and_invalid_costs_are_refused() {
     let output = schedule("[finger]\ncore = 0\n", &COSTS.replace("15", "150"));
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stdout).contains("a cycle may end too late"), "{output:?}");

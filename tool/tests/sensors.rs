@@ -84,7 +84,7 @@ fn turned_encoders_and_loaded_gauges_are_shown() {
 
     // The count of encoder 3 rises at once by a quarter of a turn.
     writeln!(board.input, "jump 2 3 500").expect("an order");
-    // A gauge of 12 bits with a range of 100 N has 41 counts for a newton.
+    // A gauge of 12 bits with a range of 100 N has 41 counts per newton.
     writeln!(board.input, "dead-gauge 2 1 410").expect("an order");
     let turned = |reading: &Value| (four(reading, "turns")[2] - 0.25).abs() < 0.02;
     let loaded = |reading: &Value| (four(reading, "tensions")[0] - 10.0).abs() < 0.2;

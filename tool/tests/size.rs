@@ -1,4 +1,5 @@
-//! `sun2xp size`: the figures are those that a person computes by hand, and the exit status follows them.
+//! `sun2xp size`: the figures are those that a person computes by hand, and the exit status says whether all parts
+//! suffice.
 
 use serde_json::Value;
 use std::path::Path;
@@ -35,7 +36,7 @@ fn the_figures_are_those_of_a_calculation_by_hand() {
         let value = figure(&of, what, side);
         assert!((value / expected - 1.0).abs() < 1e-3, "{what}: {value}, not {expected}");
     };
-    // Torque limit less Coulomb friction, over radius and conduit friction.
+    // The torque limit minus the Coulomb friction, divided by the radius and by one plus the conduit friction.
     near("tension that the weakest motor", "has", (4.75 - 0.07) / (0.0475 * 1.05));
     // Tendons 1 and 4 run over pulleys of 1.09 cm at joints 0 and 1. All joints move at 5 rad/s.
     near("speed of a motor", "needs", 5.0 * (1.09 + 1.09) / 0.0475 * 60.0 / std::f64::consts::TAU);

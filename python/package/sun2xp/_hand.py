@@ -50,8 +50,9 @@ class Hand(_sun2xp.Hand):
 
         Args:
             fingers: a finger, or several. The default is all fingers of the hand.
-            condition: "arrived": since the set point was sent, every joint has been at the set point. "settled": since
-                the set point was sent, the joints have come to rest. The finger may have been pushed away again.
+            condition: "arrived": since the set point was sent, there was a cycle in which every joint was at the set
+                point. "settled": since the set point was sent, the joints have come to rest. Both conditions still hold
+                if the finger was pushed away afterwards.
             timeout: time limit, s. Without it, the wait has no limit.
 
         Raises:
@@ -101,8 +102,8 @@ class Hand(_sun2xp.Hand):
         """Finds the signs of motors, encoders and gauges of a finger. Afterwards the finger is limp: its motors are
         off. Arguments and errors are those of `zero`.
 
-        The hand was opened under tension, for which the signs must be known. So this method checks known signs. The
-        command `sun2xp calibrate` finds unknown ones.
+        The hand was opened under tension, for which the right signs must be known. So this method can only check known
+        signs. The command `sun2xp calibrate` finds unknown signs.
         """
         return self._calibrated(finger, "signs", progress, store)
 
@@ -123,7 +124,7 @@ def open(path: Union[str, os.PathLike[str], None] = None, *, text: Optional[str]
         text: the text of a configuration, instead of a file.
 
     Raises:
-        ConfigurationError: the configuration cannot be read or used. The text names file, line and reason.
+        ConfigurationError: the configuration cannot be read or used. The error names file, line and reason.
         Fault: a finger has faulted. Then every motor is in its end state.
         Error: a port or a board does not work.
     """

@@ -1,5 +1,5 @@
 """Reactions of reflexes, for `Hand.install_reflex`. The set point of a reaction is in force until the planner sends
-another one. The reaction's set point expires when the last set point of the planner would have expired."""
+another one, or until the time at which the planner's last set point would have expired."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ const CONNECT_MS: u64 = 3000;
 /// decides when the connection is made again. It does not protect the hand: the limit on the age of Targets does.
 const LEASE_MS: u64 = 4000;
 
-/// The largest message that is accepted, bytes. A State with all its records has 48 032.
+/// The largest message that is accepted, bytes. A State with the largest number of records has 48 032 bytes.
 const LARGEST: u64 = 131_072;
 
 /// Opens a session.
@@ -113,7 +113,7 @@ pub fn get(
             Ok(sample) => Ok((sample.key_expr().to_string(), sample.payload().to_bytes().into_owned())),
             Err(error) => Err(error.payload().try_to_string().map_or_else(|_| "an error".into(), |text| text.into())),
         };
-        // The receiver is gone if it has enough replies.
+        // An error of `send` is ignored: the receiver is gone when there are enough replies.
         let _ = to.send(reply);
     });
     query.wait().map_err(|error| short(&error))?;

@@ -145,16 +145,17 @@ fn until_running(stage: &str) -> &'static str {
     if stage == Stage::Limp.name() {
         "zero or identify it"
     } else if stage == Stage::Closing.name() || stage == Stage::Closed.name() {
-        "its server is ending. Start the server again, then open or reopen the hand"
+        "its server is shutting down. Start the server again, then open or reopen the hand"
     } else {
         "wait until it is running"
     }
 }
 
-/// The remedy if the system has refused a thread. Its other errors tell what to change.
+/// Returns the remedy if the system has refused to start a thread. Every other error of the system already shows what
+/// to change, so the remedy is empty.
 fn more_threads(source: &std::io::Error) -> &'static str {
     match source.kind() {
-        // EAGAIN, which a file never causes.
+        // EAGAIN: the start of a thread can cause this error, and the reading of a file cannot.
         std::io::ErrorKind::WouldBlock => ". Raise the limit of threads (ulimit -u)",
         _ => "",
     }

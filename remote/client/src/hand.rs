@@ -72,17 +72,17 @@ impl RemoteHand {
     /// the answer.
     ///
     /// # Errors
-    /// Returns an error if the hand was owned and the server did not confirm. Then the hand goes to its end state by
-    /// itself, because no Targets arrive.
+    /// Returns an error if the hand was owned and the server did not confirm the release. Then the hand goes to its end
+    /// state by itself, because no Targets arrive.
     pub fn release(&self) -> Result<(), RemoteError> {
         self.link.release()
     }
 
-    /// Releases the hand: every finger goes to its end state. Dropping the hand does the same, without the error.
+    /// Releases the hand: every finger goes to its end state. Dropping the hand does the same, but returns no error.
     ///
     /// # Errors
-    /// Returns an error if the hand was owned and the server did not confirm. Then the hand goes to its end state by
-    /// itself, because no Targets arrive.
+    /// Returns an error if the hand was owned and the server did not confirm the release. Then the hand goes to its end
+    /// state by itself, because no Targets arrive.
     pub fn close(self) -> Result<(), RemoteError> {
         self.link.release()
     }

@@ -115,7 +115,7 @@ impl Outbox {
         self.slots[finger.index()].confirm(command);
     }
 
-    /// Whether a record has shown everything that was sent to this finger.
+    /// Whether every change for this finger was sent, and records have confirmed all of them.
     pub fn is_applied(&self, finger: Finger) -> bool {
         self.slots[finger.index()].is_applied()
     }

@@ -21,7 +21,7 @@ pub struct Slot {
 struct Sent {
     change: Change,
     command: u32,
-    /// The first Target with this change.
+    /// The sequence number of the first Target with this change.
     sequence: u64,
 }
 
@@ -35,7 +35,7 @@ impl Slot {
         !self.pending.is_nothing()
     }
 
-    /// Whether a record has shown everything that was sent.
+    /// Whether everything was sent, and records have confirmed all of it.
     pub fn is_applied(&self) -> bool {
         !self.waits() && self.unconfirmed.is_empty()
     }
@@ -62,7 +62,8 @@ impl Slot {
         Some(Part { finger, command, place, stiffness, damping })
     }
 
-    /// Notes that a record has shown this command number. Earlier changes were in the same part.
+    /// Notes that a record has shown this command number. Earlier changes that were not confirmed were in the same
+    /// part, so they are confirmed too.
     pub fn confirm(&mut self, command: u32) {
         if let Some(place) = self.unconfirmed.iter().position(|sent| sent.command == command) {
             self.unconfirmed.drain(..=place);
@@ -70,7 +71,8 @@ impl Slot {
     }
 
     /// Drops the changes that were in the refused Target with this sequence number, and are not confirmed. Later
-    /// changes are kept: if they were sent together with the dropped ones, their own Target is refused too.
+    /// changes are kept. If their own Target repeated the dropped changes, the server refuses that Target too, and its
+    /// refusal then drops the later changes.
     pub fn refuse(&mut self, sequence: u64) {
         let before = self.unconfirmed.len();
         self.unconfirmed.retain(|sent| sent.sequence > sequence);
@@ -79,7 +81,7 @@ impl Slot {
         }
     }
 
-    /// The first Target with a change that no record has confirmed.
+    /// The sequence number of the first Target with a change that no record has confirmed.
     pub fn first_unconfirmed(&self) -> Option<u64> {
         self.unconfirmed.front().map(|sent| sent.sequence)
     }

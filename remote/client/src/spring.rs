@@ -24,7 +24,7 @@ pub enum NotASpring {
     Negative(f64),
 }
 
-/// Returns the largest eigenvalue of Kx, whose entries are finite.
+/// Returns the largest eigenvalue of Kx. The caller has checked that the entries are finite.
 pub fn largest_eigenvalue(rows: &[[f64; 3]; 3]) -> Result<f64, NotASpring> {
     let asked = Matrix3::from_fn(|row, column| rows[row][column]);
     let tolerance = ROUNDING * asked.amax();

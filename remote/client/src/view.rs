@@ -1,9 +1,9 @@
-//! What a client knows of a hand. It has no clock and no thread.
+//! What a client knows of a hand. A [`View`] has no clock and no thread.
 
 use crate::server_clock::ServerClock;
 use sun2xp_remote_protocol::{DecodeError, FINGERS, Finger, Record, State, Status};
 
-/// What a client has received and sent since it has opened the hand.
+/// What a client has received and sent since it opened the hand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RemoteStatistics {

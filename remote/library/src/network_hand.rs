@@ -30,7 +30,7 @@ pub(crate) struct NetworkHand {
     configuration: Configuration,
 }
 
-/// What ends when the hand is closed.
+/// The parts of an open hand that end when it is closed.
 struct Connection {
     hand: client::RemoteHand,
     events: client::RemoteEvents,
@@ -50,7 +50,8 @@ impl Stoppable for NetworkHand {
 }
 
 impl NetworkHand {
-    /// Takes over an open hand. `seen` is the number of emergency stop calls at the beginning of its opening.
+    /// Wraps an open hand of the client, so that the C calls can use it. `seen` is the number of emergency stop calls
+    /// at the beginning of the opening.
     pub fn start(
         hand: client::RemoteHand,
         configuration: &Configuration,
@@ -96,7 +97,7 @@ impl NetworkHand {
             };
             let kx = command.stiffness.map(|rows| ranges.kx(rows)).transpose()?;
             ranges.finite("Damping", command.damping.as_slice())?;
-            // Each row of the symmetric matrix is the column with the same number.
+            // The client takes Kx as `rows[row][column]`.
             Ok((pose, kx.map(|kx| from_fn(|row| from_fn(|column| kx[(row, column)])))))
         };
         let (pose, stiffness) = checked().map_err(|error| RemoteRefusal::Hand(HandError::SetPoint(error)))?;
@@ -117,7 +118,7 @@ impl NetworkHand {
     }
 }
 
-/// A finger that the hand has.
+/// Returns the finger with this number. Refuses the number if the hand does not have this finger.
 fn member(hand: &client::RemoteHand, number: i32) -> Result<FingerNumber, RemoteRefusal> {
     let finger = FingerNumber::new(number).ok_or(HandError::NoSuchFinger(number))?;
     let has = |number: FingerNumber| hand.fingers().iter().any(|finger| i32::from(finger.number()) == number.get());

@@ -13,7 +13,7 @@ use crate::refusals::system;
 /// Interval at which the thread looks at the count.
 const INTERVAL: Duration = Duration::from_millis(5);
 
-/// What the thread stops.
+/// A hand that the thread can stop.
 pub(crate) trait Stoppable: Send + Sync + 'static {
     /// Stops every finger. Returns false if the stop may not have arrived, and must be repeated.
     fn stop_every_finger(&self) -> bool;
@@ -59,7 +59,7 @@ mod tests {
 
     struct Told {
         to: Sender<()>,
-        /// Whether the next stop arrives. The stop after it does.
+        /// Whether the next stop arrives. Every later stop arrives.
         arrives: AtomicBool,
     }
 

@@ -1,6 +1,7 @@
-//! Planners in the styles of 1990 and later, each run on a simulated hand of this machine and on the same hand behind
-//! a server. They are linked against libsun2xp and know nothing of the network. What they print must be the same:
-//! results, errnos and texts exactly, and numbers with a decimal point, such as poses, within 0.01.
+//! Runs planners in the styles of 1990 and later. Each planner runs on a simulated hand of this machine, and on the
+//! same hand behind a server. The planners are linked against libsun2xp and know nothing of the network. A planner must
+//! print the same in both runs: results, errnos and texts exactly, and numbers with a decimal point, such as poses,
+//! within 0.01.
 
 mod rig;
 

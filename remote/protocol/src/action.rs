@@ -14,7 +14,7 @@ pub enum Action {
     Recover = 3,
     /// Zero a finger.
     Calibrate = 4,
-    /// Identify a finger.
+    /// Identify a finger: measure its gauge gains, tendon stiffness and friction.
     Identify = 5,
     /// Bring fingers to their end state at once.
     Stop = 6,

@@ -19,9 +19,9 @@ pub struct FingerStatus {
     pub lost_replies: u64,
     /// Corrupt replies since open.
     pub corrupt_replies: u64,
-    /// Smallest joint angles, rad.
+    /// Lower joint limits, rad.
     pub low: [f64; 3],
-    /// Largest joint angles, rad.
+    /// Upper joint limits, rad.
     pub high: [f64; 3],
     /// Largest eigenvalue of Kx that the finger admits, N/cm.
     pub stiffness_bound: f64,

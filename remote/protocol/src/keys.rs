@@ -68,13 +68,13 @@ impl HandKeys {
         self.key(&format!("{}/*", action.name()))
     }
 
-    /// Returns the client of a key of Targets; none if it is another key.
+    /// Returns the client whose Targets have this key; none if the key is not one of Targets.
     #[must_use]
     pub fn client_of_target(&self, key: &str) -> Option<ClientName> {
         self.client(key, "target")
     }
 
-    /// Returns the client of a key of Requests for an action; none if it is another key.
+    /// Returns the client whose Requests for this action have this key; none if the key is not one of such Requests.
     #[must_use]
     pub fn client_of_request(&self, action: Action, key: &str) -> Option<ClientName> {
         self.client(key, action.name())
@@ -86,7 +86,7 @@ impl HandKeys {
     }
 }
 
-/// Returns the name of the hand whose Status has this key; none if it is another key.
+/// Returns the name of the hand whose Status has this key; none if the key is not one of a Status.
 #[must_use]
 pub fn hand_of_status(key: &str) -> Option<HandName> {
     key.strip_prefix("sun2xp/")?.strip_suffix("/status")?.parse().ok()

@@ -19,7 +19,7 @@ pub struct Record {
     pub begin: u64,
     /// Whether the finger touches something.
     pub touching: bool,
-    /// Whether the finger is caught: its last Target has become invalid.
+    /// Whether the finger is caught: the validity of the newest Target has ended, so the finger holds its pose.
     pub caught: bool,
     /// Whether the finger has arrived where the owner wants it, since the server applied `command`.
     pub arrived: bool,

@@ -1,4 +1,4 @@
-//! What is encoded decodes to the same message.
+//! Tests that a message which is encoded and then decoded is unchanged.
 
 use proptest::prelude::*;
 use sun2xp_remote_protocol::{
@@ -154,35 +154,35 @@ fn answer() -> impl Strategy<Value = Answer> {
 
 proptest! {
     #[test]
-    fn of_a_target(target in target()) {
+    fn round_trip_of_a_target(target in target()) {
         prop_assert_eq!(Target::decode(&target.encode().expect("good")), Ok(target));
     }
 
     #[test]
-    fn of_a_state(state in state()) {
+    fn round_trip_of_a_state(state in state()) {
         prop_assert_eq!(State::decode(&state.encode().expect("good")), Ok(state));
     }
 
     #[test]
-    fn of_an_event(finger in finger(), fields in any::<(u8, u64, u64)>(), counts in (1..=u16::MAX, 1..=u64::MAX),
-                   values in numbers()) {
+    fn round_trip_of_an_event(finger in finger(), fields in any::<(u8, u64, u64)>(),
+                              counts in (1..=u16::MAX, 1..=u64::MAX), values in numbers()) {
         let ((part, cycle, begin), (kind, number)) = (fields, counts);
         let event = Event { finger, part, kind, number, cycle, begin, values };
         prop_assert_eq!(Event::decode(&event.encode().expect("good")), Ok(event));
     }
 
     #[test]
-    fn of_a_status(status in status()) {
+    fn round_trip_of_a_status(status in status()) {
         prop_assert_eq!(Status::decode(&status.encode().expect("good")), Ok(status));
     }
 
     #[test]
-    fn of_a_request(request in request()) {
+    fn round_trip_of_a_request(request in request()) {
         prop_assert_eq!(Request::decode(&request.encode().expect("good")), Ok(request));
     }
 
     #[test]
-    fn of_an_answer(answer in answer()) {
+    fn round_trip_of_an_answer(answer in answer()) {
         prop_assert_eq!(Answer::decode(&answer.encode().expect("good")), Ok(answer));
     }
 }

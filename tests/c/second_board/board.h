@@ -36,7 +36,7 @@ struct board {
     int hold;
     int32_t hold_limit, limit[MOTORS], torque[MOTORS];
 
-    /* Bytes since the last zero. One byte more than the longest frame marks a frame that is too long. */
+    /* Bytes since the last zero. If there are more than STUFFED_MAXIMUM, the frame is too long and is discarded. */
     unsigned collected;
     uint8_t stuffed[STUFFED_MAXIMUM + 1];
 

@@ -38,11 +38,11 @@ const MARK: &str = "@instead@";
 /// A sample tries one alteration out of this number of alterations.
 const SAMPLE: usize = 41;
 
-/// Number of alterations of several numbers at once in a sample.
+/// Number of alterations in a sample that change several numbers at once.
 const AT_ONCE: usize = 400;
 
-/// If this variable is set, every alteration is tried, with every controller. The number of alterations of several
-/// numbers at once is then 200 times as large.
+/// If this variable is set, every alteration is tried, with every controller. The number of alterations that change
+/// several numbers at once is then 200 times as large.
 const EVERYTHING: &str = "SUN2XP_EVERY_ALTERATION";
 
 /// A recording as lines of JSON values.

@@ -142,7 +142,7 @@ fn a_refused_or_failed_export_leaves_the_folder_as_it_was() {
     assert_eq!(fs::read_to_string(path("hand-finger2.csv")).expect("read"), "old");
 }
 
-/// A limit on the size of files acts as a full disk.
+/// A limit on the size of files acts like a full disk.
 #[test]
 fn a_full_disk_is_named_with_the_folder() {
     let recorded = recorded();

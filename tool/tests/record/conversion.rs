@@ -50,7 +50,7 @@ fn a_recording_is_not_converted_again() {
     assert!(!folder.path().join("copy.mcap").exists());
 }
 
-/// A limit on the size of files acts as a full disk: at the beginning of the file, and later.
+/// A limit on the size of files acts like a full disk. It takes effect at the beginning of the file, or later.
 #[test]
 fn a_conversion_that_fails_leaves_no_file() {
     let folder = tempfile::tempdir().expect("a folder");

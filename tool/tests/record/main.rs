@@ -1,4 +1,5 @@
-//! `sun2xp record`: what it writes, when it is ended or killed, and what other programs read from it.
+//! `sun2xp record`: what the recording contains, also after the tool was interrupted or killed, and what other programs
+//! read from it.
 
 #[allow(dead_code)]
 #[path = "../common/terminal.rs"]

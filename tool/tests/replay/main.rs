@@ -71,7 +71,7 @@ fn the_text_names_every_finger() {
 }
 
 #[test]
-fn one_bit_is_found_in_its_cycle() {
+fn one_altered_bit_is_found_in_its_cycle() {
     let recording = recorded();
     let mut messages = recording.messages.clone();
     let middle = messages.len() / 2;

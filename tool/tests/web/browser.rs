@@ -1,4 +1,4 @@
-//! The page in headless Chromium, which draws with the processor.
+//! The page in headless Chromium, which draws with the processor and not with a graphics card.
 
 use super::chrome::Browser;
 use super::program::{Program, hand};
@@ -42,7 +42,7 @@ const PICTURES: &str = "
     return pictures / (performance.now() - start) * 1000;
 ";
 
-/// Idle share of the processors without which the speed of the page is not judged.
+/// Smallest idle share of the processors with which the speed of the page is judged.
 const LEAST_IDLE: f64 = 0.7;
 
 fn picture(browser: &Browser) -> Vec<i64> {

@@ -74,7 +74,7 @@ fn commands(browser: &Browser) -> Vec<String> {
 #[test]
 fn the_space_bar_stops_the_hand_wherever_the_focus_is() {
     let Some((_alone, _program, _folder, browser)) = page() else { return };
-    // A click leaves the focus on a button. The page may build its buttons once more until it is connected.
+    // A click leaves the focus on a button. Until the page is connected, it may rebuild its buttons.
     let focus = format!("const close = {}; close?.focus(); return close === document.activeElement", button("Close"));
     browser.wait_for(&focus);
     browser.run(NOTE_COMMANDS);
@@ -123,7 +123,7 @@ fn a_held_button_ends_when_another_finger_is_selected() {
 /// Presses a button until the page shows an answer, and returns it. `prepared` and `answer` are scripts: `prepared`
 /// returns true when the button may be pressed, and `answer` returns the text of the answer, or a false value until
 /// there is one. On a busy machine, the page may change between the calls for the press. If the mouse has therefore
-/// pressed something else, releases the button, prints what happened, and presses again.
+/// pressed something else, this function releases the button, prints what happened, and presses again.
 fn press(browser: &Browser, button: &str, prepared: &str, answer: &str) -> String {
     browser.run("addEventListener('pointerdown', (event) => { window.pressed = event.target; }, { capture: true })");
     loop {

@@ -89,7 +89,7 @@ impl Browser {
             // Waits for one picture, so that the page can do its own work.
             self.run("await new Promise(requestAnimationFrame)");
         }
-        panic!("the page never does this: {body}")
+        panic!("this script returned nothing true within {WAIT:?}: {body}")
     }
 
     /// Presses keys, or moves and presses the mouse, as a person does. `sources` are the input sources of the WebDriver

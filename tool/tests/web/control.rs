@@ -1,4 +1,4 @@
-//! `sun2xp jog --web`: a page moves the hand, if it may.
+//! `sun2xp jog --web`: a page moves the hand if it has the permission.
 
 use super::messages::{batch, message};
 use super::program::Program;

@@ -1,4 +1,4 @@
-//! `sun2xp monitor --web`: who may read the page, and what a browser shows of it.
+//! `sun2xp monitor --web` and `sun2xp jog --web`: who may read the page and move the hand, and what a browser shows.
 
 mod browser;
 mod browser_control;

@@ -11,7 +11,7 @@ pub fn message(socket: &mut Socket) -> Value {
     }
 }
 
-/// Returns the next batch. With `answer`, acknowledges it.
+/// Returns the next batch. If `answer` is true, the batch is also acknowledged.
 pub fn batch(socket: &mut Socket, answer: bool) -> Value {
     loop {
         let message = message(socket);

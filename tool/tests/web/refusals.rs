@@ -132,7 +132,7 @@ fn random_bytes_at_the_port_end_only_their_own_connection() {
 }
 
 #[test]
-fn only_so_many_pages_are_served() {
+fn the_number_of_pages_is_limited() {
     let program = waiting();
     let open = || Socket::open(program.address(), "/stream", &[]);
     let pages: Vec<_> = (0..16).map(|_| open().expect("a socket")).collect();

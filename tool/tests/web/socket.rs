@@ -60,7 +60,7 @@ impl Socket {
         let _ = self.stream.get_mut().write_all(&frame);
     }
 
-    /// Makes the system store less of what arrives.
+    /// Makes the receive buffer small, so that it is soon full if nothing is read.
     pub fn narrow(&self) {
         let (descriptor, size): (_, libc::c_int) = (self.stream.get_ref().as_raw_fd(), 4096);
         let length = size_of_val(&size) as libc::socklen_t;

@@ -41,7 +41,7 @@ class Identified:
 
     #: Stiffness of each tendon, `tendon.stiffness`, N/cm: shape (4,).
     tendon_stiffness: Array
-    #: Relative uncertainty of these stiffnesses, `tendon.stiffness_tolerance`.
+    #: Relative uncertainty of the tendon stiffnesses, `tendon.stiffness_tolerance`.
     stiffness_tolerance: float
     #: Part of the motors' travel that the identified elasticity does not explain: rms residual, cm.
     travel_residual: float

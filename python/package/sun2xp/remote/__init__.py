@@ -98,7 +98,8 @@ def discover(
 
 def send_together(set_points: Dict[RemoteHand, Sequence[SetPoint]]) -> None:
     """Sends set points to several hands of one connection, with one time stamp. Nothing is sent if the set points of
-    one hand are invalid, if the server has refused earlier ones, or if this client does not own one of the hands.
+    one hand are invalid, if the server has refused an earlier set point of one of the fingers and no call has raised
+    this refusal yet, or if this client does not own one of the hands.
 
     Raises:
         ValueError: the hands do not have the same connection (`connect`).

@@ -39,7 +39,7 @@ _FAILURES = {
 class NotOwner(Error):
     """This client does not own the hand. It has not acquired the hand, has released it, was silent for too long, lost
     the hand to another client, or may not command it ([serve.clients] of the server). If the client may command the
-    hand, `hand.acquire()` makes it the owner. If another client owns the hand, this needs `take_over=True`."""
+    hand, `hand.acquire()` makes it the owner. If another client owns the hand, that call needs `take_over=True`."""
 
 
 class Stale(TimedOut):

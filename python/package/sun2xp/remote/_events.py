@@ -15,8 +15,8 @@ class RemoteEvents:
 
     Every queue gets all events. A queue that is not read keeps the newest 4096. The times of events are those of the
     server's clock. The server sends the part of a fault or a warning as a number, whose meaning depends on the fault
-    (docs/faults.md). The event names the part, for example "tendon 3" or "finger". For a fault that this version does
-    not know, it has "part 3" instead of "tendon 3".
+    (docs/faults.md). The event names the part, for example "tendon 3" or "finger". For a fault that this version of the
+    client does not know, the event has "part 3" instead of "tendon 3".
     """
 
     def __init__(self, receiver: Receiver) -> None:

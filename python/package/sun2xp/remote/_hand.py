@@ -35,8 +35,8 @@ class RemoteHand(Reading):
 
     The calls have the names of `sun2xp.Hand`. Calls that send something do so without delay and return at once. A
     thread repeats the newest target, the message with the set points, every 20 ms. If the server refuses a set point,
-    the next call that sends to this finger or waits for it raises Refused with the reason. The fingers then keep the
-    set points that they had before.
+    the next call that sends to the same finger or waits for it raises Refused with the reason. The fingers then keep
+    the set points that they had before.
 
     If this process is killed, is stopped or loses the line, the server holds the fingers after 0.1 s and brings them to
     their end states after 1 s, unless it is configured otherwise. A process that ends normally closes the hand.
@@ -153,7 +153,7 @@ class RemoteHand(Reading):
         taken the path. Errors are those of `send_position`.
 
         Args:
-            times: times of the poses after the moment at which the server takes the path, s: shape (n,).
+            times: times of the poses, counted from the moment at which the server takes the path, s: shape (n,).
             joints: joint angles, rad: shape (n, 3).
         """
         self._check(finger)
@@ -179,9 +179,9 @@ class RemoteHand(Reading):
 
         Args:
             fingers: a finger, or several. The default is all fingers to which this client has sent something.
-            condition: "applied": the server has taken the set point. "arrived": since the set point was sent, every
-                joint has been at the set point. "settled": since the set point was sent, the joints have come to rest.
-                The finger may have been pushed away again.
+            condition: "applied": the server has taken the set point. "arrived": since the set point was sent, there was
+                a cycle in which every joint was at the set point. "settled": since it was sent, the joints have come to
+                rest. Both conditions still hold if the finger was pushed away afterwards.
             timeout: time limit, s. Without it, the wait has no limit.
 
         Raises:

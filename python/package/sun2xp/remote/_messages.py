@@ -20,7 +20,7 @@ VERSION = 1
 
 TARGET, STATE, EVENT, STATUS, REQUEST, ANSWER = 1, 2, 3, 4, 5, 6
 
-#: The number of each action of a Request. Its name is a part of the Zenoh key to which the Request is sent.
+#: The number of each action of a Request. The action's name is a part of the Zenoh key to which the Request is sent.
 ACTIONS = {"acquire": 1, "release": 2, "recover": 3, "calibrate": 4, "identify": 5, "stop": 6}
 
 #: The values of `place` in a part of a Target.

@@ -27,7 +27,7 @@ LOOPBACK = "tcp/127.0.0.1:7447"
 #: Longest time in which a server answers, s.
 ANSWER_TIME = 2.0
 
-#: Attempts of a get (a query of Zenoh) that reaches nobody, and the pause between them, s.
+#: Number of attempts if a get (a query of Zenoh) reaches nobody, and the pause between two attempts, s.
 ATTEMPTS = 3
 PAUSE = 0.2
 
@@ -171,8 +171,8 @@ class Network:
         return found
 
     def get(self, key: str, payload: Optional[bytes], timeout: float) -> List[tuple]:
-        """Returns the keys and payloads of all answers to a get. The get ends when all have answered, or after
-        `timeout` s. Ctrl-C ends it."""
+        """Returns the keys and payloads of all answers to a get. The get ends when all servers that it has reached have
+        answered, or after `timeout` s. Ctrl-C ends it."""
         if self.forked:
             raise forked()
         if self.session.is_closed():

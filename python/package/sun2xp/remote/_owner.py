@@ -52,8 +52,8 @@ class Owner:
         return self._epoch
 
     def begin(self, answer: Answer, end: float) -> None:
-        """Begins the epoch of an Answer to acquire. If the newest Target has the age `end`, s, the server ends the
-        epoch."""
+        """Begins the epoch of an Answer to acquire. The server ends the epoch when the newest Target is older than
+        `end`, s."""
         self._epoch, self._validity, self._end = answer.epoch, answer.catch_ms, end
         self._number, self._since, self._sequence = answer.number, answer.time, 0
         self._restarts = self._receiver.restarts

@@ -52,7 +52,7 @@ class Reading:
         """Returns the newest cycle of a finger.
 
         Raises:
-            Stale: it is too old.
+            Stale: the newest cycle is too old, or none has arrived.
         """
         record = self._record(finger)
         set_point = record["joint_set_point"].copy()
@@ -141,8 +141,8 @@ class Reading:
 
     def _stopped(self, finger: int) -> Tuple[int, int]:
         """Returns the finger that an Answer concerns, and the number of its fault, or 0 if the fault is not known. If
-        `finger` is 0, the Answer concerns the first finger that has stopped. If none has, for example because it has
-        been recovered since, the finger that is returned is 0 too."""
+        `finger` is 0, the Answer concerns the first finger that has stopped. If no finger has stopped, for example
+        because the finger has been recovered since, the returned finger is 0 too."""
         try:
             faults = {number: status.fault for number, status in self._ask_status().fingers.items()}
         except NoAnswer:

@@ -194,7 +194,8 @@ class Receiver:
             self._queues = [other for other in self._queues if other is not queue]
 
     def leave(self) -> None:
-        """Ends the waits in a child of `os.fork`. A thread of the parent may have had the lock."""
+        """Ends the waits in a child of `os.fork`. Replaces the lock, because a thread of the parent may have held it at
+        the fork."""
         self.changed, self.closed, self.forked = threading.Condition(), True, True
 
     def close(self) -> None:

@@ -80,7 +80,7 @@ class Slot:
 
     def refuse(self, sequence: int) -> bool:
         """Drops what was in the refused Target with this sequence number, unless a State has confirmed it. Returns
-        whether there was anything."""
+        whether anything was dropped."""
         later = [sent for sent in self._open if sent.sequence > sequence]
         refused = len(later) < len(self._open)
         self._open = later

@@ -14,7 +14,7 @@ fn refusal(text: &str) -> String {
 }
 
 #[test]
-fn the_tables_are_read_and_the_others_are_ignored() {
+fn the_tables_of_a_client_are_read_and_other_tables_are_ignored() {
     let read_one = read(GOOD).expect("good").expect("a table");
     let (hand, client) = ("left-2".parse().expect("a name"), "p".parse().expect("a name"));
     assert_eq!(read_one, RemoteConfiguration::new("tcp/127.0.0.1:7447", hand, client));

@@ -109,7 +109,7 @@ impl Exchange {
         self.outbox.ownership().map(drop).map_err(refused)
     }
 
-    /// The newest Status, if the hand was heard not too long ago.
+    /// The newest Status, if a State was received within `LONGEST_SILENCE`, or if no State was received yet.
     pub fn status(&self, now: u64) -> Result<&Status, RemoteError> {
         let status = self.view.status().ok_or_else(|| self.nothing_heard())?;
         match self.view.silence(now) {

@@ -134,9 +134,9 @@ fn wrong_arguments_are_refused_and_change_nothing() {
         (command.damping(-0.5), RemoteErrorKind::OutOfRange, "the damping ratio -0.5 of finger 1 is negative"),
         (command.damping(f64::NAN), RemoteErrorKind::Argument, "Damping of finger 1 contains NaN"),
     ];
-    for (command, kind, beginning) in cases {
+    for (command, kind, excerpt) in cases {
         let (refused_kind, text) = refused(send(&mut exchange, command, 10 * MS));
-        assert!(refused_kind == kind && text.contains(beginning), "{refused_kind:?}: {text}");
+        assert!(refused_kind == kind && text.contains(excerpt), "{refused_kind:?}: {text}");
     }
     let twice = exchange.admit(&[good(1), good(1)], 10 * MS).map(drop);
     assert!(refused(twice).1.contains("the group has two commands for finger 1"));
@@ -188,7 +188,7 @@ fn paths_are_checked() {
         let now = (9 + number) * MS;
         exchange.take_state(&state(number, now, stage), now);
         let (kind, text) = refused(exchange.admit_path(1, &[pose(1.0, 0.5)], now).map(drop));
-        let remedy = "its server is ending. Start the server again, then open or reopen the hand";
+        let remedy = "its server is shutting down. Start the server again, then open or reopen the hand";
         assert_eq!((kind, text), (RemoteErrorKind::Busy, format!("finger 1 is {}: {remedy}", stage.name())));
     }
 }

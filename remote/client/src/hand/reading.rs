@@ -78,7 +78,7 @@ impl RemoteHand {
         exchange.finger_status(finger).cloned()
     }
 
-    /// What was received and sent.
+    /// Returns the counts of what this client has received and sent since it opened the hand.
     #[must_use]
     pub fn statistics(&self) -> RemoteStatistics {
         self.link.shared.lock().view.statistics

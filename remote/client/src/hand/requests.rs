@@ -48,8 +48,8 @@ impl RemoteHand {
         self.request(Action::Calibrate, Some(finger))
     }
 
-    /// Identifies finger 1, 2 or 3. Returns when this is done, after up to ten minutes. The result is in force at the
-    /// server.
+    /// Identifies finger 1, 2 or 3: measures its gauge gains, tendon stiffness and friction. Returns when this is done,
+    /// after up to ten minutes. The result is in force at the server.
     ///
     /// # Errors
     /// Returns the errors of [`RemoteHand::zero`].

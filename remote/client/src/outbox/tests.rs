@@ -97,7 +97,7 @@ fn a_change_is_sent_at_once_and_repeated_with_its_number() {
 }
 
 #[test]
-fn a_planner_that_sends_without_a_pause_sends_the_newest() {
+fn if_a_planner_sends_without_a_pause_the_newest_set_point_is_sent() {
     let mut outbox = owner();
     let mut sent = Vec::new();
     // The planner sends a set point each microsecond for 10 ms.

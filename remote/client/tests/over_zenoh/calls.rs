@@ -177,7 +177,8 @@ fn after_a_restart_of_the_server_the_hand_is_read_but_not_acquired() {
     let hand = RemoteHand::open(&short).expect("open");
     hand.send_position(1, [0.5; 3]).expect("sent");
     server.hand().wait_for_target("the set point", |target| !target.parts.is_empty());
-    // The hand receives so many States that the numbers of the new server's first States are lower.
+    // The client first receives so many States that the numbers of the new server's first States are lower than the
+    // number of its newest State.
     until("States", || hand.statistics().states, |&states| states > 20);
     drop(server);
     until("the age", || hand.position(1), Result::is_err).expect_err("stale");
@@ -228,7 +229,7 @@ fn a_request_that_reaches_nobody_is_repeated() {
 }
 
 #[test]
-fn what_cannot_be_opened_says_why() {
+fn an_open_that_fails_says_why() {
     let port = free_port();
     let error = RemoteHand::open(&configuration(port, "left", "planner")).map(drop).expect_err("nobody listens");
     assert_eq!(error.kind(), RemoteErrorKind::NotConnected);

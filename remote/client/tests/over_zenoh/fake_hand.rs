@@ -32,7 +32,8 @@ pub struct FakeHand {
     pub unanswered_status: usize,
     /// The version byte of its Status.
     pub version: u8,
-    /// The number of States after a recovery that are not published, so that an older one stays the newest.
+    /// The number of States after a recovery that are not published, so that the newest State of the clients is from
+    /// before the recovery.
     pub late_states: usize,
     /// Whether the server publishes nothing.
     pub silent: bool,

@@ -1,5 +1,5 @@
-//! What remains of a hand that was closed. The other tests of this process would disturb the counts, so this test runs
-//! alone.
+//! Tests that a hand which was closed leaves no threads, descriptors or memory behind. The other tests of this process
+//! would disturb the counts, so this test runs alone.
 
 use crate::server::{FakeServer, configuration, free_port};
 use std::fs::{read_dir, read_to_string};

@@ -1,4 +1,5 @@
-/* Never closes the hand: exit does. An exit handler that was registered before the hand was opened finds it closed. */
+/* Never calls CloseHand: exit closes the hand. An exit handler that was registered before the hand was opened finds it
+   closed. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* No include, no prototypes, float arrays, sleeps, and return values that are ignored. */
+/* Has no include and no prototypes, uses float arrays, waits with sleep, and ignores return values. */
 float Pos[3], Kx[9];
 
 main()

@@ -1,4 +1,4 @@
-/* Polls until the finger is where it should be, with arrays of double. */
+/* Polls the position, in arrays of double, until the finger has reached each goal. */
 #include <math.h>
 #include <stdio.h>
 #include <unistd.h>

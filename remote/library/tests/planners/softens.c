@@ -1,4 +1,5 @@
-/* Moves a finger, softens it, and stiffens it again: at the end it has the commanded pose. K&R C, Kx as nine floats. */
+/* Moves a finger, softens it, and stiffens it again: at the end it has the commanded pose. The program is K&R C, and
+   passes Kx as nine floats. */
 #include <stdio.h>
 extern OpenHand(), SendPos(), SendKx(), GetPos(), CloseHand();
 

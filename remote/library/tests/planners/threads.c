@@ -1,4 +1,4 @@
-/* One thread for each finger, and one that reads all of them meanwhile. */
+/* Commands each finger in a thread of its own. Another thread reads all fingers meanwhile. */
 #include <pthread.h>
 #include <stdio.h>
 #include <unistd.h>

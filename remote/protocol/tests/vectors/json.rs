@@ -1,4 +1,5 @@
-//! Writes one object a line: JSON for any language, and single lines for a C program without a JSON parser.
+//! Writes the vectors as JSON, with one object on each line, so that a C program without a JSON parser can read the
+//! file line by line.
 
 /// Writes an object of `"name": value` pairs. The values must already be JSON.
 pub fn object(pairs: &[(&str, String)]) -> String {

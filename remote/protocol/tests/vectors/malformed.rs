@@ -18,7 +18,8 @@ fn line(kind: &str, name: &str, payload: &[u8]) -> String {
     object(&[("type", text(kind)), ("name", text(name)), ("payload", hex(payload)), ("reason", text(&reason))])
 }
 
-/// Lines of this message with other bytes at these offsets.
+/// Returns one line for each change. A change has the name of the line, an offset, and the bytes that replace those of
+/// the message at this offset.
 fn changed(kind: &str, payload: &[u8], changes: &[(&str, usize, &[u8])]) -> Vec<String> {
     let change = |&(name, at, bytes): &(&str, usize, &[u8])| {
         let mut payload = payload.to_vec();
@@ -28,7 +29,7 @@ fn changed(kind: &str, payload: &[u8], changes: &[(&str, usize, &[u8])]) -> Vec<
     changes.iter().map(change).collect()
 }
 
-/// Lines of this message with another type, version or length.
+/// Returns lines with this message, each with a wrong type, version or length.
 fn framed(kind: &str, payload: &[u8]) -> Vec<String> {
     let mut lines = vec![
         line(kind, "nothing", &[]),

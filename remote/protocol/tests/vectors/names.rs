@@ -50,7 +50,7 @@ pub fn keys() -> Vec<String> {
 }
 
 #[test]
-fn a_key_gives_its_client_and_no_other_key_does() {
+fn a_key_of_a_client_gives_the_client_and_any_other_key_gives_none() {
     let client: ClientName = "planner".parse().expect("a name");
     let keys = HandKeys::new("left-2".parse().expect("a name"));
     assert_eq!(keys.client_of_target(&keys.target(&client)), Some(client.clone()));
