@@ -4,8 +4,8 @@
        Can [INTERFACE]
 
    The drives are simulated by CanDrives, which this program starts. The two programs exchange CAN frames over
-   INTERFACE. Without an argument, they use vcan0 if the machine has it (ip link add dev vcan0 type vcan; ip link set
-   vcan0 up), and otherwise Unix datagram sockets. */
+   INTERFACE. Without an argument, they use vcan0 if the machine has it, and otherwise Unix datagram sockets. These
+   commands create vcan0: ip link add dev vcan0 type vcan; ip link set vcan0 up. */
 
 #define _GNU_SOURCE
 #include <errno.h>

@@ -3,8 +3,8 @@
 
        CanDrives INTERFACE | FOLDER
 
-   INTERFACE is the name of a CAN interface. On a machine without one, give the path of an empty folder, FOLDER, with a
-   slash in it. The frames then go through Unix datagram sockets in this folder.
+   INTERFACE is the name of a CAN interface. On a machine without a CAN interface, give FOLDER instead: the path of an
+   empty folder. The path must contain a slash. The frames then go through Unix datagram sockets in this folder.
 
    When a frame starts or stops a drive, the program answers with encoder counts and tensions. When a frame of torques
    reaches a started drive, the program answers in the same way, and then advances the physics of this drive's finger by
@@ -18,7 +18,7 @@
 #include "can_bus.h"
 #include "finger_physics.h"
 
-#define STEPS 10                        /* number of PHYSICS_STEP in 1 ms */
+#define STEPS 10                        /* number of steps of PHYSICS_STEP in 1 ms */
 #define LONGEST_SILENCE 10.0            /* s */
 
 struct drive {

@@ -109,7 +109,8 @@ static void tighten_on_slip(void)
         }
 }
 
-/* Moves the anchors in small steps. The arguments are those of anchor, at the beginning and at the end. */
+/* Moves the anchors in small steps. up and distance are the arguments of anchor at the beginning of the motion, to_up
+   and to_distance those at its end. */
 static void glide(double up, double distance, double to_up, double to_distance)
 {
     int step;

@@ -38,7 +38,7 @@ static void reach(int finger, const double to[3])
         for (int joint = 0; joint < 3; joint++)
             at[joint] = from[joint] + part * (to[joint] - from[joint]);
         if (SendPos(finger, at) != 0)
-            give_up("on the way");
+            give_up("moving the finger");
         pause_ms(STEP_MS);
     }
 }

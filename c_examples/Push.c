@@ -42,7 +42,7 @@ static int rest(double *tip)
     return 0;
 }
 
-/* Pushes with the given force along one axis, N, and computes where the tip comes to rest. */
+/* Pushes with the given force, N, along one axis, and computes where the tip comes to rest. */
 static int push(int axis, double newton, double *tip)
 {
     double force[3] = {0.0, 0.0, 0.0};

@@ -16,7 +16,7 @@ struct finger_physics {
     double theta[3], theta_rate[3];     /* rad, rad/s */
     double motor[4], motor_rate[4];     /* rad, rad/s */
     double home[4];                     /* tensions at motor angle 0 and joint angle 0, N */
-    int braked;
+    int braked;                         /* 1 while the motors cannot turn */
 };
 
 /* R of eq. 14 of the report: the moment arms of the tendons at the joints, m. */

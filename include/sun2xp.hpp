@@ -57,8 +57,9 @@ public:
     int system_errno() const noexcept { return system_errno_; }
     /// Name of the C call.
     const std::string &call() const noexcept { return call_; }
-    /// C calls that help, separated by commas. The list names only calls that open, close, recover, zero or stop, and
-    /// sun2xp_status, so it may be empty although another call helps. what() always has the whole remedy.
+    /// C calls that help, separated by commas. The list names only calls that open or close a hand, sun2xp_recover,
+    /// sun2xp_zero and sun2xp_status, so it may be empty although another call helps. what() always has the whole
+    /// remedy.
     const std::string &remedy() const noexcept { return remedy_; }
 
 private:
@@ -97,7 +98,8 @@ using event_callback = std::function<void(const struct sun2xp_event &)>;
 
 /// The event callbacks of all hands. Each callback has a number that is never used again. The library gets this number
 /// and not the address of the callback, because a callback may be destroyed just when the library begins to call it: if
-/// the callback of one hand removes the callback of another hand, sun2xp_on_event does not wait.
+/// the callback of one hand removes the callback of another hand, sun2xp_on_event does not wait until the removed
+/// callback has returned.
 #if defined(__GNUC__)
 // All shared objects of the process share one table, because a `hand` that was made in one shared object can be moved
 // into another shared object.
@@ -155,7 +157,7 @@ class finger {
 public:
     finger(sun2xp_hand *hand, int number) noexcept : hand_(hand), number_(number) {}
 
-    /// 1 to 3, or all_fingers.
+    /// The number of the finger: 1 to 3, or all_fingers.
     int number() const noexcept { return number_; }
 
     vector3 position() const
@@ -370,7 +372,7 @@ public:
     /// The handle, for calls of sun2xp.h.
     sun2xp_hand *handle() const noexcept { return hand_; }
 
-    /// A finger, 1 to 3, or all_fingers.
+    /// The finger with this number, 1 to 3. With all_fingers, the result stands for all fingers.
     class finger finger(int number) const noexcept { return {hand_, number}; }
 
     /// Commands several fingers in the same cycle. This function sets the member `size` of each set point.

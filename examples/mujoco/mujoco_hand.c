@@ -24,8 +24,8 @@
 #define CONFIGURATION \
     "[hand]\nreal_time = \"ignore\"\nend_state = \"release\"\n[finger]\nport = \"simulated\"\nthread = 1\n"
 
-/* Longest wait for the simulation in one exchange, s. After this time the exchange fails, and the library calls it
-   again in the next cycle. */
+/* Longest wait for the simulation in one exchange, s. After this time the exchange fails, and the library calls
+   the function exchange again in the next cycle. */
 #define PATIENCE 0.08
 
 /* The memory that both programs share: numbers of 8 bytes. simulation.py has the same layout. */
@@ -88,7 +88,8 @@ static int start(void *user, const struct sun2xp_io_terms *terms, struct sun2xp_
     return 0;
 }
 
-/* Advances the simulation by one period. If it times out, the next call waits for the same step. */
+/* Advances the simulation by one period. If the simulation does not complete this step within PATIENCE, the next call
+   waits for the same step, and requests no other. */
 static int advance(struct step *step, struct memory *memory)
 {
     double deadline = seconds() + PATIENCE;

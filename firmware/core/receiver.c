@@ -16,7 +16,7 @@ static void collect(struct receiver *receiver, uint8_t byte)
         receiver->crc = CRC32_START;
         return;
     }
-    /* A distance replaced a zero, so it becomes zero again. All other bytes stay as they are. */
+    /* Each later distance has replaced a zero, so it becomes zero again. All other bytes stay as they are. */
     if (place == receiver->next_zero) {
         receiver->next_zero = place + byte;
         byte = 0;

@@ -1,4 +1,4 @@
-/* A board whose fingers are on one line. Their addresses follow each other. */
+/* A board whose fingers are on one line. Their addresses are consecutive. */
 
 #include "../core/board.h"
 #include "../core/protocol.h"

@@ -16,7 +16,7 @@ static uint32_t any(void)
     return (uint32_t)(state >> 32);
 }
 
-/* A number of 1 to 32 bits, or one close to where the computation changes. */
+/* A number of 1 to 32 bits, or one close to a value at which the core changes its method of computation. */
 static uint32_t any_size(void)
 {
     static const uint32_t edges[] = {1, 1000, 999000, 1000000, UINT32_MAX / 1000u, UINT32_MAX};

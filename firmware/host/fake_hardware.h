@@ -30,7 +30,7 @@ extern struct fake_hardware fake;
    elements. */
 extern const struct finger_traits fake_traits[FAKE_FINGERS];
 
-/* The torque that corresponds to the current on a motor, torque units. The torque constant is in uN m/A. */
+/* The torque that corresponds to the current of a motor, torque units. The torque constant is in uN m/A. */
 int32_t fake_torque(unsigned finger, size_t motor, uint32_t torque_constant);
 
 /* Delivers these bytes now, and polls the board until it has taken all of them. */

@@ -104,7 +104,7 @@ void hal_set_toggle(unsigned finger, bool high)
 }
 
 /* Sets raw mode before the path is printed: a terminal that edits lines or echoes would damage the first frames. The
-   far end stays open, or the line would hang up whenever no host has it open. */
+   far end stays open, because the line would otherwise hang up whenever no host has opened it. */
 static bool open_line(void)
 {
     struct termios raw;

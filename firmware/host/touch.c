@@ -15,7 +15,7 @@ static void expect(bool holds, const char *what)
     }
 }
 
-/* Fetches the next event, and expects this one. */
+/* Fetches the next event, and checks that it has these values and the present time. */
 static void expect_event(uint8_t *received, uint8_t change, uint16_t element, uint16_t count, const char *what)
 {
     struct tactile_event event = touch_fetch(&finger.touch, *received);

@@ -2,8 +2,8 @@
 
        vectors protocol/vectors.json
 
-   The program reads the file line by line: every vector is an object on its own line. It can test a board of your
-   own design too: write a hardware layer like fake_hardware.c for it and keep the rest. */
+   The program reads the file line by line: every vector is an object on its own line. The program can test a board of
+   your own design too: write a hardware layer like fake_hardware.c for this board, and keep the rest. */
 
 #include "fake_hardware.h"
 #include "../core/protocol.h"
@@ -136,15 +136,15 @@ static void check_frame(void)
     struct frame frame, written;
     unsigned damaged = 0;
     int good = frames_in(wire, length, &frame, &damaged) == 1 && damaged == 0;
-    expect(good, "not one good frame");
+    expect(good, "exactly one good frame");
     if (!good)
         return;
     expect(frame_address(&frame) == number("address", 0) && frame_sequence(&frame) == number("sequence", 0), "prefix");
-    expect(frame_to_wire(&frame, again) == length && memcmp(wire, again, length) == 0, "stuffed differently");
+    expect(frame_to_wire(&frame, again) == length && memcmp(wire, again, length) == 0, "same bytes when stuffed again");
     if ((frame_type(&frame) & TYPE_IS_ANSWER) == 0) {
         check_request(&frame);
     } else if (write_answer(&written, frame_type(&frame))) {
-        expect(frame_to_wire(&written, again) == length && memcmp(wire, again, length) == 0, "written differently");
+        expect(frame_to_wire(&written, again) == length && memcmp(wire, again, length) == 0, "same bytes when written again");
     }
 }
 
@@ -158,9 +158,9 @@ static void check_bad(void)
     struct frame frame;
     unsigned damaged = 0;
     memcpy(wire + length, good_frame, sizeof good_frame);
-    expect(frames_in(wire, length + sizeof good_frame, &frame, &damaged) == 1, "accepted, or the next one lost");
-    expect(damaged == 1, "not counted once");
-    expect(frame_sequence(&frame) == 3, "not the next frame");
+    expect(frames_in(wire, length + sizeof good_frame, &frame, &damaged) == 1, "only the next frame accepted");
+    expect(damaged == 1, "damage counted once");
+    expect(frame_sequence(&frame) == 3, "sequence number of the next frame");
 }
 
 /* A board and a conversation with it */
@@ -191,8 +191,8 @@ static void check_ignored(void)
 {
     power_up();
     say("wire");
-    expect(fake.output_length == 0, "answered");
-    expect(!fingers[0].damaged, "taken for damage");
+    expect(fake.output_length == 0, "no answer");
+    expect(!fingers[0].damaged, "not taken for damage");
 }
 
 /* Sends a request and checks the answer. */

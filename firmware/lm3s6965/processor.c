@@ -104,7 +104,7 @@ void processor_start(void)
     *timer_reload = CLOCK_MEGAHERTZ * WAKE_UP_MICROSECONDS - 1;
     *timer_interrupt_mask = 1;
     *timer_control = 1;
-    /* Four priorities a word. UART 0 is interrupt 5 and timer 0 is 19. SysTick keeps priority 0, the
+    /* A word holds four priorities. UART 0 is interrupt 5, and timer 0 is interrupt 19. SysTick keeps priority 0, the
        highest. */
     interrupt_priorities[5 / 4] = 0x80u << 8;
     interrupt_priorities[19 / 4] = 0x80u << 24;

@@ -8,8 +8,8 @@
 #include "registers.h"
 #include <string.h>
 
-/* Largest number of rounds of a wait. A round takes at least 14 cycles, so a wait may take 16 us. The conversion takes
-   4.15 us and a word 1.6 us. */
+/* Largest number of rounds of a wait. A round takes at least 14 cycles, so the limit is 16 us or more. The conversion
+   takes 4.15 us and a word 1.6 us. */
 enum { ROUNDS = 200 };
 
 /* Number of conversions in a row that may fail. The next failure is reported. At 500 Hz, gauges that fail are therefore

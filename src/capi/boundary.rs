@@ -149,7 +149,7 @@ fn slow(
 /// Runs `call` without cancellation. `call` must not panic, and its result must need no destructor.
 ///
 /// This function is inlined into the exported function. No value in it has a destructor, because a thread with
-/// asynchronous cancellation may be unwound from this function before and after the call. An exported function that
+/// asynchronous cancellation may be unwound from this function before and after `call` runs. An exported function that
 /// needs values with destructors must create them inside `call`.
 #[inline(always)]
 pub(super) fn uncancelled<R, F: FnOnce() -> R>(call: F) -> R {

@@ -39,7 +39,7 @@ use std::ffi::{c_char, c_int};
 ///   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
 ///            configured core is not available; HandError says what to change
 ///
-/// Threads: any. sun2xp.h opens further hands.
+/// Threads: any. The calls of sun2xp.h open further hands.
 ///
 /// Example:
 ///

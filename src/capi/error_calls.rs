@@ -12,8 +12,8 @@ use std::ffi::{c_char, c_int};
 
 /// A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread.
 ///
-/// The member remedy names only calls that open, close, recover, zero or stop, and sun2xp_status. It may be empty
-/// although a call helps. The member text always contains the whole remedy.
+/// The member remedy names only calls that open or close a hand, sun2xp_recover, sun2xp_zero and sun2xp_status. It may
+/// be empty although another call helps. The member text always contains the whole remedy.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_error {

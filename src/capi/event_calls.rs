@@ -119,8 +119,8 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
 ///
 /// When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
 /// called again. There is one exception: a call that is made in a callback, of this hand or of another one,
-/// does not wait for the previous callback. This callback may then still be running or be called once more,
-/// so its context must stay valid for some time.
+/// does not wait for the previous callback. The previous callback may then still be running or be called
+/// once more, so its context must stay valid for some time.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -181,7 +181,7 @@ pub extern "C" fn sun2xp_on_event(
 /// Returns the descriptor, the same one until sun2xp_close, or a negative number with
 ///   EPERM    forked child
 ///   ENODEV   no such hand
-///   EMFILE, ENFILE, EAGAIN ...  the system refuses the descriptor or the thread
+///   EMFILE, ENFILE, EAGAIN ...  the system refuses the descriptor, or the thread that makes it readable
 ///
 /// Threads: any.
 ///

@@ -7,8 +7,9 @@ use std::ffi::{c_int, c_ulong};
 
 /// An event: something that happened to a finger in one cycle of its servo.
 ///
-/// The member part is 0 if the event concerns the whole finger. All events of a cycle have the same time.
-/// The oldest events are lost first.
+/// The kind of the event says which kind of part the member part numbers, for example a joint
+/// (docs/events.md). This member is 0 if the event concerns the whole finger. All events of a cycle have the
+/// same time. The oldest events are lost first.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_event {

@@ -3,11 +3,11 @@
 use crate::hand::Hand;
 use std::ffi::c_int;
 
-/// All fingers of a hand. Only calls whose entries say so accept it.
+/// Stands for all fingers of a hand. Only the calls whose entries say so accept this number.
 pub const SUN2XP_ALL_FINGERS: c_int = 0;
 
-/// The fingers that `number` names. SUN2XP_ALL_FINGERS names all fingers that the hand has. The hand refuses numbers
-/// that do not exist.
+/// The fingers that `number` names. SUN2XP_ALL_FINGERS names all fingers that the hand has. Any other number is returned
+/// unchecked: the hand refuses it later if it has no such finger.
 pub(super) fn fingers(hand: &Hand, number: c_int) -> impl Iterator<Item = c_int> + use<> {
     let all = number == SUN2XP_ALL_FINGERS;
     let one = (!all).then_some(number);

@@ -176,8 +176,8 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 /// the finger becomes a spring after a fault or a calibration, when a set point expires, and when a reflex
 /// with the reaction SUN2XP_THEN_SOFTEN fires. A reflex with SUN2XP_THEN_DAMP replaces the ratio. A finger
 /// whose ratio is much below or much above 1 does not come to rest. The permitted range depends on the
-/// controller (finger.controller.scheme: state feedback, or figure 9, 10 or 11 of the report), the rate and
-/// the largest eigenvalue k of the stiffness, N/cm:
+/// controller (finger.controller.scheme: state feedback, or figure 9, 10 or 11 of the report), the servo
+/// rate (hand.rate) and the largest eigenvalue k of the stiffness, N/cm:
 ///
 ///                                     1000 Hz and above    below 1000 Hz
 ///   state feedback         smallest   0.40 + 0.09 k        0.70 + 0.07 k

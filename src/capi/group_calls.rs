@@ -98,7 +98,7 @@ pub unsafe extern "C" fn sun2xp_send_group(
         } else {
             non_null(set_points, "set_points", Wanted::Struct("sun2xp_set_point"))?;
             // SAFETY: `set_points` is not null, as checked above. By the contract in the manual it points to `count`
-            // set points with as many bytes as the first member of the first one gives.
+            // set points. Each of them has as many bytes as the first member of the first set point gives.
             unsafe { load_commands(count, set_points) }
         };
         if let Some(remote) = hand_table::remote_to_command(hand)? {
@@ -125,13 +125,13 @@ pub unsafe extern "C" fn sun2xp_send_group(
 /// the condition must hold for the set point of the reflex. The same applies if the finger ignored the set
 /// point because a reflex inhibits set points for some time. The wait then returns only after this time. If
 /// the set point that was sent last has expired, the condition must hold for the pose that the finger holds
-/// since then. The events SUN2XP_EVENT_REFLEX_FIRED and SUN2XP_EVENT_EXPIRED say that this has happened.
-/// Other calls work during the wait. sun2xp_close works too, and then the wait is refused.
+/// since then. The event SUN2XP_EVENT_REFLEX_FIRED reports the reaction of a reflex, and
+/// SUN2XP_EVENT_EXPIRED reports that a set point has expired. Other calls work during the wait. sun2xp_close works too, and then the wait is refused.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
 ///   ENODEV   no such hand, or it was closed meanwhile
-///   EINVAL   no such finger; no such until; seconds is negative or NaN
+///   EINVAL   no such finger; until is neither of the two constants; seconds is negative or NaN
 ///   EIO      a finger is faulted
 ///   EBUSY    a finger is limp or is being calibrated, or the process is exiting (SUN2XP_STATE_CLOSED)
 ///   ETIMEDOUT  the time has expired; sun2xp_error_text names a finger that has not arrived or settled

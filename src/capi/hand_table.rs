@@ -45,7 +45,7 @@ static EXITING: AtomicBool = AtomicBool::new(false);
 /// that call may be in the exiting thread itself, interrupted by a signal handler that calls exit.
 const LONGEST_WAIT_AT_EXIT: Duration = Duration::from_millis(100);
 
-/// Interval at which a close checks whether another thread has closed the hand.
+/// Interval at which a call that closes a hand checks whether another thread, which is closing this hand, is done.
 const CLOSING_PERIOD: Duration = Duration::from_millis(1);
 
 /// The handle of the hand of OpenHand; null if it is not open. Inlined for the same reason as [`Handle::of`].
@@ -57,7 +57,8 @@ pub(super) fn default_handle() -> Handle {
 /// Opens the hand of OpenHand. `open_remote` opens the hand if it is on another machine.
 pub(super) fn open_default(open_remote: RemoteOpener) -> Result<(), Refusal> {
     refuse_while_exiting()?;
-    // The lifecycle of an open hand is not locked, because a callback that closes this hand would be refused meanwhile.
+    // This check comes before the lock, so that this call never locks the lifecycle of an open hand: while it is locked,
+    // a callback that closes the hand is refused.
     if default_handle() != Handle::NULL {
         return Err(Refusal::AlreadyOpen);
     }
@@ -75,8 +76,8 @@ pub(super) fn open(source: SourceWithIo, open_remote: RemoteOpener) -> Result<Ha
     open_at(place, source, open_remote)
 }
 
-/// A free place of a table, with its locked lifecycle. The lifecycle of an open hand is not locked, because a callback
-/// that closes this hand would be refused meanwhile.
+/// A free place of a table, with its locked lifecycle. The search does not lock the lifecycle of an open hand, because a
+/// callback that closes this hand would be refused meanwhile.
 fn free_place(table: &[Place]) -> Option<(usize, MutexGuard<'_, ()>)> {
     (DEFAULT + 1..table.len()).filter(|&place| table[place].handle.load(Ordering::Acquire) == 0).find_map(|place| {
         let opening = table[place].lifecycle.try_lock()?;
@@ -90,7 +91,7 @@ pub(super) fn occupy() -> Vec<MutexGuard<'static, ()>> {
     TABLE[DEFAULT + 1..].iter().map(|place| place.lifecycle.lock()).collect()
 }
 
-/// Opens a hand at a free place. The caller has locked its lifecycle.
+/// Opens a hand at a free place. The caller has locked the lifecycle of this place.
 fn open_at(place: usize, from: SourceWithIo, open_remote: RemoteOpener) -> Result<Handle, Refusal> {
     process::prepare(close_at_exit);
     let (hand, print_refusals) = opened_hand::open(from, open_remote)?;

@@ -27,10 +27,10 @@ pub(super) const DEFAULT: usize = 0;
 /// Number of places in the table: one for the hand of OpenHand, and one for each hand of sun2xp_open.
 pub(super) const PLACES: usize = MOST_HANDS + 1;
 
-/// Bits of the place in the table.
+/// Number of bits of the place in the table.
 const PLACE_BITS: u32 = 8;
 
-/// Bits of the tag. With 64 bits, no pointer to memory of a program has these bits set.
+/// Number of bits of the tag. On 64-bit machines, no pointer to memory of a program has these bits set.
 const TAG_BITS: u32 = usize::BITS / 4;
 
 /// "Sx". On 32-bit machines only the last letter is left.

@@ -42,8 +42,8 @@ use std::ffi::{c_char, c_int};
 /// is undefined if one of the functions does not return, because of longjmp, pthread_exit or an exception.
 ///
 /// The program must provide a watchdog outside this process, such as that of its drives: if no exchange
-/// comes for terms->watchdog, the hardware must enter the end state by itself, even if this process hangs
-/// or has died.
+/// comes for the time terms->watchdog, the hardware must enter the end state by itself, even if this
+/// process hangs or has died.
 ///
 /// A tension may be from -8191 to 57342 times io->tension_unit. A tension that is NaN or outside this range
 /// faults the finger, as SUN2XP_IO_SENSOR does. An encoder that moves by more than 32767

@@ -70,8 +70,8 @@ fn pass_on(severity: Severity, message: &str) -> bool {
     // A callback that writes is a cancellation point. A cancellation must not end the thread inside a call of the
     // library.
     let _whole = NoCancellation::begin();
-    // This must not wait: in a forked child, nothing releases a lock that another thread of the parent held. While
-    // sun2xp_set_log waits for the previous callback, the message is printed instead.
+    // This function must not wait for the lock: in a forked child, nothing releases a lock that another thread of the
+    // parent held. While sun2xp_set_log waits for the previous callback, the message is printed instead.
     let Some(callback) = CALLBACK.try_read() else { return false };
     let Some((callback, user)) = &*callback else { return false };
     let mut text = Text::<2048>::EMPTY;

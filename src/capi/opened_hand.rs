@@ -21,7 +21,7 @@ pub(super) enum OpenedHand {
 
 /// Where the configuration of a hand comes from.
 pub(super) enum Source {
-    /// The file that OpenHand finds, or none.
+    /// The file that OpenHand finds. If OpenHand finds none, the hand has the default configuration, without a file.
     Found,
     File(PathBuf),
     /// A text that is possibly not UTF-8. It is checked when it is read, because the manual lists EMFILE before the

@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_that_is_not_utf_8_is_refused_after_too_many_hands() {
+    fn too_many_hands_are_reported_before_a_text_that_is_not_utf_8() {
         let places = hand_table::occupy();
         assert_eq!(opened(c"# \xff\n"), [(-SUN2XP_ERROR_TOO_MANY, libc::EMFILE); 2]);
         drop(places);

@@ -111,8 +111,8 @@ pub unsafe extern "C" fn sun2xp_send_path(
         if !is_memory_free(MEMORY_OF_PATH) {
             return Err(Refusal::NoMemory);
         }
-        // SAFETY: `poses` is not null, as checked above. By the contract in the manual it points to `count` poses with
-        // as many bytes as the first member of the first one gives.
+        // SAFETY: `poses` is not null, as checked above. By the contract in the manual it points to `count` poses. Each
+        // of them has as many bytes as the first member of the first pose gives.
         let poses = unsafe { load_poses(count, poses) };
         hand_table::command(hand, |hand| -> Result<(), Refusal> {
             Ok(hand.send_path(finger, &poses?, valid(seconds).map_err(HandError::from)?)?)
@@ -161,7 +161,7 @@ pub unsafe extern "C" fn sun2xp_send_position_for(
     })
 }
 
-/// Returns the time for which a set point is valid; none for the configured time.
+/// Returns the time for which a set point is valid, or none if the configured time applies.
 fn valid(seconds: f64) -> Result<Option<Duration>, PathError> {
     // This form of the comparison rejects NaN.
     if !(0.0..=3600.0).contains(&seconds) {

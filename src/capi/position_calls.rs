@@ -56,8 +56,8 @@ pub unsafe extern "C" fn sun2xp_send_position(hand: *mut sun2xp_hand, finger: c_
 /// torque: 95 % of the change has taken effect after 50 ms. The matrix must be symmetric; two mirrored entries
 /// that differ by up to 1e-3 of the largest entry are averaged. No eigenvalue may be below -1e-3 times the
 /// largest one. The matrix may be singular or zero: along directions without stiffness the finger is limp but
-/// still damped. The largest eigenvalue may be at most the configured bound, by default 6 N/cm at 1000 Hz and
-/// above, and 5 N/cm below.
+/// still damped. The largest eigenvalue may be at most the configured bound, by default 6 N/cm if the servo
+/// rate (hand.rate) is 1000 Hz or more, and 5 N/cm otherwise.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -86,15 +86,17 @@ pub trait RemoteHand: Send + Sync {
     /// Takes the next event, if there is one.
     fn next_event(&self) -> Result<Option<sun2xp_event>, RemoteRefusal>;
 
-    /// Waits until there is an event, for at most `limit`, or without limit. Takes nothing.
+    /// Waits until there is an event, for at most `limit`, or without a limit if `limit` is none. Does not take the
+    /// event.
     fn wait_for_event(&self, limit: Option<Duration>) -> Result<(), RemoteRefusal>;
 
     /// Brings the hand to its end state and releases it. A second call does nothing.
     fn close(&self);
 }
 
-/// A function that opens a hand on another machine. The configuration was read from the source. The table `[hand]` of
-/// the configuration says whether values out of range are refused.
+/// A function that opens a hand on another machine. Its arguments are the source of the configuration, and the
+/// configuration that was read from this source. The function uses only the table `[hand]` of the configuration, which
+/// says whether values out of range are refused or clamped.
 pub type RemoteOpener = fn(RemoteSource, &Configuration) -> Result<Arc<dyn RemoteHand>, RemoteRefusal>;
 
 static OVER_THE_NETWORK: OnceLock<RemoteOpener> = OnceLock::new();
@@ -105,7 +107,7 @@ pub fn open_only_remote_hands(opener: RemoteOpener) {
     let _ = OVER_THE_NETWORK.set(opener);
 }
 
-/// The function that opens hands over the network. Returns none in a library without network code.
+/// Returns the function that opens hands over the network, or none in a library without network code.
 pub(super) fn over_the_network() -> Option<RemoteOpener> {
     OVER_THE_NETWORK.get().copied()
 }

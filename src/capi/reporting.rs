@@ -59,7 +59,8 @@ pub(super) fn refuse(name: &'static str, handle: Handle, refusal: &Refusal) -> c
 }
 
 fn is_first_of_its_kind(kind: Kind) -> bool {
-    // This must not wait: in a forked child, nothing releases a lock that another thread of the parent held.
+    // This function must not wait for the lock: in a forked child, nothing releases a lock that another thread of the
+    // parent held.
     let Some(mut printed) = PRINTED.try_lock() else { return false };
     let first = !printed.contains(&kind);
     // If there is no memory to store the kind, the next refusal of this kind is printed too.
@@ -74,7 +75,8 @@ fn is_printed(name: &str, handle: Handle, interface: Interface) -> bool {
     match interface {
         // The hand whose opening is refused has no setting yet.
         Interface::Of1990 if name == "OpenHand" => true,
-        // The other calls have only one hand, so its setting also applies before it is opened again.
+        // The other calls of 1990 have only one hand. Its setting stays in force after it is closed, until OpenHand
+        // opens it again.
         Interface::Of1990 => SILENT[DEFAULT].load(Ordering::Relaxed) == 0,
         Interface::Handles => {
             let silent = handle.place().and_then(|place| SILENT.get(place));

@@ -24,8 +24,8 @@ use std::ffi::c_int;
 /// as for sun2xp_send_stiffness. It may be zero.
 ///
 /// The largest eigenvalue may be at most the bound of Kx times l2 l2, where l2 is the length of the
-/// last link: by default 96 N cm/rad at 1000 Hz and above, and 80 N cm/rad below. This is the stiffness
-/// that a Kx with all eigenvalues at its bound gives joint 2 in every pose.
+/// last link: by default 96 N cm/rad if the servo rate (hand.rate) is 1000 Hz or more, and 80 N cm/rad
+/// otherwise. This is the stiffness that a Kx with all eigenvalues at its bound gives joint 2 in every pose.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

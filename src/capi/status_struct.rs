@@ -74,6 +74,6 @@ pub struct sun2xp_status {
     pub memory_locked: c_int,
     /// 1: each servo thread with a configured core runs on this core.
     pub on_core: c_int,
-    /// Fraction of Kx in force in the last cycle, 0 to 1.
+    /// Fraction of Kx that was in force in the last cycle, 0 to 1.
     pub stiffness_scale: f64,
 }

@@ -5,7 +5,7 @@ use super::marks::MARKS;
 use super::memory_file::Mapping;
 use super::message::Outgoing;
 
-/// Size from which the messages are written as a block, bytes. With larger blocks, a slow reader would have less time
+/// Size at which the messages are written as a block, bytes. With larger blocks, a slow reader would have less time
 /// before the writer overwrites its next block.
 const BLOCK: usize = 64 * 1024;
 

@@ -49,7 +49,7 @@ pub enum Message {
 }
 
 impl Message {
-    /// Returns the message in the format of the shared memory, which keeps every bit.
+    /// Encodes the message in the format of the shared memory. This format keeps every bit of every number.
     ///
     /// # Errors
     /// Returns an error if the message cannot be encoded. Every message of this library can be encoded.

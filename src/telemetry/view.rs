@@ -98,8 +98,8 @@ impl View {
             _ => None,
         });
         let running = record.stage == Stage::Running;
-        // A running finger remains a spring until its calibration gives the first activity. In this time the report
-        // still has an estimate of a contact, but a sample has one only in the stage `Running`.
+        // When a calibration begins, the finger remains a spring until the calibration gives the first activity. In this
+        // time the report still has an estimate of a contact, but a sample has one only in the stage `Running`.
         let contact = if running { report.contact } else { ContactEstimate::default() };
         let springs = mechanics.springs.as_ref().filter(|_| running);
         let spring = springs.zip(set_point.as_ref());
@@ -156,7 +156,7 @@ mod tests {
     fn a_hand_that_is_adjusted_all_the_time_does_not_fill_the_memory() {
         let configuration = Configuration::default();
         let (mut view, mut finger) = (View::new(&configuration), configuration.fingers[0].clone());
-        // Without moment arms there are no springs, which would take most of the time of this test.
+        // Without moment arms no springs are computed. Their computation would take most of the time of this test.
         finger.geometry.r = [[0.0; 4]; 3];
         let gravity = configuration.gravity(FingerNumber::ONE);
         let mut source = ControllerSource { number: 0, gravity, finger };

@@ -18,7 +18,7 @@ UNIQUE = bytes(range(0xA0, 0xAC))
 ENTRY, EXIT = 12, 10
 # The bits of xPSR that make the next instructions conditional (IT). Entering an exception clears them.
 CONDITIONAL = 0x0600FC00
-# The handler returns to this address.
+# Exception handlers return to this address.
 RETURN = FLASH + 0xFFFF0
 # Flash has five wait states at 168 MHz, for lines of 16 bytes.
 LINE, WAIT_STATES, CACHE_LINES = 16, 5, 64

@@ -41,7 +41,7 @@ class Program:
             if found and not found.group(3).startswith("."):
                 name = found.group(3).split(".")[0]
                 size = len(found.group(2).replace(" ", "")) // 2
-                # Loads that may read the flash: constants beside the code, and all others.
+                # Whether the instruction loads a constant beside the code, and whether it is a load of any kind.
                 loads = ("[pc" in found.group(4), name.startswith(("ldr", "ldm", "pop", "tb")))
                 self.instructions[int(found.group(1), 16)] = (size, cost(name, found.group(4)), loads)
         self.symbols = {}

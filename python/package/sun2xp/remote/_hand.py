@@ -80,7 +80,7 @@ class RemoteHand(Reading):
                 ([serve.clients] of the server).
             Fault: a finger has a fault whose cause is still there.
         """
-        # The server may have been started again with other limits.
+        # The server may have been started again with other limits, so its status is read again.
         self.status()
         answer = self._request("acquire", 0, timeout=_RECOVERY_TIME, take_over=take_over, recover=recover)
         with self._network.sender.lock:
