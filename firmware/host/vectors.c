@@ -144,7 +144,7 @@ static void check_frame(void)
     if ((frame_type(&frame) & TYPE_IS_ANSWER) == 0) {
         check_request(&frame);
     } else if (write_answer(&written, frame_type(&frame))) {
-        expect(frame_to_wire(&written, again) == length && memcmp(wire, again, length) == 0, "same bytes when written again");
+        expect(frame_to_wire(&written, again) == length && memcmp(wire, again, length) == 0, "same bytes when written");
     }
 }
 

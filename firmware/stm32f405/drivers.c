@@ -1,5 +1,6 @@
 /* Four PWM outputs of TIM8 are the references of the drivers' current loops. A pin for each driver gives the sign of
-   its current. One pin enables all drivers. The emergency stop turns the PWM off through the break input of TIM8, without software. */
+   its current. One pin enables all drivers. The emergency stop turns the PWM off through the break input of TIM8,
+   without software. */
 
 #include "parts.h"
 #include "pins.h"

@@ -39,7 +39,8 @@ void encoders_read(int32_t counts[MOTORS])
     for (unsigned motor = 0; motor < 2; motor++)
         counts[motor] = (int32_t)raw[motor];
     for (unsigned motor = 2; motor < MOTORS; motor++) {
-        /* Correct while a motor moves by less than 32 768 counts between two calls. The sum is unsigned, so it may wrap. */
+        /* Correct while a motor moves by less than 32 768 counts between two calls. The sum is unsigned, so it may
+           wrap. */
         int16_t moved = (int16_t)(uint16_t)((raw[motor] & 0xFFFFu) - latest[motor]);
         latest[motor] = (uint16_t)(raw[motor] & 0xFFFFu);
         extended[motor] = (int32_t)((uint32_t)extended[motor] + (uint32_t)moved);

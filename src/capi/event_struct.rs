@@ -7,8 +7,8 @@ use std::ffi::{c_int, c_ulong};
 
 /// An event: something that happened to a finger in one cycle of its servo.
 ///
-/// The kind of the event says which kind of part the member part numbers, for example a joint
-/// (docs/events.md). This member is 0 if the event concerns the whole finger. All events of a cycle have the
+/// For each kind of event, docs/events.md says whether the member part is the number of a joint, of a tendon
+/// or of another part. This member is 0 if the event concerns the whole finger. All events of a cycle have the
 /// same time. The oldest events are lost first.
 #[repr(C)]
 #[derive(Clone, Copy)]

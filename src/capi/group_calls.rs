@@ -125,8 +125,9 @@ pub unsafe extern "C" fn sun2xp_send_group(
 /// the condition must hold for the set point of the reflex. The same applies if the finger ignored the set
 /// point because a reflex inhibits set points for some time. The wait then returns only after this time. If
 /// the set point that was sent last has expired, the condition must hold for the pose that the finger holds
-/// since then. The event SUN2XP_EVENT_REFLEX_FIRED reports the reaction of a reflex, and
-/// SUN2XP_EVENT_EXPIRED reports that a set point has expired. Other calls work during the wait. sun2xp_close works too, and then the wait is refused.
+/// since then. The event SUN2XP_EVENT_REFLEX_FIRED reports the reaction of a reflex, and the event
+/// SUN2XP_EVENT_EXPIRED reports that a set point has expired. Other calls work during the wait. sun2xp_close
+/// works too, and then the wait is refused.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -57,8 +57,8 @@ pub(super) fn default_handle() -> Handle {
 /// Opens the hand of OpenHand. `open_remote` opens the hand if it is on another machine.
 pub(super) fn open_default(open_remote: RemoteOpener) -> Result<(), Refusal> {
     refuse_while_exiting()?;
-    // This check comes before the lock, so that this call never locks the lifecycle of an open hand: while it is locked,
-    // a callback that closes the hand is refused.
+    // This check comes before the lock, so that this call does not lock the lifecycle of an open hand. While the
+    // lifecycle is locked, a callback that closes the hand is refused.
     if default_handle() != Handle::NULL {
         return Err(Refusal::AlreadyOpen);
     }
@@ -76,8 +76,8 @@ pub(super) fn open(source: SourceWithIo, open_remote: RemoteOpener) -> Result<Ha
     open_at(place, source, open_remote)
 }
 
-/// A free place of a table, with its locked lifecycle. The search does not lock the lifecycle of an open hand, because a
-/// callback that closes this hand would be refused meanwhile.
+/// A free place of a table, with its locked lifecycle. The search does not lock the lifecycle of an open hand, because
+/// a callback that closes this hand would be refused meanwhile.
 fn free_place(table: &[Place]) -> Option<(usize, MutexGuard<'_, ()>)> {
     (DEFAULT + 1..table.len()).filter(|&place| table[place].handle.load(Ordering::Acquire) == 0).find_map(|place| {
         let opening = table[place].lifecycle.try_lock()?;

@@ -111,8 +111,8 @@ impl Display for Wanted {
     }
 }
 
-/// The kind of a refusal. Only the first refusal of each kind is printed. The second element is the kind of the error in
-/// [`Refusal::Hand`], and the third is the number and errno of [`Refusal::Remote`].
+/// The kind of a refusal. Only the first refusal of each kind is printed. The second element is the kind of the error
+/// in [`Refusal::Hand`], and the third is the number and errno of [`Refusal::Remote`].
 pub(super) type Kind = (Discriminant<Refusal>, Option<hand::ErrorKind>, Option<(c_int, c_int)>);
 
 impl Refusal {

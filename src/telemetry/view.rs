@@ -98,8 +98,8 @@ impl View {
             _ => None,
         });
         let running = record.stage == Stage::Running;
-        // When a calibration begins, the finger remains a spring until the calibration gives the first activity. In this
-        // time the report still has an estimate of a contact, but a sample has one only in the stage `Running`.
+        // When a calibration begins, the finger remains a spring until the calibration gives the first activity. In
+        // this time the report still has an estimate of a contact, but a sample has one only in the stage `Running`.
         let contact = if running { report.contact } else { ContactEstimate::default() };
         let springs = mechanics.springs.as_ref().filter(|_| running);
         let spring = springs.zip(set_point.as_ref());
