@@ -36,19 +36,21 @@ static ROWS: [Row; 22] = [
         measure: |case| fidelity(statics::apparent_stiffness(case, Senses::Exact)),
     },
     Row {
-        what: "triangular force loop of 2 mm in 3 s, with friction: error of the slope, Kx 3 / bound",
+        what: "triangular wave of force, +-Kx times 2 mm in 3 s, with friction: error of the slope at Kx 3 / at the \
+               bound",
         goal: "<= 3 %",
         measure: |case| at_both(case, statics::triangle),
     },
     Row {
-        what: "pushed from rest by a force of Kx times 2 mm, with friction: error of the stiffness, Kx 3 / bound",
+        what: "pushed from rest by a force of Kx times 2 mm, with friction: error of the stiffness at Kx 3 / at the \
+               bound",
         goal: "<= 5 %",
         measure: |case| {
             at_both(case, |case, stiffness| statics::pushed_from_rest(case, Friction::Default, stiffness, 0.2))
         },
     },
     Row {
-        what: "pushed from rest by a force of Kx times 1 mm, harsh joint friction: error of the stiffness, Kx 3",
+        what: "pushed from rest by a force of Kx times 1 mm, harsh joint friction: error of the stiffness at Kx 3",
         goal: "<= 50 %",
         measure: |case| percent(statics::pushed_from_rest(case, Friction::Harsh, 3.0, 0.1)),
     },
@@ -94,7 +96,7 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "motor constants off by 20 %: error of the stiffness, Kx 3 / bound",
+        what: "motor constants off by 20 %: error of the stiffness at Kx 3 / at the bound",
         goal: "no effect",
         measure: |case| {
             fidelity_at_both(case, |case, stiffness| {
@@ -113,7 +115,7 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "tendon stiffness off by 10 %: error of the stiffness, Kx 3 / bound",
+        what: "tendon stiffness off by 10 %: error of the stiffness at Kx 3 / at the bound",
         goal: "",
         measure: |case| {
             fidelity_at_both(case, |case, stiffness| {
@@ -122,8 +124,8 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "tendon stiffness off by 10 %, identified: error of the identified value; error of the stiffness, Kx \
-               3 / bound",
+        what: "tendon stiffness off by 10 %, identified: error of the identified value; error of the stiffness at \
+               Kx 3 / at the bound",
         goal: "<= 2 %; <= 1 %",
         measure: |case| match robustness::identified_tendons(case, [3.0, case.bound()], &robustness::TENDONS) {
             Ok((found, [soft, stiff])) => format!("{}; {} / {}", percent(found), fidelity(soft), fidelity(stiff)),
@@ -139,8 +141,8 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "stability, poses as above, Kx up to the bound, loads that deflect by up to 1 mm: unstable samples; \
-               largest eigenvalue",
+        what: "stability, random poses in the joint ranges of the other rows, Kx up to the bound, loads that deflect \
+               by up to 1 mm: unstable samples; largest eigenvalue",
         goal: "0; < 1",
         measure: |case| eigenvalue(&stability::usual(case)),
     },
@@ -150,7 +152,7 @@ static ROWS: [Row; 22] = [
         measure: |case| eigenvalue(&stability::anywhere(case)),
     },
     Row {
-        what: "the same, poses as above, against walls of 30, 100, 300 N/cm",
+        what: "the same in the joint ranges of the other rows, against walls of 30, 100, 300 N/cm",
         goal: "0; < 1",
         measure: |case| eigenvalue(&stability::against_walls(case)),
     },
@@ -262,7 +264,10 @@ const END: &str = "<!-- table: end -->";
 /// Writes the table, and the command that made it, between the two marks in a file.
 pub fn replace_in(file: &Path, command: &str, table: &str) -> io::Result<()> {
     let text = fs::read_to_string(file)?;
-    let missing = || io::Error::other(format!("{} lacks the lines {BEGIN}{END}", file.display()));
+    let missing = || {
+        let (file, begin) = (file.display(), BEGIN.trim_end());
+        io::Error::other(format!("{file} needs the line {begin} and after it the line {END}: add what is missing"))
+    };
     let begin = text.find(BEGIN).ok_or_else(missing)? + BEGIN.len();
     let end = text.find(END).filter(|&end| end >= begin).ok_or_else(missing)?;
     fs::write(file, format!("{}`{command}`\n\n{table}{}", &text[..begin], &text[end..]))

@@ -1,6 +1,6 @@
-//! The five calls of 1990 and HandError. Their doc comments are the C manual: cbindgen copies them into
-//! `include/Sun2Xp.h`, below the chapters of `src/capi/header/manual.txt`. The comments are written for C
-//! programmers. They keep their indentation in the header, and must not contain the end of a C comment.
+//! The five calls of 1990, their forms for arrays of double, and HandError. Their doc comments are the C manual:
+//! cbindgen copies them into `include/Sun2Xp.h`, below the chapters of `src/capi/header/manual.txt`. The comments are
+//! written for C programmers. They keep their indentation in the header, and must not contain the end of a C comment.
 
 // The exported names are those of the header.
 #![allow(non_snake_case)]

@@ -32,7 +32,7 @@ impl Environment {
     }
 }
 
-/// Sets the default environment of the calling thread permanently.
+/// Puts the calling thread into the default environment permanently.
 pub fn use_default_environment() {
     registers::write_default();
     #[cfg(target_arch = "x86_64")]
@@ -97,7 +97,7 @@ mod processor {
     #[inline(always)]
     pub fn read() -> (u64, u64) {
         let (control, status): (u64, u64);
-        // SAFETY: the code reads two registers. `nomem` is not set, because computations must not move across it.
+        // SAFETY: the code reads two registers. `nomem` is not set, so that no access to memory moves across the code.
         unsafe {
             asm!("mrs {}, fpcr", "mrs {}, fpsr", out(reg) control, out(reg) status, options(nostack, preserves_flags))
         };

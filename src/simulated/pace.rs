@@ -40,6 +40,7 @@ impl Pace {
 #[derive(Clone, Copy, Debug)]
 pub struct PacedTime {
     pace: Pace,
+    /// Time of the board's clock.
     board: u64,
     /// Real time of the last wake-up.
     woken: u64,

@@ -47,9 +47,9 @@ const DRIFT: f64 = 0.3;
 /// Time after which an amplifier has reached a constant command, in time constants of its lag.
 const AMPLIFIED: f64 = 20.0;
 
-/// Amplitude of the joint rates at which joint friction counts as a damper for a finger that touches a wall, rad/s. A
-/// joint of a finger of 10 cm has this rate when the tip vibrates by 50 um rms at 250 Hz, a usual frequency for stiff
-/// walls.
+/// Amplitude w of the joint rates, rad/s, for which the damper of [`OneCycleMap`] is computed. The damper stands for
+/// the joint friction of a finger that touches a wall. A joint of a finger of 10 cm has this rate when the tip vibrates
+/// by 50 um rms at 250 Hz, a usual frequency for stiff walls.
 const VIBRATION: f64 = 1.0;
 
 /// A finger without Coulomb friction and with exact sensors. Its parameters are equal to those in the configuration of
@@ -125,16 +125,17 @@ impl OneCycleMap {
     }
 
     /// Returns the largest modulus of an eigenvalue of the one-cycle map at `rest`. Returns None if the finger leaves
-    /// the rest or a tendon becomes slack. If replies are lost, the result is the mean factor of a cycle. If the
-    /// contact leaves directions without stiffness, slow motions in these directions do not count.
+    /// the rest or a tendon becomes slack. If replies are lost, the modulus is that of the map of a whole loss interval
+    /// of n cycles, and the result is its n-th root. If the contact leaves directions without stiffness, slow motions
+    /// in these directions do not count.
     ///
     /// Two fingers run, one of them with a tiny displacement. Their difference evolves by the linear map alone.
     pub fn largest_eigenvalue(&self, rest: &Rest) -> Option<f64> {
         let mut finger = self.settled(rest);
-        let limp = rest.dimensions() < 3;
-        let modulus = self.watch(&mut finger, OBSERVED, limp)?;
+        let free_directions = rest.dimensions() < 3;
+        let modulus = self.watch(&mut finger, OBSERVED, free_directions)?;
         // If the modulus is near 1, only a longer observation distinguishes a slow mode from one that grows.
-        if modulus < 1.0 - SLOW { Some(modulus) } else { self.watch(&mut finger, OBSERVED_LONG, limp) }
+        if modulus < 1.0 - SLOW { Some(modulus) } else { self.watch(&mut finger, OBSERVED_LONG, free_directions) }
     }
 
     /// Returns a finger at `rest` under its load, after the filters and integrals have settled.
@@ -146,7 +147,7 @@ impl OneCycleMap {
         finger
     }
 
-    fn watch(&self, finger: &mut Moving, seconds: f64, limp: bool) -> Option<f64> {
+    fn watch(&self, finger: &mut Moving, seconds: f64, free_directions: bool) -> Option<f64> {
         let mut displaced = finger.clone();
         for (motor, angle) in DISPLACED.into_iter().enumerate() {
             displaced.plant.turn_motor(motor, angle);
@@ -162,7 +163,8 @@ impl OneCycleMap {
             if a.tensions().min() <= 0.0 || (a.joints() - began).amax() > FAR {
                 return None;
             }
-            // The factors make the channels comparable for a transmission ratio of 1 to 20 and modes at 30 rad/s.
+            // The factors 20 and 0.7 make the channels comparable: a motor turns about 20 times as far as a joint, and
+            // the modes are near 30 rad/s.
             let joints = (a.joints() - b.joints()) * 20.0;
             let rates = (a.joint_rates() - b.joint_rates()) * 0.7;
             let motors = a.motor_angles() - b.motor_angles();
@@ -174,7 +176,8 @@ impl OneCycleMap {
             }
         }
         let elapsed = stride as f64 * self.period();
-        let factor = if limp { growth_besides_drift(&differences, elapsed / DRIFT) } else { growth(&differences) };
+        let factor =
+            if free_directions { growth_besides_drift(&differences, elapsed / DRIFT) } else { growth(&differences) };
         Some(factor.powf(1.0 / stride as f64))
     }
 

@@ -1,6 +1,6 @@
-/* The hand that OpenHand opens has hand.print_refusals = false. Refusals of the calls of 1990 are not reported after
-   CloseHand either, because these calls have only this hand. Refusals of calls with its closed handle are reported.
-   C89. */
+/* The test that runs this program sets hand.print_refusals = false in the configuration that OpenHand reads. So no
+   refusal of a call for this hand is reported. After CloseHand, no refusal of a call of 1990 is reported either,
+   because these calls know only this hand. A refusal of a call of sun2xp.h with the closed handle is reported. C89. */
 #include "Sun2Xp.h"
 #include "sun2xp.h"
 #include "check.h"

@@ -21,7 +21,7 @@ pub use waits::{Part, Waits};
 const INTERVAL: Duration = Duration::from_millis(5);
 
 /// New threads are searched for after this many readings.
-const READINGS_A_LOOK: u32 = 10;
+const READINGS_PER_SEARCH: u32 = 10;
 
 /// Watches the threads of a hand and its boards.
 pub struct PauseWatch {
@@ -36,8 +36,9 @@ struct Shared {
     processes: Mutex<Vec<(u32, Part)>>,
     waits: Mutex<Waits>,
     ended: AtomicBool,
-    /// Whether a rest is requested, and whether it has begun.
-    rests: [AtomicBool; 2],
+    rest_requested: AtomicBool,
+    /// Whether the requested rest has begun.
+    resting: AtomicBool,
 }
 
 impl Shared {
@@ -63,12 +64,11 @@ impl PauseWatch {
         self.shared.processes().push((process, part));
     }
 
-    /// Keeps all files closed and discards the measurements until the guard is dropped. Tests that count the resources
-    /// of the process need this.
+    /// Closes the accounts of all watched threads, and discards the measurements, until the guard is dropped. Only the
+    /// account of the watch's own thread stays open. Tests that count the resources of the process need this.
     pub fn rest(&self) -> Rest<'_> {
-        let [asked, done] = &self.shared.rests;
-        asked.store(true, Relaxed);
-        while !done.load(Relaxed) {
+        self.shared.rest_requested.store(true, Relaxed);
+        while !self.shared.resting.load(Relaxed) {
             std::thread::sleep(INTERVAL);
         }
         Rest(self)
@@ -94,11 +94,13 @@ pub struct Rest<'a>(&'a PauseWatch);
 
 impl Drop for Rest<'_> {
     fn drop(&mut self) {
-        self.0.shared.rests.iter().for_each(|rest| rest.store(false, Relaxed));
+        self.0.shared.rest_requested.store(false, Relaxed);
+        self.0.shared.resting.store(false, Relaxed);
     }
 }
 
-/// Makes every later failure in this process name the longest pause of the machine in the seconds before it.
+/// Makes every later failure in this process report for how long the machine kept threads from running. The report is
+/// about the worst `SPAN` of the last 30 s.
 pub fn name_pauses() -> &'static PauseWatch {
     static WATCH: OnceLock<PauseWatch> = OnceLock::new();
     WATCH.get_or_init(|| {
@@ -106,7 +108,7 @@ pub fn name_pauses() -> &'static PauseWatch {
         let (shared, report) = (watch.shared.clone(), std::panic::take_hook());
         std::panic::set_hook(Box::new(move |panic| {
             report(panic);
-            eprintln!("{}", shared.waits().last(BEFORE_A_FAILURE).description(LONG));
+            eprintln!("{}", shared.waits().last(BEFORE_A_FAILURE).description(SPAN));
         }));
         watch
     })
@@ -115,9 +117,9 @@ pub fn name_pauses() -> &'static PauseWatch {
 /// A failure report covers the pauses within this time before the failure.
 const BEFORE_A_FAILURE: Duration = Duration::from_secs(30);
 
-/// A failure reports the largest total of the pauses within a span of this length. A hand with the default watchdog
-/// does not survive a longer pause.
-const LONG: Duration = Duration::from_millis(15);
+/// Length of the time spans in which a failure report adds up the pauses. It reports the span with the largest total. A
+/// span is a little shorter than the default `hand.watchdog_ms`, 18 ms, after which a board stops its finger.
+const SPAN: Duration = Duration::from_millis(15);
 
 /// The account of a thread.
 struct Account {
@@ -150,15 +152,14 @@ fn watch(shared: &Shared) {
     let mut threads = Threads::default();
     let mut readings = 0;
     while !shared.ended.load(Relaxed) {
-        let [rest, rests] = &shared.rests;
-        if rest.load(Relaxed) {
+        if shared.rest_requested.load(Relaxed) {
             threads = Threads::default();
             *shared.waits() = Waits::default();
-            rests.store(true, Relaxed);
+            shared.resting.store(true, Relaxed);
             std::thread::sleep(INTERVAL);
             continue;
         }
-        if readings % READINGS_A_LOOK == 0 {
+        if readings % READINGS_PER_SEARCH == 0 {
             threads.look(&shared.processes());
         }
         readings += 1;
@@ -183,7 +184,8 @@ fn watch(shared: &Shared) {
 #[derive(Default)]
 struct Threads {
     accounts: BTreeMap<u32, Account>,
-    /// Processes of the machine that do not carry bytes.
+    /// Processes that cannot carry the bytes of pseudo-terminals, because they are not unbound workers of the kernel.
+    /// They are not examined again.
     others: BTreeSet<u32>,
 }
 
@@ -215,7 +217,7 @@ impl Threads {
         }
     }
 
-    /// Adds a thread if its name says which part it has. Returns whether it was added.
+    /// Adds a thread if its name shows its role. Returns whether the thread is watched now.
     fn add(&mut self, thread: u32, folder: &str, part: impl Fn(&str) -> Option<Part>) -> bool {
         if self.accounts.contains_key(&thread) {
             return true;

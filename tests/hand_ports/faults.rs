@@ -53,7 +53,7 @@ fn a_board_that_dies_faults_its_finger_only() {
 }
 
 #[test]
-fn a_board_that_falls_silent_faults_its_finger_and_its_watchdog_ends_it() {
+fn a_silent_board_faults_its_finger_and_the_watchdog_brings_the_board_to_its_end_state() {
     let _turn = turn();
     let mut boards = three_boards();
     let hand = open(on_boards(&boards));
@@ -99,7 +99,7 @@ fn a_finger_that_lost_its_configuration_faults_and_its_neighbours_keep_running()
 }
 
 #[test]
-fn an_emergency_stop_faults_the_finger_with_its_status_bits() {
+fn the_emergency_stop_input_faults_the_finger_and_the_fault_has_the_status_bits() {
     let _turn = turn();
     let (board, hand) = own_board();
     with_finger(&board, 3, |finger| finger.set_faults(Status::EMERGENCY_STOP));

@@ -10,8 +10,8 @@ use std::{env, fs};
 use sun2xp::finger::FaultKind;
 use sun2xp::finger::events::EventKind;
 
-/// The file with the five calls of 1990 and HandError.
-const CALLS_OF_1990: &[&str] = &["calls.rs"];
+/// The file with the five calls of 1990, their forms for arrays of double, and HandError.
+const FILES_OF_1990: &[&str] = &["calls.rs"];
 
 /// The sections of sun2xp.h: heading and files.
 const SECTIONS: &[(&str, &str)] = &[
@@ -186,7 +186,7 @@ fn sizes(code: &str) -> String {
                 "double" | "unsigned long" | "size_t" => 8,
                 // With LP64 a pointer has 64 bits.
                 _ if rest.starts_with('*') => 8,
-                _ => panic!("the size of {kind} is not known here"),
+                _ => panic!("the size of {kind} is not known here: add it to `sizes`"),
             };
             let parts: usize = rest.split(['[', ']']).filter_map(|part| part.parse::<usize>().ok()).product();
             size = usize::next_multiple_of(size, part) + part * parts;
@@ -206,7 +206,7 @@ fn the_committed_header_is_the_one_of_the_exports() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml can be used");
     let part = |name| fs::read_to_string(root.join("src/capi/header").join(name)).expect("a part of the header");
-    let calls = without_names(&declarations(config, CALLS_OF_1990));
+    let calls = without_names(&declarations(config, FILES_OF_1990));
     let (shield, unshield) = shields(&names(&code(&calls)));
     let (before, after) =
         (part("before.h").replace("@SHIELD@", &shield), part("after.h").replace("@UNSHIELD@", &unshield));
@@ -255,7 +255,8 @@ fn the_abi_has_one_number() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let read = |path: &str| fs::read_to_string(root.join(path)).expect("a source file");
     let number = |text: &str, before: &str| {
-        let (_, rest) = text.split_once(before).unwrap_or_else(|| panic!("{before}"));
+        let (_, rest) =
+            text.split_once(before).unwrap_or_else(|| panic!("no source has {before:?}: correct this test"));
         rest.split([';', '\n']).next().map(str::to_string).expect("a number")
     };
     let of_build = number(&read("build.rs"), "const ABI: u32 = ");

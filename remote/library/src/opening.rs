@@ -23,7 +23,8 @@ pub(crate) fn open(source: RemoteSource, configuration: &Configuration) -> Resul
         .map_err(refusal)?
         .ok_or_else(|| system("the table [remote] was removed from the file during this call: open the hand again"))?;
     let hand = client::RemoteHand::open(&remote).map_err(|error| match error.kind() {
-        // A client that may only read gets the same answer as a client that does not own the hand.
+        // To a client that opens the hand, the server answers *not owner* only if the client does not have the
+        // permission "command". If another client owns the hand, the answer is *owned*.
         client::RemoteErrorKind::NotOwner => forbidden(&remote.hand),
         _ => recovery_refusal(error),
     })?;

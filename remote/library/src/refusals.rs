@@ -1,9 +1,9 @@
 //! Conversion of the client's errors to refusals of the C calls. If a hand of this machine can refuse a call for the
-//! same reason, errno and text are the same.
+//! same reason, errno is the same. The text says the same, but the words can differ, for example for a busy finger.
 
+use sun2xp::FaultKind;
 use sun2xp::capi::RemoteRefusal;
 use sun2xp::finger::Action;
-use sun2xp::{Fault, FaultKind, FingerNumber, HandError};
 use sun2xp_remote_client::{HandName, RemoteError, RemoteErrorKind as Kind};
 
 /// The error numbers of `sun2xp.h`.
@@ -23,11 +23,10 @@ mod number {
 
 /// The refusal for an error of the client.
 pub(crate) fn refusal(error: RemoteError) -> RemoteRefusal {
-    let finger = error.finger().and_then(FingerNumber::new);
-    if let (Kind::Faulted, Some(finger)) = (error.kind(), finger)
+    if let RemoteError::Faulted { finger, text, .. } = &error
         && let Some(kind) = FaultKind::from_number(error.fault().into())
     {
-        return HandError::Faulted { finger, fault: Fault::new(kind) }.into();
+        return faulted(finger.number().into(), kind, text);
     }
     let (number, errno) = numbers(error.kind());
     let actions = match error.kind() {
@@ -38,18 +37,31 @@ pub(crate) fn refusal(error: RemoteError) -> RemoteRefusal {
     RemoteRefusal::Other { number, errno, text: error.to_string(), actions }
 }
 
+/// The refusal by a finger with a fault. `beginning` is the beginning of the server's text of this fault. The client
+/// gets the part and the value of the fault only in this text: they follow the name, and end at the first colon.
+fn faulted(finger: i32, kind: FaultKind, beginning: &str) -> RemoteRefusal {
+    let description = kind.description();
+    let fault = beginning.split_once(": ").map_or(description.name, |(fault, _)| fault);
+    RemoteRefusal::Other {
+        number: number::FAULTED,
+        errno: libc::EIO,
+        text: format!("finger {finger} is faulted (fault {}): {fault}: {}", kind.number(), description.explanation()),
+        actions: description.actions.to_vec(),
+    }
+}
+
 /// The refusal for an error of a request that calibrates.
 pub(crate) fn calibration_refusal(error: RemoteError) -> RemoteRefusal {
     request_refusal(error, (number::CALIBRATION, libc::ECANCELED))
 }
 
-/// The refusal for an error of a request that recovers fingers.
+/// The refusal for an error of a request that recovers fingers. Opening a hand is such a request too.
 pub(crate) fn recovery_refusal(error: RemoteError) -> RemoteRefusal {
     request_refusal(error, (number::PORT, libc::EIO))
 }
 
-/// The server gives the reason for which a request has failed only as a text. `failed` has the number and the errno for
-/// all these reasons.
+/// If a request has failed, the server gives the reason as a text and nothing else. `failed` has the number and the
+/// errno for all these reasons.
 fn request_refusal(error: RemoteError, failed: (i32, i32)) -> RemoteRefusal {
     if error.kind() != Kind::Refused {
         return refusal(error);
@@ -100,6 +112,9 @@ pub(crate) fn system(text: &str) -> RemoteRefusal {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sun2xp::model::Part;
+    use sun2xp::{Fault, FingerNumber, HandError};
+    use sun2xp_remote_client::Finger;
 
     fn numbers_of(refusal: RemoteRefusal) -> (i32, i32) {
         match refusal {
@@ -118,5 +133,25 @@ mod tests {
         let owned = || RemoteError::Owned("bob owns the hand: wait until it is released".into());
         assert_eq!(numbers_of(calibration_refusal(owned())), (number::BUSY, libc::EBUSY));
         assert_eq!(numbers_of(recovery_refusal(owned())), (number::BUSY, libc::EBUSY));
+    }
+
+    /// A value of 0 N that nobody has measured would mislead.
+    #[test]
+    fn a_fault_has_the_text_of_a_hand_of_this_machine() {
+        let mut fault = Fault::of(FaultKind::BrokenTendon, 0.2);
+        fault.part = Part::Tendon(3);
+        let local = HandError::Faulted { finger: FingerNumber::ALL[0], fault }.to_string();
+        let told = |text: String| {
+            let (finger, fault) = (Finger::ALL[0], FaultKind::BrokenTendon.number().into());
+            match refusal(RemoteError::Faulted { finger, fault, text }) {
+                RemoteRefusal::Other { number: number::FAULTED, errno: libc::EIO, text, actions } => (text, actions),
+                _ => panic!("not the refusal of a fault"),
+            }
+        };
+        let (text, actions) = told(fault.to_string()[..71].into());
+        assert_eq!(text, local);
+        assert_eq!(actions, FaultKind::BrokenTendon.description().actions);
+        let (text, _) = told(String::new());
+        assert!(text.starts_with("finger 1 is faulted (fault 2): broken tendon: "), "{text}");
     }
 }

@@ -30,8 +30,8 @@ const MOTIONS: [(usize, bool, f64); STROKES] =
 const HIGH: f64 = 0.4;
 /// Rate at which the common tension changes, N/s.
 const RISING: f64 = 10.0;
-/// A joint has overcome its friction when it has moved by this angle, rad. Until then its anchor moves faster by the
-/// factor [`HASTE`], because the spring of the guide must first build up the torque.
+/// A joint has overcome its friction when it has moved by this angle, rad. Until then the guide moves the anchor of
+/// the joint's spring faster by the factor [`HASTE`], because the spring must first build up the torque.
 const LOOSE: f64 = 0.02;
 const HASTE: f64 = 3.0;
 /// Samples are ignored over this distance after every reversal of the motion, rad, for a joint at full speed. The
@@ -49,7 +49,8 @@ pub(super) struct Shaking {
     leg: usize,
     /// Joint angles at the beginning of the leg, rad.
     from: Option<Vector3<f64>>,
-    strained: f64,
+    /// Time for which the torque of a joint has been at its limit, s.
+    strained_for: f64,
     pub joints: JointFriction,
     pub motors: MotorFriction,
 }
@@ -62,7 +63,7 @@ impl Shaking {
             motion: 0,
             leg: 0,
             from: None,
-            strained: 0.0,
+            strained_for: 0.0,
             joints: JointFriction::new(),
             motors: MotorFriction::new(),
         }
@@ -73,7 +74,7 @@ impl Shaking {
         (3 * self.motion + self.leg) as f64 / (3 * STROKES) as f64
     }
 
-    /// Runs one cycle of the motion. Returns whether it is complete.
+    /// Runs one cycle of the servo. Returns whether all motions are complete.
     pub fn step(
         &mut self,
         instruments: &Instruments,
@@ -117,8 +118,8 @@ impl Shaking {
 
     fn check_blocked(&mut self, instruments: &Instruments, guide: &JointGuide) -> Result<(), Obstacle> {
         let blocked = (0..3).find(|&joint| guide.strained(joint));
-        self.strained = if blocked.is_some() { self.strained + instruments.period } else { 0.0 };
-        match blocked.filter(|_| self.strained > BLOCKED) {
+        self.strained_for = if blocked.is_some() { self.strained_for + instruments.period } else { 0.0 };
+        match blocked.filter(|_| self.strained_for > BLOCKED) {
             Some(joint) => Err(Obstacle::JointBlocked { joint: joint as u8, returning: false }),
             None => Ok(()),
         }

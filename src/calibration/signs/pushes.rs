@@ -15,7 +15,7 @@ const GROWTH: f64 = 1.3;
 /// Largest push, in t_min.
 const HARDEST_PUSH: f64 = 2.0;
 /// Longest duration of a push, and duration of the pause after the motor has turned, s.
-const PUSH: f64 = 0.1;
+const PUSH_TIME: f64 = 0.1;
 /// Rest before the first measurement, s.
 const REST: f64 = 0.2;
 
@@ -46,7 +46,7 @@ impl SignSearch {
         } else if moved.amax() > TURNED {
             let encoder = moved.iamax() as u8 + 1;
             return Err(Obstacle::SwappedMotor { motor: motor as u8 + 1, encoder });
-        } else if seconds > PUSH {
+        } else if seconds > PUSH_TIME {
             let push = push * GROWTH;
             if push > HARDEST_PUSH * instruments.minimum {
                 return Err(Obstacle::MotorStuck { motor: motor as u8 + 1 });
@@ -62,7 +62,7 @@ impl SignSearch {
     /// Lets the pushed motor come to rest before the next motor is pushed, or before the first sweep.
     pub(super) fn pause(&mut self, seconds: f64, instruments: &Instruments, travel: &Vector4<f64>) -> Vector4<f64> {
         let seconds = seconds + instruments.period;
-        self.phase = if seconds <= PUSH {
+        self.phase = if seconds <= PUSH_TIME {
             Phase::Pause { seconds }
         } else if self.motor < 3 {
             self.motor += 1;

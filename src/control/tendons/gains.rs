@@ -31,7 +31,8 @@ const STATE_FEEDBACK_SET_POINT_SPEED: f64 = 5.0;
 const ADAPTATION_GAIN: f64 = 20.0;
 
 impl Gains {
-    /// Returns the configured gains. Gains that are not configured come from the table of the scheme.
+    /// Returns the configured gains. If the speed of the set point or the gain of the adaptation is not configured, it
+    /// comes from the constants above. The other gains that are not configured come from the tuned gains of the scheme.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
         let scheme = configured.scheme(rate);
         let tuned = TunedGains::of(scheme, rate);

@@ -39,14 +39,14 @@ impl Terminal {
         Self { screen: Screen::stdout(), yes, quiet: false, retries: 0, steps }
     }
 
-    /// Prints what is done already, and what is left.
+    /// Prints the steps that have passed and are not done again in this session, and the steps that have failed.
     pub fn heading(&self, finger: i32, file: &Path, known: &CommissionedFinger) -> Result<(), Failure> {
         self.line(Look::Title, &format!("Commissioning finger {finger} of {}", ShownPath(file)));
         for (step, Done { when, .. }) in known.steps.iter().filter(|(step, _)| !self.steps.contains(step)) {
             self.line(Look::Dim, &format!("  done   {step}, {when}"));
         }
         for (step, Done { when, found }) in &known.failed {
-            self.paragraph(Look::Warning, "  open   ", &format!("{step}, {when}: {}", found.join("; ")));
+            self.paragraph(Look::Warning, "  failed ", &format!("{step}, {when}: {}", found.join("; ")));
         }
         if self.steps.is_empty() {
             self.line(
@@ -108,7 +108,7 @@ impl Terminal {
                 "" | "y" | "yes" => return Ok(Reply::Enter),
                 "n" | "no" => return Ok(Reply::No),
                 "q" | "quit" => return Err(NoAnswer::Left.into()),
-                _ => self.line(Look::Dim, "    Enter, n or q"),
+                _ => self.line(Look::Dim, "    not understood: press Enter alone, or type n or q before it"),
             }
         }
     }
@@ -167,7 +167,7 @@ impl Person for Terminal {
             self.retries = retries.saturating_sub(1);
             return Ok(retries > 0);
         }
-        Ok(matches!(self.reply(question, "done", "end here")?, Reply::Enter))
+        Ok(matches!(self.reply(question, "done", "do not try again")?, Reply::Enter))
     }
 }
 

@@ -1,8 +1,8 @@
-//! What a finger measured when it was commissioned, for comparisons with a later day.
+//! The measurements of a finger at its commissioning or on a later day, for comparisons.
 
 use serde::{Deserialize, Serialize};
 
-/// The measurements of a healthy finger. A step that was not done leaves its values empty.
+/// The measurements of a finger on one day. A step that was not done leaves its values empty.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[serde(default)]
 pub struct Vitals {

@@ -198,16 +198,19 @@ fn zeros(all: &mut Vec<Complaint>, before: &Vitals, configured: &ConfiguredFinge
         if travel.abs() <= TRAVEL {
             continue;
         }
-        // A tendon only becomes longer, so its motor winds in farther. An encoder slips either way.
+        // With age a tendon only becomes longer, so its motor winds in farther. After the tendon was shortened, the
+        // motor winds in less far. An encoder slips either way.
         let (kind, advice) = match travel > 0.0 {
             true => (
                 "longer_tendon",
-                "The tendon is longer (knot, creep), or the encoder slipped: tighten the clamp of the tendon, and zero \
-                 again",
+                "The tendon has become longer, because its knot or clamp slips or because it creeps, or the encoder \
+                 slipped: tighten the knot or clamp, check the coupling of the encoder, and zero again",
             ),
-            false => {
-                ("encoder_slip", "The encoder slipped or lost counts: check its coupling and cable, and zero again")
-            }
+            false => (
+                "encoder_slip",
+                "The encoder slipped or lost counts, or the tendon was replaced or shortened: check the coupling and \
+                 cable of the encoder, and zero again; after work on the tendon, commission the finger again",
+            ),
         };
         let part = format!("zero of encoder {}", motor + 1);
         let (before, today) = ("0 mm".into(), format!("{:+.2} mm of tendon", travel * 10.0));
@@ -251,6 +254,14 @@ mod tests {
             (today.tendon_stiffness, today.motor_friction) = (Some([285.0; 4]), Some([0.09; 4]));
         });
         assert_eq!(small, []);
+    }
+
+    #[test]
+    fn a_shortened_tendon_is_a_cause_beside_a_slipped_encoder() {
+        let (before, finger) = (healthy(), ConfiguredFinger::default());
+        let today = Vitals { encoder_zero: Some([1000, 1000, 1000, 400]), ..healthy() };
+        let found = compare(&before, &finger, &today, &finger);
+        assert!(found[0].advice.contains("slipped") && found[0].advice.contains("shortened"), "{found:?}");
     }
 
     #[test]

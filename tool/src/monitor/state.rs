@@ -36,7 +36,8 @@ pub struct HandState {
     pub real: bool,
     /// The open fingers.
     pub fingers: Vec<FingerState>,
-    /// Events, the newest first.
+    /// Events, in the order of their first occurrence, the newest first. A repetition changes the entry of its event,
+    /// but not the place of the entry.
     pub events: VecDeque<EventState>,
 }
 

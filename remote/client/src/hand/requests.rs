@@ -25,8 +25,9 @@ impl RemoteHand {
     }
 
     /// Stops every finger as [`RemoteHand::stop`] does, for an emergency. No Targets are sent until the server has
-    /// confirmed the stop. Without the confirmation, the hand goes to its end state by itself, because no Targets
-    /// arrive. If the call returns an error, repeat it as long as [`RemoteHand::is_owner`] is true.
+    /// confirmed the stop. Without the confirmation, a hand that this client owns goes to its end state by itself,
+    /// because no Targets arrive. The Targets of another owner still arrive, so such a hand stops only with the
+    /// confirmation. If the call returns an error, repeat it as long as [`RemoteHand::is_owner`] is true.
     ///
     /// # Errors
     /// Returns an error if the server does not give this client a permission, or if the hand cannot be reached.
@@ -45,6 +46,7 @@ impl RemoteHand {
     /// Returns an error if there is no such finger, if this client does not own the hand, if the calibration fails, or
     /// if the hand cannot be reached.
     pub fn zero(&self, finger: i32) -> Result<(), RemoteError> {
+        // In the protocol, zeroing has the name `calibrate`.
         self.request(Action::Calibrate, Some(finger))
     }
 

@@ -177,8 +177,8 @@ fn after_a_restart_of_the_server_the_hand_is_read_but_not_acquired() {
     let hand = RemoteHand::open(&short).expect("open");
     hand.send_position(1, [0.5; 3]).expect("sent");
     server.hand().wait_for_target("the set point", |target| !target.parts.is_empty());
-    // The client first receives so many States that the numbers of the new server's first States are lower than the
-    // number of its newest State.
+    // First the client receives more than 20 States of the first server. The newest of them then has a higher number
+    // than the first States of the new server.
     until("States", || hand.statistics().states, |&states| states > 20);
     drop(server);
     until("the age", || hand.position(1), Result::is_err).expect_err("stale");
