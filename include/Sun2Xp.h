@@ -70,14 +70,15 @@
                   hand.real_time is "enforce", and real time is not available (see OpenHand). The value is the
                   errno of the system, or the errno that describes the reason best
 
-   If several reasons apply, a call reports the one that its entry in chapter 8 lists first. A call that
+   If several reasons apply, a call reports the one that its entry in chapter 8 lists first. The entries list
+   neither ESHUTDOWN, which comes before ENODEV, nor the ETIMEDOUT of GetPos (chapter 7). A call that
    succeeds changes neither errno nor the text of HandError(). Arrays are read and written only during the
    call. An output is written only if the call returns 0.
 
-   Planners of 1990 ignore return values. For them the first refusal of each kind in a process also
-   prints one line on standard error. Refusals with the same cause are of one kind, whatever their
-   arguments were. The key hand.print_refusals = false (chapter 7) suppresses these lines for the hand that
-   OpenHand opened last, except the line for a refusal of OpenHand.
+   Planners of 1990 ignore return values. Therefore the first refusal of each kind in a process also prints
+   one line on standard error, whether or not the planner checks return values. Refusals with the same cause
+   are of one kind, whatever their arguments were. The key hand.print_refusals = false (chapter 7)
+   suppresses these lines for the hand that OpenHand opened last, except the line for a refusal of OpenHand.
 
 
    3. UNITS, FRAMES, ORDER
@@ -111,8 +112,8 @@
 
    for the element type of all its arrays. SendPos, SendKx and GetPos are then plain functions for
    that type; for double they are renamed to SendPosD, SendKxD and GetPosD. The planner's
-   declarations may be int SendPos(); or those below. For any other declarations, compile instead with
-   -DSUN2XP_H, which leaves out this header. For double, this also needs
+   declarations may be int SendPos(); or those of this header. For any other declarations, compile
+   instead with -DSUN2XP_H, which leaves out this header. For double, this also needs
 
        -DSendPos=SendPosD -DSendKx=SendKxD -DGetPos=GetPosD
 
@@ -276,7 +277,7 @@ extern "C" {
    EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
             configured core is not available; HandError says what to change
 
- Threads: any. sun2xp.h opens further hands.
+ Threads: any. The calls of sun2xp.h open further hands.
 
  Example:
 

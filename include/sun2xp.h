@@ -208,8 +208,8 @@
    with locked memory. If finger.core is configured, the thread runs on this core. If the system does not
    permit SCHED_FIFO, locked memory or this core, opening follows hand.real_time:
 
-       "try"      the hand works without it, with the jitter of an ordinary process; a message and
-                  sun2xp_status report that
+       "try"      the hand works without what the system refuses, with the jitter of an ordinary process; a
+                  message and sun2xp_status report that
        "enforce"  opening is refused, and sun2xp_error_text says what to change
        "ignore"   opening does not try to get real time
 
@@ -250,7 +250,8 @@ typedef struct sun2xp_hand sun2xp_hand;
 #define SUN2XP_VERSION_PATCH 0
 #define SUN2XP_VERSION_NUMBER 100
 
-#define SUN2XP_ALL_FINGERS 0                /* All fingers of a hand. Only calls whose entries say so accept it. */
+#define SUN2XP_ALL_FINGERS 0                /* Stands for all fingers of a hand. Only the calls whose entries say so
+                                               accept this number. */
 #define SUN2XP_ERROR_DEFECT 1               /* The library has a defect. Please report it. */
 #define SUN2XP_ERROR_FORKED 2               /* The process is a forked child, which has no servo threads. */
 #define SUN2XP_ERROR_EXITING 3              /* The process is exiting, and its hands are closed. */
@@ -288,8 +289,8 @@ typedef struct sun2xp_hand sun2xp_hand;
 /*
  A refused call (sun2xp_error). The texts are valid until the next refused call of the same thread.
 
- The member remedy names only calls that open, close, recover, zero or stop, and sun2xp_status. It may be empty
- although a call helps. The member text always contains the whole remedy.
+ The member remedy names only calls that open or close a hand, sun2xp_recover, sun2xp_zero and sun2xp_status. It may
+ be empty although another call helps. The member text always contains the whole remedy.
  */
 struct sun2xp_error {
     size_t size;                            /* sizeof (struct sun2xp_error), set before the call. */
@@ -343,8 +344,8 @@ const char *sun2xp_error_text(const sun2xp_hand *hand);
 #define SUN2XP_LOG_WARNING 2                /* The library continues, but not as the user may expect. */
 
 /*
- A function that receives messages: severity (SUN2XP_LOG_...), one line of text, and the argument of
- sun2xp_set_log.
+ A function that receives messages. Its arguments are the severity (SUN2XP_LOG_...), one line of text, and
+ the argument user of sun2xp_set_log.
  */
 typedef void (*sun2xp_log)(int severity, const char *text, void *user);
 
@@ -354,12 +355,12 @@ typedef void (*sun2xp_log)(int severity, const char *text, void *user);
    callback   function to call with each message; null: messages go to standard error again
    user       third argument of each call of the function
 
- With a callback the library calls it with each message, and prints nothing, except while sun2xp_set_log
- replaces the callback. The library calls it in a thread whose call is refused (the first refusal of each
- kind, unless hand.print_refusals is false), and in threads of the library that are not real-time, for
- example in the one that opens a hand. Several threads may call the callback at the same time. The callback
- must make no calls of the library, and must return. The text is valid only until the callback returns.
- There is one callback for all hands of the process.
+ If there is a callback, the library calls it with each message, and prints nothing, except while
+ sun2xp_set_log replaces the callback. The library calls it in a thread whose call is refused (the first
+ refusal of each kind, unless hand.print_refusals is false), and in threads of the library that are not
+ real-time, for example in the one that opens a hand. Several threads may call the callback at the same
+ time. The callback must make no calls of the library, and must return. The text is valid only until the
+ callback returns. There is one callback for all hands of the process.
 
  When sun2xp_set_log has returned, the previous callback is not running and is not called again. A message
  that comes while sun2xp_set_log waits for the previous callback is printed.
@@ -587,7 +588,8 @@ struct sun2xp_io {
     int in_step;                            /* 1: the hardware is a simulation that advances by one period in each
                                                exchange. The servo waits for the simulation. */
     double shortest_watchdog;               /* Shortest watchdog time that the hardware supports, s. */
-    double tension_unit;                    /* Step in which the library stores tensions, N. 0 selects 0.005 N. */
+    double tension_unit;                    /* Resolution with which the library stores tensions, N. 0 selects 0.005
+                                               N. */
     void *user;                             /* First argument of the functions. */
     int (*start)(void*, const struct sun2xp_io_terms*, struct sun2xp_io_sample*); /* Prepares the hardware, with the
                                                motors off, and gets the first sample. */
@@ -629,8 +631,8 @@ struct sun2xp_io {
  is undefined if one of the functions does not return, because of longjmp, pthread_exit or an exception.
 
  The program must provide a watchdog outside this process, such as that of its drives: if no exchange
- comes for terms->watchdog, the hardware must enter the end state by itself, even if this process hangs
- or has died.
+ comes for the time terms->watchdog, the hardware must enter the end state by itself, even if this
+ process hangs or has died.
 
  A tension may be from -8191 to 57342 times io->tension_unit. A tension that is NaN or outside this range
  faults the finger, as SUN2XP_IO_SENSOR does. An encoder that moves by more than 32767
@@ -715,8 +717,8 @@ int sun2xp_send_position(sun2xp_hand *hand, int finger, const double *position);
  torque: 95 % of the change has taken effect after 50 ms. The matrix must be symmetric; two mirrored entries
  that differ by up to 1e-3 of the largest entry are averaged. No eigenvalue may be below -1e-3 times the
  largest one. The matrix may be singular or zero: along directions without stiffness the finger is limp but
- still damped. The largest eigenvalue may be at most the configured bound, by default 6 N/cm at 1000 Hz and
- above, and 5 N/cm below.
+ still damped. The largest eigenvalue may be at most the configured bound, by default 6 N/cm if the servo
+ rate (hand.rate) is 1000 Hz or more, and 5 N/cm otherwise.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -909,8 +911,8 @@ int sun2xp_send_contact(sun2xp_hand *hand, int finger, int dimensions, const dou
  the finger becomes a spring after a fault or a calibration, when a set point expires, and when a reflex
  with the reaction SUN2XP_THEN_SOFTEN fires. A reflex with SUN2XP_THEN_DAMP replaces the ratio. A finger
  whose ratio is much below or much above 1 does not come to rest. The permitted range depends on the
- controller (finger.controller.scheme: state feedback, or figure 9, 10 or 11 of the report), the rate and
- the largest eigenvalue k of the stiffness, N/cm:
+ controller (finger.controller.scheme: state feedback, or figure 9, 10 or 11 of the report), the servo
+ rate (hand.rate) and the largest eigenvalue k of the stiffness, N/cm:
 
                                      1000 Hz and above    below 1000 Hz
    state feedback         smallest   0.40 + 0.09 k        0.70 + 0.07 k
@@ -959,8 +961,8 @@ int sun2xp_send_damping(sun2xp_hand *hand, int finger, double ratio);
  as for sun2xp_send_stiffness. It may be zero.
 
  The largest eigenvalue may be at most the bound of Kx times l2 l2, where l2 is the length of the
- last link: by default 96 N cm/rad at 1000 Hz and above, and 80 N cm/rad below. This is the stiffness
- that a Kx with all eigenvalues at its bound gives joint 2 in every pose.
+ last link: by default 96 N cm/rad if the servo rate (hand.rate) is 1000 Hz or more, and 80 N cm/rad
+ otherwise. This is the stiffness that a Kx with all eigenvalues at its bound gives joint 2 in every pose.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1097,13 +1099,14 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
  the condition must hold for the set point of the reflex. The same applies if the finger ignored the set
  point because a reflex inhibits set points for some time. The wait then returns only after this time. If
  the set point that was sent last has expired, the condition must hold for the pose that the finger holds
- since then. The events SUN2XP_EVENT_REFLEX_FIRED and SUN2XP_EVENT_EXPIRED say that this has happened.
- Other calls work during the wait. sun2xp_close works too, and then the wait is refused.
+ since then. The event SUN2XP_EVENT_REFLEX_FIRED reports the reaction of a reflex, and the event
+ SUN2XP_EVENT_EXPIRED reports that a set point has expired. Other calls work during the wait. sun2xp_close
+ works too, and then the wait is refused.
 
  Returns 0, or a negative number with
    EPERM    forked child
    ENODEV   no such hand, or it was closed meanwhile
-   EINVAL   no such finger; no such until; seconds is negative or NaN
+   EINVAL   no such finger; until is neither of the two constants; seconds is negative or NaN
    EIO      a finger is faulted
    EBUSY    a finger is limp or is being calibrated, or the process is exiting (SUN2XP_STATE_CLOSED)
    ETIMEDOUT  the time has expired; sun2xp_error_text names a finger that has not arrived or settled
@@ -1666,7 +1669,7 @@ struct sun2xp_status {
                                                closed and opened again, sun2xp_open locks the memory again. 0: the
                                                memory of at least one servo thread is not locked. */
     int on_core;                            /* 1: each servo thread with a configured core runs on this core. */
-    double stiffness_scale;                 /* Fraction of Kx in force in the last cycle, 0 to 1. */
+    double stiffness_scale;                 /* Fraction of Kx that was in force in the last cycle, 0 to 1. */
 };
 
 /*
@@ -2093,8 +2096,9 @@ int sun2xp_identify(sun2xp_hand *hand, int finger);
 /*
  An event: something that happened to a finger in one cycle of its servo.
 
- The member part is 0 if the event concerns the whole finger. All events of a cycle have the same time.
- The oldest events are lost first.
+ For each kind of event, docs/events.md says whether the member part is the number of a joint, of a tendon
+ or of another part. This member is 0 if the event concerns the whole finger. All events of a cycle have the
+ same time. The oldest events are lost first.
  */
 struct sun2xp_event {
     size_t size;                            /* sizeof (struct sun2xp_event), set before the call. */
@@ -2180,8 +2184,8 @@ int sun2xp_wait_event(sun2xp_hand *hand, struct sun2xp_event *event, double seco
 
  When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
  called again. There is one exception: a call that is made in a callback, of this hand or of another one,
- does not wait for the previous callback. This callback may then still be running or be called once more,
- so its context must stay valid for some time.
+ does not wait for the previous callback. The previous callback may then still be running or be called
+ once more, so its context must stay valid for some time.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -2216,7 +2220,7 @@ int sun2xp_on_event(sun2xp_hand *hand, void (*callback)(const struct sun2xp_even
  Returns the descriptor, the same one until sun2xp_close, or a negative number with
    EPERM    forked child
    ENODEV   no such hand
-   EMFILE, ENFILE, EAGAIN ...  the system refuses the descriptor or the thread
+   EMFILE, ENFILE, EAGAIN ...  the system refuses the descriptor, or the thread that makes it readable
 
  Threads: any.
 
@@ -2269,9 +2273,8 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
  member refractory is above 0, the rule also fires again after this time while its condition stays true.
  After a reaction, the finger ignores set points of the planner for the time in the member inhibition. For
  SUN2XP_THEN_GRIP, the member position is the direction in the finger's frame in which the tip presses
- harder; 0, 0, 0 is the direction in which its spring presses. If the component of the spring's force in the
- given direction, or else the spring's force, is below 0.05 N, the reaction changes no set point, but a path
- still ends.
+ harder; 0, 0, 0 stands for the direction in which its spring presses. In both cases, if the component of the
+ spring's force in this direction is below 0.05 N, the reaction changes no set point, but a path still ends.
  */
 struct sun2xp_reflex {
     size_t size;                            /* sizeof (struct sun2xp_reflex), set before the call. */

@@ -180,7 +180,7 @@ impl Hand {
         self.dispatcher.last_report(finger)
     }
 
-    /// The distribution of the durations of one stage of the cycle ([`realtime::CycleStage`]), over all cycles of
+    /// The distribution of the durations of one stage of the cycle (`realtime::CycleStage`), over all cycles of
     /// finger 1, 2 or 3 since open or the last reset.
     ///
     /// # Errors

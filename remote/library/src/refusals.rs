@@ -148,7 +148,7 @@ mod tests {
                 _ => panic!("not the refusal of a fault"),
             }
         };
-        let (text, actions) = told(fault.to_string()[..71].into());
+        let (text, actions) = told(fault.to_string()[..71].to_owned());
         assert_eq!(text, local);
         assert_eq!(actions, FaultKind::BrokenTendon.description().actions);
         let (text, _) = told(String::new());
