@@ -67,7 +67,7 @@ fn an_open_fault_blocks_the_steps_that_move_the_finger() {
     fs::write(desk.0.path().join("hand.commission.json"), journal).expect("written");
     let output = desk.commission(&["--step", "zeros"]);
     assert_eq!(output.status.code(), Some(1));
-    contains(&output.stdout, &["open   motors, today: motors 1 and 2 are swapped"]);
+    contains(&output.stdout, &["failed motors, today: motors 1 and 2 are swapped"]);
     contains(
         &output.stderr,
         &["the step motors of today has not passed: motors 1 and 2 are swapped. Swap their cables. Remove the cause"],
