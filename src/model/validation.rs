@@ -201,8 +201,8 @@ impl ConfiguredFinger {
             let (low, high) = (self.joints.minimum_degrees[joint], self.joints.maximum_degrees[joint]);
             if low >= high {
                 let reason = format!(
-                    "joint {joint}: its lower limit {low:.4} is not below its upper limit {high:.4}: lower it, or raise \
-                     joints.maximum_degrees"
+                    "joint {joint}: its lower limit {low:.4} is not below its upper limit {high:.4}: lower it, or \
+                     raise joints.maximum_degrees"
                 );
                 return unusable("joints.minimum_degrees", reason);
             }
