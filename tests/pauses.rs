@@ -7,9 +7,10 @@ mod attempts;
 mod pauses;
 
 use attempts::{Tally, Verdict, attempts};
-use pauses::{Part, PauseWatch};
+use pauses::{CarriedByte, Part, PauseWatch};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
+use serialport::TTYPort;
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
@@ -75,6 +76,24 @@ fn a_process_that_shares_its_core_is_found_waiting_and_one_that_sleeps_or_is_sto
         let (idle, measured) = waited(script, &[SPINS, SPINS], stop);
         assert!(idle < Duration::from_millis(150), "{script}: {measured}");
     }
+}
+
+#[test]
+fn a_byte_that_the_kernel_does_not_carry_counts_as_a_pause() {
+    let pair = || TTYPort::pair().expect("a pseudo-terminal");
+    let carrier = |byte: Option<CarriedByte>| {
+        let watch = PauseWatch::start();
+        if let Some(byte) = byte {
+            watch.carry(byte);
+        }
+        std::thread::sleep(Duration::from_millis(500));
+        watch.end().of(Part::Carrier, Duration::from_secs(1))
+    };
+    let ((near, _read_by_nobody), (_silent, far)) = (pair(), pair());
+    let lost = carrier(Some(CarriedByte::new(near, far)));
+    assert!(lost > Duration::from_millis(250), "{lost:?}");
+    let carried = carrier(None);
+    assert!(carried < Duration::from_millis(250), "{carried:?}");
 }
 
 #[test]

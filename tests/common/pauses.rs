@@ -3,11 +3,14 @@
 //! A real-time test can fail because the machine paused it. Such a failure is excused only if the pause was measured.
 //! The kernel counts for every thread how long it was ready to run but had no core (`/proc/PID/task/TID/schedstat`). A
 //! thread that sleeps, waits for bytes or was stopped by a signal is not ready, so a defect that has this effect does
-//! not count as a pause.
+//! not count as a pause. The watch also measures how long the kernel takes to carry a byte through a pseudo-terminal.
 
+#[path = "carried_byte.rs"]
+mod carried_byte;
 #[path = "waits.rs"]
 mod waits;
 
+pub use carried_byte::CarriedByte;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::os::unix::fs::FileExt;
@@ -35,10 +38,8 @@ struct Shared {
     /// Other watched processes.
     processes: Mutex<Vec<(u32, Part)>>,
     waits: Mutex<Waits>,
+    threads: Mutex<Threads>,
     ended: AtomicBool,
-    rest_requested: AtomicBool,
-    /// Whether the requested rest has begun.
-    resting: AtomicBool,
 }
 
 impl Shared {
@@ -48,6 +49,10 @@ impl Shared {
 
     fn waits(&self) -> MutexGuard<'_, Waits> {
         self.waits.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn threads(&self) -> MutexGuard<'_, Threads> {
+        self.threads.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -64,14 +69,18 @@ impl PauseWatch {
         self.shared.processes().push((process, part));
     }
 
-    /// Closes the accounts of all watched threads, and discards the measurements, until the guard is dropped. Only the
-    /// account of the watch's own thread stays open. Tests that count the resources of the process need this.
+    /// Sends this byte instead of the watch's own one.
+    pub fn carry(&self, byte: CarriedByte) {
+        self.shared.threads().carried = Some(byte);
+    }
+
+    /// Closes the descriptors of the watch, and discards the measurements, until the guard is dropped. Only the account
+    /// of the watch's own thread stays open. Tests that count the resources of the process need this.
     pub fn rest(&self) -> Rest<'_> {
-        self.shared.rest_requested.store(true, Relaxed);
-        while !self.shared.resting.load(Relaxed) {
-            std::thread::sleep(INTERVAL);
-        }
-        Rest(self)
+        let mut threads = self.shared.threads();
+        *threads = Threads::default();
+        *self.shared.waits() = Waits::default();
+        Rest { _threads: threads }
     }
 
     /// Ends the watch and returns the measurements.
@@ -89,14 +98,9 @@ impl Drop for PauseWatch {
     }
 }
 
-/// The watch rests while this guard exists.
-pub struct Rest<'a>(&'a PauseWatch);
-
-impl Drop for Rest<'_> {
-    fn drop(&mut self) {
-        self.0.shared.rest_requested.store(false, Relaxed);
-        self.0.shared.resting.store(false, Relaxed);
-    }
+/// The watch rests while this guard exists: it cannot read the accounts.
+pub struct Rest<'a> {
+    _threads: MutexGuard<'a, Threads>,
 }
 
 /// Makes every later failure in this process report for how long the machine kept threads from running. The report is
@@ -149,29 +153,25 @@ impl Account {
 fn watch(shared: &Shared) {
     let begun = Instant::now();
     let mut own = Account::open(Part::Carrier, "/proc/thread-self");
-    let mut threads = Threads::default();
     let mut readings = 0;
     while !shared.ended.load(Relaxed) {
-        if shared.rest_requested.load(Relaxed) {
-            threads = Threads::default();
-            *shared.waits() = Waits::default();
-            shared.resting.store(true, Relaxed);
-            std::thread::sleep(INTERVAL);
-            continue;
-        }
         if readings % READINGS_PER_SEARCH == 0 {
-            threads.look(&shared.processes());
+            shared.threads().look(&shared.processes());
         }
         readings += 1;
         let before = Instant::now();
-        std::thread::sleep(INTERVAL);
+        let underway = shared.threads().carried.as_mut().map_or(Duration::ZERO, |byte| byte.delay(INTERVAL));
+        std::thread::sleep(INTERVAL.saturating_sub(before.elapsed()));
         let late = before.elapsed().saturating_sub(INTERVAL);
         let waited = own.as_mut().and_then(Account::news).unwrap_or_default();
+        let mut threads = shared.threads();
         let mut waits = shared.waits();
         waits.lasted = begun.elapsed();
         waits.note(0, Part::Carrier, waited);
         // A thread that has a core but does not run was paused together with the whole machine.
         waits.note(0, Part::Machine, late.saturating_sub(waited));
+        // The watch itself can be late to notice that the byte has arrived.
+        waits.note(CARRIED_BYTE, Part::Carrier, underway.saturating_sub(late.max(waited)));
         threads.accounts.retain(|&thread, account| {
             let news = account.news();
             waits.note(thread, account.part, news.unwrap_or_default());
@@ -180,10 +180,14 @@ fn watch(shared: &Shared) {
     }
 }
 
+/// Stands for the worker that carries the watch's byte, in place of the number of a thread.
+const CARRIED_BYTE: u32 = u32::MAX;
+
 /// The watched threads by number.
 #[derive(Default)]
 struct Threads {
     accounts: BTreeMap<u32, Account>,
+    carried: Option<CarriedByte>,
     /// Processes that cannot carry the bytes of pseudo-terminals, because they are not unbound workers of the kernel.
     /// They are not examined again.
     others: BTreeSet<u32>,
@@ -191,6 +195,7 @@ struct Threads {
 
 impl Threads {
     fn look(&mut self, processes: &[(u32, Part)]) {
+        self.carried = self.carried.take().or_else(CarriedByte::open);
         let of_library = |name: &str| match name {
             "sun2xp board" => Some(Part::Board),
             _ if name.starts_with("sun2xp servo") => Some(Part::Servo),

@@ -94,7 +94,7 @@ impl Waits {
                 let longest: &mut Duration = parts.entry(*part).or_default();
                 *longest = time.max(*longest);
             }
-            if parts.values().sum::<Duration>() > worst.values().sum() {
+            if parts.values().sum::<Duration>() > worst.values().sum::<Duration>() {
                 worst = parts;
             }
         }
