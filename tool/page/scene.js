@@ -57,7 +57,10 @@ export class View {
     this.scene.add(this.world);
     this.light();
     onColours(() => this.colours());
-    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    /// Whether the size of the canvas is that of the view. A new size makes the canvas empty, so `run` sets it just
+    /// before it draws.
+    this.fits = false;
+    new ResizeObserver(() => (this.fits = false)).observe(canvas.parentElement);
     this.panel = 0;
     this.target = new Vector3(0, 0, 6);
     this.frames = { count: 0, since: performance.now(), rate: 0 };
@@ -119,12 +122,13 @@ export class View {
   setPanel(width) {
     if (this.panel === width) return;
     this.panel = width;
-    this.resize();
+    this.fits = false;
   }
 
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (!width || !height) return;
+    this.fits = true;
     const shift = width > 2.2 * this.panel ? this.panel / 2 : 0;
     this.camera.setViewOffset(width, height, -shift, 0, width, height);
     const turned = Math.abs(width / height - this.camera.aspect) > 0.3;
@@ -139,6 +143,7 @@ export class View {
   run(draw) {
     const step = () => {
       requestAnimationFrame(step);
+      if (!this.fits) this.resize();
       draw();
       this.controls.update();
       this.renderer.render(this.scene, this.camera);
@@ -163,6 +168,6 @@ export class View {
     else if (this.sun.castShadow) this.sun.castShadow = this.floor.visible = false;
     else if (this.ratio > 0.7) this.ratio = 0.7;
     else return;
-    this.resize();
+    this.fits = false;
   }
 }

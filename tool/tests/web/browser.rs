@@ -9,16 +9,27 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// Waits until the page draws. Then returns the 64 x 48 pixels of the 3-D view, each as the sum of its three colours, 0
-/// to 765.
-const PICTURE: &str = r"
+/// Returns the 64 x 48 pixels of the 3-D view, each as the sum of its three colours, 0 to 765.
+const PIXELS: &str = r"
     const view = document.getElementById('hand3d');
     const copy = Object.assign(document.createElement('canvas'), { width: 64, height: 48 });
     const context = copy.getContext('2d', { willReadFrequently: true });
-    await new Promise(requestAnimationFrame);
     context.drawImage(view, 0, 0, 64, 48);
     const { data } = context.getImageData(0, 0, 64, 48);
     return Array.from({ length: 64 * 48 }, (_, at) => data[4 * at] + data[4 * at + 1] + data[4 * at + 2]);
+";
+
+/// Waits until the page draws. The page can clear the picture only after this frame.
+const NEXT_FRAME: &str = "await new Promise(requestAnimationFrame);";
+
+/// Makes the view narrower. Then waits until all observers of its size know this, which is still in the same frame.
+const NARROWER: &str = r"
+    const parent = document.getElementById('hand3d').parentElement;
+    await new Promise(requestAnimationFrame);
+    parent.style.width = `${parent.clientWidth - 40}px`;
+    await new Promise(narrower => {
+      new ResizeObserver(narrower).observe(parent);
+    });
 ";
 
 const DRAWN: &str = "return performance.getEntriesByName('the hand is drawn')[0]?.startTime";
@@ -45,9 +56,14 @@ const PICTURES: &str = "
 /// Smallest idle share of the processors with which the speed of the page is judged.
 const LEAST_IDLE: f64 = 0.7;
 
-fn picture(browser: &Browser) -> Vec<i64> {
-    let picture = browser.run(PICTURE);
+/// Returns the pixels of the view after the script `first`.
+fn picture_after(browser: &Browser, first: &str) -> Vec<i64> {
+    let picture = browser.run(&format!("{first}{PIXELS}"));
     picture.as_array().expect("pixels").iter().map(|pixel| pixel.as_i64().expect("a sum")).collect()
+}
+
+fn picture(browser: &Browser) -> Vec<i64> {
+    picture_after(browser, NEXT_FRAME)
 }
 
 /// Returns how many pixels differ clearly.
@@ -106,6 +122,21 @@ fn the_page_draws_the_hand_and_the_picture_moves_with_it() {
     let (before, after) = (difference(&rest, &still), difference(&rest, &moved));
     assert!(after > 60 && after > 5 * before, "{before} pixels differ at rest, and {after} after a motion");
     check_logs(&browser, &program);
+}
+
+#[test]
+fn the_picture_is_not_empty_while_its_size_changes() {
+    if !available("chromium", "the page in a browser") {
+        return;
+    }
+    let _alone = alone();
+    let (_hand, name) = hand(|_| {});
+    let program = Program::monitor(&name);
+    let browser = Browser::start(1280, 800);
+    browser.open(&program.url);
+    browser.wait_for(DRAWN);
+    let narrower = picture_after(&browser, NARROWER);
+    assert!(narrower.iter().any(|&pixel| pixel != narrower[0]), "all pixels are {}", narrower[0]);
 }
 
 #[test]
