@@ -33,11 +33,14 @@ fn the_schedule_of_a_hand_that_meets_its_deadlines_is_printed() {
     assert!(output.status.success(), "{output:?}");
     for part in [
         "thread  fingers  core  priority  computing  line busy  replies by  done by  deadlines\n",
+        "\n1000 Hz with an additional sensor on each finger: it adds 10 bytes to the reply and 50 us to the computing \
+         time of the finger\n",
         "\n3       3        2           80      3.0 %       55 %      660 us   680 us  met\n",
         "\n3       3        2           80      8.0 %       65 %      760 us   830 us  met\n",
-        "met up to 1454 Hz: above that, the line is too busy (thread 1)",
+        "\nThe highest rate at which every deadline is met is 1454 Hz: at 1455 Hz, the line is too busy (thread 1).\n",
         // With the sensor, the longest cycle takes 100 + 10 + 650 + 70 = 830 us.
-        "With the sensor, every deadline is met up to 1204 Hz: above that, a cycle may end too late (thread 1)",
+        "\nWith the sensor, the highest rate at which every deadline is met is 1204 Hz: at 1205 Hz, a cycle may end \
+         too late (thread 1).\n",
     ] {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");
     }
@@ -55,6 +58,36 @@ fn a_rate_below_the_lowest_that_can_be_configured_is_not_proposed() {
         "\nWith the sensor, no rate that can be configured meets every deadline: at 500 Hz, ",
     ];
     assert!(parts.iter().all(|part| text.contains(part)), "{text}");
+}
+
+/// At 1000 Hz, thread 1 fetches a tactile event. Its cycle takes 100 + 10 + 550 + 200 + 5 + 150 + 5 = 1020 us, which is
+/// more than a period. From 1067 Hz up, no time is left for the event, and the cycle takes 100 + 10 + 550 + 5 + 150 =
+/// 815 us. With the sensor, no time is left at 1000 Hz either, and the cycle takes 100 + 10 + 650 + 5 + 150 + 50 =
+/// 965 us.
+#[test]
+fn a_deadline_that_only_a_higher_rate_meets_is_explained() {
+    let touch = "[finger.1.touch]\nelements = [{ position = [0, 0, 0], normal = [0, 0, 1] }]\n";
+    let hand = format!("[finger.1]\ncore = 0\n{touch}[finger.2]\ncore = 1\n[finger.3]\ncore = 2\n");
+    let output = schedule(&hand, &COSTS.replace("compute = 15", "compute = 150"));
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    for part in [
+        "\nThe highest rate at which every deadline is met is 1226 Hz: at 1227 Hz, a cycle may end too late (thread \
+         1). At 1000 Hz a deadline may be missed: at this lower rate the line has time for more tactile events, and \
+         fetching them makes the cycle longer.\n",
+        "\nWith the sensor, the highest rate at which every deadline is met is 1036 Hz: at 1037 Hz, a cycle may end \
+         too late (thread 1).\n",
+    ] {
+        assert!(text.contains(part), "{part:?} is not in:\n{text}");
+    }
+}
+
+#[test]
+fn the_highest_rate_that_can_be_configured_is_named_if_it_meets_every_deadline() {
+    let output = schedule("[finger]\nbaud = 12000000\n", "wake_up = 1\nwrite = 1\nread = 1\ncompute = 1\n");
+    let text = String::from_utf8_lossy(&output.stdout);
+    let part = "\nEvery deadline is met at the highest rate that can be configured, 5000 Hz.\n";
+    assert!(output.status.success() && text.contains(part), "{output:?}");
 }
 
 #[test]

@@ -34,5 +34,5 @@ impl Fastest {
 }
 
 fn limit(schedule: &[Scheduled]) -> Option<Limit> {
-    schedule.iter().find_map(|thread| thread.limit.map(|missed| Limit { missed, thread: thread.thread }))
+    schedule.iter().find_map(|thread| thread.violation.map(|missed| Limit { missed, thread: thread.thread }))
 }

@@ -76,8 +76,9 @@ pub struct Scheduled {
     /// The latest times at which the replies have arrived and the cycle is done, us after the scheduled beginning of
     /// the cycle. `None` if there is no bound within the period.
     pub response: Option<(f64, f64)>,
-    /// The condition that may be violated, if any.
-    pub limit: Option<Violation>,
+    /// The condition that may be violated, if any. It is the key `limit` of the output of `--json`.
+    #[serde(rename = "limit")]
+    pub violation: Option<Violation>,
 }
 
 /// A condition of the schedule that may be violated.
@@ -114,14 +115,14 @@ pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor:
             let line = longest_exchange(hand, &fingers, sensor, period) / period;
             let window = task.wake_up as f64 * 1e-3 + REPLY_WINDOW * period;
             let response = response.map(|response| (response.waited as f64 * 1e-3, response.done as f64 * 1e-3));
-            let limit = match response {
+            let violation = match response {
                 _ if line > USABLE_SHARE => Some(Violation::Line),
                 None => Some(Violation::Cycle),
                 Some((replies, _)) if replies > window => Some(Violation::Replies),
                 Some(_) => None,
             };
             let load = (task.before as f64 + task.after as f64) * 1e-3 / period;
-            Scheduled { thread, core: task.core, priority: task.priority, fingers, load, line, response, limit }
+            Scheduled { thread, core: task.core, priority: task.priority, fingers, load, line, response, violation }
         })
         .collect()
 }
@@ -146,13 +147,13 @@ fn task(hand: &Configuration, fingers: &[FingerNumber], period: f64, costs: &Cos
     }
 }
 
-/// The number of tactile events that a thread fetches in every period at a rate, Hz.
+/// The largest number of tactile events that a thread fetches in a period at a rate, Hz.
 pub fn touches(hand: &Configuration, fingers: &[FingerNumber], sensor: &Sensor, rate: f64) -> usize {
     lines(hand, fingers).map(|line| touches_on_line(hand, fingers, line, sensor, rate)).sum()
 }
 
-/// The number of tactile events on the port of `finger`, which has `sharing` fingers. The servo requests only those for
-/// which the exchange leaves time.
+/// The largest number of tactile events in a period on the port of `finger`, which has `sharing` fingers. The servo
+/// requests only those for which the exchange leaves time.
 fn touches_on_line(
     hand: &Configuration,
     fingers: &[FingerNumber],

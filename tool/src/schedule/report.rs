@@ -50,7 +50,7 @@ struct Schedule {
 struct Thread {
     #[serde(flatten)]
     scheduled: Scheduled,
-    /// Number of tactile events that the thread fetches in every period.
+    /// Largest number of tactile events that the thread fetches in a period.
     tactile_events: usize,
 }
 
@@ -67,16 +67,36 @@ impl Schedule {
 
     /// The highest rate, and what prevents a higher one, as a sentence that begins with `condition`.
     fn summary(&self, condition: &str) -> String {
-        let Some(Limit { missed: limit, thread }) = self.fastest.limit else {
-            return format!("{condition}every deadline is met up to the highest rate that can be configured.");
+        let Some(Limit { missed: violation, thread }) = self.fastest.limit else {
+            let highest = RATES.end();
+            return format!(
+                "{condition}every deadline is met at the highest rate that can be configured, {highest} Hz."
+            );
         };
-        let reason = format!("{} (thread {thread})", missed(limit));
+        let reason = format!("{} (thread {thread})", missed(violation));
         match self.fastest.rate {
-            Some(rate) => format!("{condition}every deadline is met up to {rate} Hz: above that, {reason}."),
+            Some(rate) => format!(
+                "{condition}the highest rate at which every deadline is met is {rate} Hz: at {} Hz, {reason}.",
+                rate + 1
+            ),
             None => {
                 let lowest = RATES.start();
                 format!("{condition}no rate that can be configured meets every deadline: at {lowest} Hz, {reason}.")
             }
+        }
+    }
+
+    /// Returns a sentence that says why a deadline may be missed at `rate`, Hz, although every deadline is met at a
+    /// higher rate. Returns an empty text if no deadline may be missed at `rate`, or if no higher rate meets every
+    /// deadline.
+    fn exception(&self, rate: f64) -> String {
+        let violated = self.threads.iter().any(|thread| thread.scheduled.violation.is_some());
+        match self.fastest.rate {
+            Some(fastest) if violated && f64::from(fastest) > rate => format!(
+                " At {rate:.0} Hz a deadline may be missed: at this lower rate the line has time for more tactile \
+                 events, and fetching them makes the cycle longer."
+            ),
+            _ => String::new(),
         }
     }
 
@@ -96,7 +116,9 @@ impl Schedule {
                 format!("{:.0} %", 100.0 * scheduled.line).into(),
                 by(scheduled.response.map(|response| response.0)),
                 by(scheduled.response.map(|response| response.1)),
-                scheduled.limit.map_or(Cell::new(Look::Good, "met"), |limit| Cell::new(Look::Bad, missed(limit))),
+                scheduled
+                    .violation
+                    .map_or(Cell::new(Look::Good, "met"), |violation| Cell::new(Look::Bad, missed(violation))),
             ]);
         }
         table
@@ -107,7 +129,7 @@ impl Report {
     pub fn new(hand: &Configuration, costs: Costs, source: Source, virtual_machine: bool, sensor: Sensor) -> Self {
         let configured = Schedule::new(hand, &costs, Sensor::default());
         Self {
-            pass: configured.threads.iter().all(|thread| thread.scheduled.limit.is_none()),
+            pass: configured.threads.iter().all(|thread| thread.scheduled.violation.is_none()),
             rate: hand.hand.rate,
             source,
             virtual_machine: virtual_machine && source != Source::File,
@@ -132,7 +154,8 @@ impl Report {
         write!(out, "{}", self.configured.table().text(screen))?;
         let Sensor { bytes, compute } = self.with_sensor.sensor;
         let more = format!(
-            "{:.0} Hz with an additional sensor: {bytes} more bytes and {compute:.0} us more per finger",
+            "{:.0} Hz with an additional sensor on each finger: it adds {bytes} bytes to the reply and {compute:.0} us \
+             to the computing time of the finger",
             self.rate
         );
         writeln!(out, "\n{}\n", title(&more))?;
@@ -142,8 +165,9 @@ impl Report {
             let thread = scheduled.thread;
             writeln!(out, "Thread {thread} fetches up to {tactile_events} tactile events in every period.")?;
         }
-        writeln!(out, "{}", capitalized(&self.configured.summary("")))?;
-        writeln!(out, "{}", self.with_sensor.summary("With the sensor, "))?;
+        for (schedule, condition) in [(&self.configured, ""), (&self.with_sensor, "With the sensor, ")] {
+            writeln!(out, "{}{}", capitalized(&schedule.summary(condition)), schedule.exception(self.rate))?;
+        }
         out.flush()
     }
 
@@ -169,8 +193,8 @@ fn capitalized(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-fn missed(limit: Violation) -> &'static str {
-    match limit {
+fn missed(violation: Violation) -> &'static str {
+    match violation {
         Violation::Line => "the line is too busy",
         Violation::Replies => "replies may arrive too late",
         Violation::Cycle => "a cycle may end too late",

@@ -22,12 +22,12 @@ fn three_fingers_on_three_cores() {
             (thread.thread as usize, thread.core, &thread.fingers[..]),
             (index + 1, Some(index), &[FingerNumber::ALL[index]][..])
         );
-        assert_eq!((thread.response, thread.limit), (Some((660.0, 680.0)), None));
+        assert_eq!((thread.response, thread.violation), (Some((660.0, 680.0)), None));
         assert!((thread.load - 0.03).abs() < 1e-9 && (thread.line - 0.55).abs() < 1e-9);
     }
     // The line is the limit: 550 us are 80 % of a period at 1454.5 Hz.
     assert_eq!(Fastest::of(&hand, &COSTS, &Sensor::default()).rate, Some(1454));
-    assert_eq!(off_line_schedule(&hand, 1455.0, &COSTS, &Sensor::default())[0].limit, Some(Violation::Line));
+    assert_eq!(off_line_schedule(&hand, 1455.0, &COSTS, &Sensor::default())[0].violation, Some(Violation::Line));
     // Ten more bytes take 100 us more. At 2 megabaud the exchange takes 225 + 100 + 50 us, which is 80 % of a
     // period at 2133 Hz.
     let sensor = Sensor { bytes: 10, compute: 50.0 };
@@ -35,10 +35,11 @@ fn three_fingers_on_three_cores() {
     hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
     // 100 + 10 + 375 + 70 = 555: the cycle is done in time up to 1801 Hz.
     assert_eq!(Fastest::of(&hand, &COSTS, &sensor).rate, Some(1801));
-    assert_eq!(off_line_schedule(&hand, 1802.0, &COSTS, &sensor)[0].limit, Some(Violation::Cycle));
+    assert_eq!(off_line_schedule(&hand, 1802.0, &COSTS, &sensor)[0].violation, Some(Violation::Cycle));
 }
 
-/// On one core each thread may have to wait for two cycles of each other thread: 680 + 4 * 30.
+/// On one core, each thread may have to wait until both other threads have computed two cycles each. In a cycle, a
+/// thread computes for 10 + 5 + 15 = 30 us. The cycle is done by 680 + 2 * 2 * 30 = 800 us.
 #[test]
 fn three_fingers_on_one_core() {
     let mut hand = Configuration::default();
@@ -57,13 +58,14 @@ fn three_fingers_on_one_thread() {
     hand.fingers.iter_mut().for_each(|finger| finger.thread = 1);
     let [thread] = &off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[..] else { panic!("one thread") };
     assert_eq!(thread.response, Some((680.0, 740.0)));
-    // On one port the replies follow each other: 100 + 10 + 170 + 100 + 3 * 280 + 60 is more than a period.
+    // On one port the replies follow each other, so the exchange takes 170 + 100 + 3 * 280 = 1110 us. This is more than
+    // 80 % of the period of 1000 us.
     hand.fingers.iter_mut().for_each(|finger| finger.port = "/dev/ttyUSB0".into());
-    assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[0].limit, Some(Violation::Line));
+    assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[0].violation, Some(Violation::Line));
     hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
     let schedule = off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default());
     assert_eq!(schedule[0].response, Some((715.0, 775.0)));
-    assert_eq!((&schedule[0].fingers[..], schedule[0].limit), (&FingerNumber::ALL[..], None));
+    assert_eq!((&schedule[0].fingers[..], schedule[0].violation), (&FingerNumber::ALL[..], None));
 }
 
 /// The answer to a TactileRequest takes 200 us, and reading it 5 us more.
@@ -85,7 +87,7 @@ fn touch_takes_the_time_that_the_line_has_left() {
     // 16 more bytes take 160 us. They leave no time for a request at 1000 Hz. The exchange then takes 710 us, which is
     // 80 % of a period at 1126.8 Hz.
     let sensor = Sensor { bytes: 16, compute: 0.0 };
-    assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &sensor)[1].limit, None);
+    assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &sensor)[1].violation, None);
     assert_eq!(Fastest::of(&hand, &COSTS, &sensor).rate, Some(1126));
 }
 
@@ -100,7 +102,7 @@ fn endless_costs_have_no_schedule() {
         (COSTS, Sensor { bytes: usize::MAX, compute: 0.0 }),
     ] {
         let schedule = off_line_schedule(&hand, 1000.0, &costs, &sensor);
-        assert!(schedule.iter().all(|thread| thread.limit.is_some()), "{schedule:?}");
+        assert!(schedule.iter().all(|thread| thread.violation.is_some()), "{schedule:?}");
     }
 }
 
@@ -109,10 +111,10 @@ fn endless_costs_have_no_schedule() {
 fn the_reply_window_begins_at_the_wake_up() {
     let hand = Configuration::default();
     let costs = Costs { wake_up: 300.0, write: 10.0, read: 1.0, compute: 1.0 };
-    assert_eq!(off_line_schedule(&hand, 1000.0, &costs, &Sensor::default())[0].limit, None);
+    assert_eq!(off_line_schedule(&hand, 1000.0, &costs, &Sensor::default())[0].violation, None);
     // With each finger on its own core, 310 + 550 us exceed the reply window of 850 us.
     let mut apart = hand.clone();
     apart.fingers.iter_mut().enumerate().for_each(|(core, finger)| finger.core = Some(core));
     let costs = Costs { wake_up: 9.0, write: 310.0, ..costs };
-    assert_eq!(off_line_schedule(&apart, 1000.0, &costs, &Sensor::default())[0].limit, Some(Violation::Replies));
+    assert_eq!(off_line_schedule(&apart, 1000.0, &costs, &Sensor::default())[0].violation, Some(Violation::Replies));
 }
