@@ -23,7 +23,8 @@ fn follow_over_limit(bencher: Bencher, scheme: Scheme) {
     cycle(bencher, scheme, 40.0);
 }
 
-fn cycle(bencher: Bencher, scheme: Scheme, stiffness: f64) {
+/// `factor` multiplies the stiffness of the set point.
+fn cycle(bencher: Bencher, scheme: Scheme, factor: f64) {
     let mut finger = ConfiguredFinger::default();
     finger.controller.scheme = Some(scheme);
     let controller = Controller::new(&finger, 1000.0).expect("the default finger");
@@ -39,7 +40,7 @@ fn cycle(bencher: Bencher, scheme: Scheme, stiffness: f64) {
         Feedback { motor_counts, gauge_counts }
     });
     let mut state = controller.start(&feedback[0]);
-    let stiffness = Matrix3::new(3.0, 0.2, 0.1, 0.2, 4.0, 0.3, 0.1, 0.3, 2.0) * stiffness;
+    let stiffness = Matrix3::new(3.0, 0.2, 0.1, 0.2, 4.0, 0.3, 0.1, 0.3, 2.0) * factor;
     let activity = Activity::Follow(SetPoint::hard_finger(Vector3::new(0.3, 0.6, 1.2), stiffness));
     let mut turn = 0;
     bencher.bench_local(|| {

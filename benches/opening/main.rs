@@ -82,7 +82,7 @@ pub fn table(library: &Path, runs: usize) -> Result<(), Box<dyn Error>> {
             }
         }
         if *count == 0 {
-            println!("{child:<44} not measured, because faults disturbed every measurement");
+            println!("{child:<44} not measured, because every measurement failed or was skipped");
         }
         for (name, mut durations) in columns {
             durations.sort_by(f64::total_cmp);

@@ -3,13 +3,13 @@
 use std::fmt::{self, Display};
 
 /// A measurement that fails is repeated, until this number of measurements has failed in total. Later ones are skipped.
-pub const MOST_DISTURBED: usize = 10;
+pub const MOST_FAILED: usize = 10;
 
 /// What has become of the measurements.
 #[derive(Default)]
 pub struct Attempts {
     /// Number of measurements that have failed.
-    pub disturbed: usize,
+    pub failed: usize,
     /// Number of measurements that were not made, or not repeated, because too many had failed.
     pub skipped: usize,
 }
@@ -17,11 +17,11 @@ pub struct Attempts {
 impl Attempts {
     /// Measures until a measurement succeeds. Returns none if too many have failed. `name` names what is measured.
     pub fn measure<T, E: Display>(&mut self, name: &str, mut measure: impl FnMut() -> Result<T, E>) -> Option<T> {
-        while self.disturbed < MOST_DISTURBED {
+        while self.failed < MOST_FAILED {
             match measure() {
                 Ok(measured) => return Some(measured),
                 Err(reason) => {
-                    self.disturbed += 1;
+                    self.failed += 1;
                     eprintln!("{name}: {reason}. Other work on the machine can cause this.");
                 }
             }
@@ -41,17 +41,17 @@ impl Attempts {
         if missing.is_empty() {
             return Ok(());
         }
-        let Self { disturbed, skipped } = self;
+        let Self { failed, skipped } = self;
         Err(format!(
-            "there is no result for {missing}: {disturbed} measurements were disturbed, and {skipped} were skipped. \
-             Measure again when the machine has no other work"
+            "there is no result for {missing}: {failed} measurements failed, and {skipped} were skipped. Measure \
+             again when the machine has no other work"
         ))
     }
 }
 
 impl Display for Attempts {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { disturbed, skipped } = self;
-        write!(f, "{disturbed} measurements were disturbed by faults, and {skipped} were skipped because of them")
+        let Self { failed, skipped } = self;
+        write!(f, "{failed} measurements failed, and {skipped} were skipped because too many had failed")
     }
 }

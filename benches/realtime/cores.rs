@@ -11,7 +11,13 @@ pub fn permitted() -> io::Result<Vec<usize>> {
         (set, refused)
     };
     if refused != 0 {
-        return Err(io::Error::last_os_error());
+        let error = io::Error::last_os_error();
+        let most = libc::CPU_SETSIZE;
+        let text = format!(
+            "cannot read on which cores this thread may run: {error}. If this machine has more than {most} cores, \
+             start Linux with the boot option nr_cpus={most}. Otherwise permit the system call sched_getaffinity"
+        );
+        return Err(io::Error::new(error.kind(), text));
     }
     // SAFETY: every number is within the set.
     Ok((0..libc::CPU_SETSIZE as usize).filter(|&core| unsafe { libc::CPU_ISSET(core, &set) }).collect())

@@ -50,7 +50,7 @@ impl Delays {
     /// delay add up to at least `paused`, ns.
     pub fn print(mut self, what: &str, paused: u64, pauses: &Pauses) {
         if self.contacts() == 0 {
-            println!("| {what} | not measured, because faults disturbed every measurement | | | | | | |");
+            println!("| {what} | not measured, because every measurement failed or was skipped | | | | | | |");
             return;
         }
         self.known.sort_unstable_by_key(|delay| delay.periods);

@@ -82,8 +82,9 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
     let made = rows.map(|row| row.len() / FINGERS);
     let [quiet, written, awaited] = made;
     println!(
-        "\nMedians over three fingers and {quiet}, {written} and {awaited} measurements of {} s. {attempts}. The \
-         waiting thread got {:.0} events a second, and lost {lost}.\n",
+        "\nMedians over three fingers and all measurements of {} s: {quiet} measurements for the first row, {written} \
+         for the second and {awaited} for the third. {attempts}. The waiting thread got {:.0} events a second, and \
+         lost {lost}.\n",
         turns.seconds,
         taken as f64 / (awaited as u64 * turns.seconds).max(1) as f64
     );
@@ -96,7 +97,7 @@ fn print_table(rows: &[Vec<Percentiles>; KINDS.len()]) {
     let quiet = of(&rows[0], |wake| wake.p999);
     for ((_, name), row) in KINDS.iter().zip(rows) {
         if row.is_empty() {
-            println!("| {name} | not measured, because faults disturbed every measurement | | | |");
+            println!("| {name} | not measured, because every measurement failed or was skipped | | | |");
             continue;
         }
         let (middle, p99, p999) = (of(row, |wake| wake.median), of(row, |wake| wake.p99), of(row, |wake| wake.p999));
@@ -147,10 +148,14 @@ fn turn(kind: Kind, seconds: u64) -> Result<Turn, Failure> {
     thread::sleep(START + Duration::from_secs(seconds));
     let stages: Vec<_> = mailboxes.iter().map(|mailbox| mailbox.report().stage).collect();
     ended.store(true, Relaxed);
-    servos.into_iter().try_for_each(|servo| servo.join().map_err(|_| "a servo panicked"))?;
-    let lost = waiting.map_or(Ok(0), |thread| thread.join().map_err(|_| "the waiting thread panicked"))?;
+    servos
+        .into_iter()
+        .try_for_each(|servo| servo.join().map_err(|_| "a servo panicked: standard error has its message"))?;
+    let lost = waiting.map_or(Ok(0), |thread| {
+        thread.join().map_err(|_| "the waiting thread panicked: standard error has its message")
+    })?;
     drop((boards, mailboxes));
-    let measured = std::mem::take(&mut *late.lock().map_err(|_| "a servo panicked")?);
+    let measured = std::mem::take(&mut *late.lock().map_err(|_| "a servo panicked: standard error has its message")?);
     if measured.len() != FINGERS {
         return Err("a servo has measured nothing".into());
     }

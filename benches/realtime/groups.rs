@@ -89,7 +89,7 @@ impl Measured {
         let (same, skipping, taken) = (self.same, self.skipping, self.delays.len());
         print!("Groups of {FINGERS} fingers in {FINGERS} servo threads: ");
         if self.delays.is_empty() {
-            println!("not measured, because faults disturbed every measurement. {attempts}.\n");
+            println!("not measured, because every measurement failed or was skipped. {attempts}.\n");
             return;
         }
         let Percentiles { median, p99, .. } = Percentiles::of(self.delays.clone());

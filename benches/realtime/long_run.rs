@@ -86,7 +86,7 @@ fn serve(configuration: &Configuration, period: u64, end: u64) -> Result<Ran, Fa
     }
     let mut cycles = Vec::new();
     for thread in threads {
-        cycles.push(thread.join().map_err(|_| "a servo panicked")??);
+        cycles.push(thread.join().map_err(|_| "a servo panicked: standard error has its message")??);
     }
     Ok(Ran { cycles, planners })
 }

@@ -1,4 +1,4 @@
-//! Measures whether planners that call as fast as they can delay the servo.
+//! Measures whether the servos are delayed by planners that call the library as fast as they can.
 
 use crate::Failure;
 use crate::attempts::Attempts;
@@ -46,8 +46,9 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
     let made = wake_ups.map(|wake_ups| wake_ups.len() / FINGERS);
     let [quiet, spinning, calling] = made;
     println!(
-        "\nMedians over three fingers and {quiet}, {spinning} and {calling} measurements of {} s. {attempts}. {:.1} \
-         million calls per second.\n",
+        "\nMedians over three fingers and all measurements of {} s: {quiet} measurements for the first row, {spinning} \
+         for the second and {calling} for the third. {attempts}. The two threads that call made {:.1} million calls \
+         per second together.\n",
         turns.seconds,
         calls.load(Relaxed) as f64 / (calling as u64 * turns.seconds).max(1) as f64 * 1e-6
     );
@@ -56,14 +57,14 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
 
 fn print_table(wake_ups: &WakeUps) {
     println!(
-        "| | median | 99 % | relative to spinning: median (goal for threads that call: at most 1.1) | 99 % \
-         |\n|---|---|---|---|---|"
+        "| | median | 99 % | median relative to spinning (goal for threads that call: at most 1.1) | 99 % relative to \
+         spinning |\n|---|---|---|---|---|"
     );
     let of = |kind: usize, part: fn(&WakeUp) -> f64| median(wake_ups[kind].iter().map(part));
     let (spinning, spinning_p99) = (of(1, |wake| wake.0), of(1, |wake| wake.1));
     for (kind, (_, name)) in KINDS.iter().enumerate() {
         if wake_ups[kind].is_empty() {
-            println!("| {name} | not measured, because faults disturbed every measurement | | | |");
+            println!("| {name} | not measured, because every measurement failed or was skipped | | | |");
             continue;
         }
         let (middle, p99) = (of(kind, |wake| wake.0), of(kind, |wake| wake.1));
@@ -81,14 +82,14 @@ fn turn(seconds: u64, kind: Planners, calls: &AtomicU64) -> Result<Vec<WakeUp>, 
             let (hand, ended, made) = (&hand, &ended, &made);
             scope.spawn(move || plan(hand, finger, kind, ended, made))
         });
-        let measured = measure(&hand, seconds);
+        let measured = measure(&hand, seconds, &made);
         ended.store(true, Relaxed);
         for planner in planners {
-            planner.join().map_err(|_| "a planner panicked")??;
+            planner.join().map_err(|_| "a planner panicked: standard error has its message")??;
         }
-        let measured = measured?;
-        calls.fetch_add(made.load(Relaxed), Relaxed);
-        Ok(measured)
+        let (wake_ups, counted) = measured?;
+        calls.fetch_add(counted, Relaxed);
+        Ok(wake_ups)
     })
 }
 
@@ -111,13 +112,15 @@ fn plan(hand: &Hand, finger: i32, kind: Planners, ended: &AtomicBool, calls: &At
     Ok(())
 }
 
-/// Returns the wake-up latency of each finger.
-fn measure(hand: &Hand, seconds: u64) -> Result<Vec<WakeUp>, Failure> {
+/// Returns the wake-up latency of each finger, and by how much `calls` rose during the measurement.
+fn measure(hand: &Hand, seconds: u64, calls: &AtomicU64) -> Result<(Vec<WakeUp>, u64), Failure> {
     let fingers = 1..=FINGERS as i32;
     // The start of the hand is not measured.
     sleep(Duration::from_millis(200));
     fingers.clone().try_for_each(|finger| hand.reset_timing(finger))?;
+    let before = calls.load(Relaxed);
     sleep(Duration::from_secs(seconds));
+    let counted = calls.load(Relaxed) - before;
     let timings = fingers.map(|finger| hand.timing(finger, CycleStage::WakeUp).map(|wake| (wake.median, wake.p99)));
-    Ok(timings.collect::<Result<_, _>>()?)
+    Ok((timings.collect::<Result<_, _>>()?, counted))
 }

@@ -128,7 +128,9 @@ impl Measured {
             Ok(())
         });
         ended.store(true, Relaxed);
-        servos.into_iter().try_for_each(|servo| servo.join().map_err(|_| "a servo panicked"))?;
+        servos
+            .into_iter()
+            .try_for_each(|servo| servo.join().map_err(|_| "a servo panicked: standard error has its message"))?;
         measured
     }
 

@@ -13,7 +13,7 @@ use std::thread::sleep;
 use std::time::Duration;
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::{Configuration, FINGERS};
-use sun2xp::realtime::{CycleStage, Distribution};
+use sun2xp::realtime::{CycleStage, Distribution, with_remedy};
 use sun2xp::telemetry::{Reader, View};
 
 /// Whether each reader writes the messages to a file. All readers convert every cycle to a sample. The first two stand
@@ -28,7 +28,7 @@ const SETTLING: Duration = Duration::from_millis(500);
 pub struct ReaderArguments {
     /// Name of the hand.
     name: String,
-    /// Whether to write every cycle into a file.
+    /// Whether to write every message into a file.
     #[arg(long)]
     write: bool,
 }
@@ -46,7 +46,7 @@ impl Side {
     /// Prints the row of this side.
     fn print(&self, name: &str) {
         if self.0.is_empty() {
-            println!("| {name} | not measured, because faults disturbed every measurement | | | |");
+            println!("| {name} | not measured, because every measurement failed or was skipped | | | |");
             return;
         }
         let largest = self.0.iter().map(|wake| wake.maximum).fold(0.0, f64::max);
@@ -63,20 +63,23 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
     let (mut without, mut with, mut ratios) = (Side::default(), Side::default(), Vec::new());
     let mut attempts = Attempts::default();
     for _ in 0..turns.repeats {
-        let measured = attempts.measure("a turn without readers and one with them", || neighbours(turns.seconds));
-        let Some([alone, read]) = measured else { continue };
-        ratios.push(median(read.iter().map(|wake| wake.p999)) / median(alone.iter().map(|wake| wake.p999)));
+        let measured =
+            attempts.measure("a measurement without readers and one with them", || measure_both(turns.seconds));
+        let Some([alone, with_readers]) = measured else { continue };
+        ratios.push(median(with_readers.iter().map(|wake| wake.p999)) / median(alone.iter().map(|wake| wake.p999)));
         without.0.extend(alone);
-        with.0.extend(read);
+        with.0.extend(with_readers);
     }
     println!("| wake-up | median | 99 % | 99.9 % | largest |\n|---|---|---|---|---|");
     without.print("no reader");
     with.print("three readers");
-    let made = ratios.len();
+    let (made, Attempts { failed, skipped }) = (ratios.len(), &attempts);
     println!(
-        "\nMedians over three fingers and {made} turns of {} s for each side. {attempts}. The two sides alternate. \
-         Ratio of the 99.9 % latency with readers to that without (goal: 0.9 to 1.1): {}; median of the ratios of \
-         neighbouring turns: {}.\n",
+        "\nMedians over three fingers, and over {made} pairs of measurements. A pair is one measurement of {} s \
+         without readers, and then one with them. {failed} pairs failed, and {skipped} were skipped because too many \
+         had failed. The last column has the largest value of all measurements. Ratio of the 99.9 % latency with \
+         readers to that without (goal: 0.9 to 1.1): {}. Each pair has such a ratio too. The median of these ratios is \
+         {}.\n",
         turns.seconds,
         ratio(with.median_of(|wake| wake.p999), without.median_of(|wake| wake.p999)),
         ratio(median(ratios), 1.0),
@@ -84,9 +87,9 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
     Ok(attempts.check([("three readers", made)])?)
 }
 
-/// Opens a hand, and measures it in one turn without readers and then in one turn with them. If one of the two turns
-/// fails, both are repeated, so that a ratio compares turns at nearly the same time.
-fn neighbours(seconds: u64) -> Result<[Vec<Distribution>; 2], Failure> {
+/// Opens a hand, and measures it once without readers and then once with them. If one of the two measurements fails,
+/// both are repeated, so that a ratio compares measurements at nearly the same time.
+fn measure_both(seconds: u64) -> Result<[Vec<Distribution>; 2], Failure> {
     let mut configuration = Configuration::default();
     configuration.telemetry.name = format!("bench-{}", std::process::id());
     let name = configuration.telemetry.name.clone();
@@ -94,9 +97,9 @@ fn neighbours(seconds: u64) -> Result<[Vec<Distribution>; 2], Failure> {
     let alone = measure(&hand, seconds)?;
     let readers = READERS.map(|write| Process::start(&name, write));
     let readers = readers.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let read = measure(&hand, seconds)?;
+    let with_readers = measure(&hand, seconds)?;
     readers.into_iter().try_for_each(Process::end)?;
-    Ok([alone, read])
+    Ok([alone, with_readers])
 }
 
 /// Returns the wake-up latency of each finger. Returns an error if a finger has stopped, because the servo of such a
@@ -118,19 +121,26 @@ struct Process(Child);
 
 impl Process {
     fn start(name: &str, write: bool) -> Result<Self, Failure> {
-        let mut command = Command::new(std::env::current_exe()?);
+        let program = std::env::current_exe();
+        let program = program.map_err(|error| format!("cannot find the reader's program: {error}. Mount /proc"))?;
+        let mut command = Command::new(program);
         command.args(["reader", name]).args(write.then_some("--write")).stdin(Stdio::piped()).stdout(Stdio::piped());
-        let mut child = command.spawn()?;
-        let attached = child.stdout.take().ok_or("no pipe");
+        let child = command.spawn();
+        let mut child = child.map_err(|error| format!("cannot start a reader: {}", with_remedy(&error)))?;
+        let mut attached = child.stdout.take().expect("its standard output is a pipe");
         let process = Self(child);
         // The reader prints one byte when it is attached.
-        attached?.read_exact(&mut [0]).map_err(|_| "a reader did not start")?;
+        let ended = "a reader ended before it was attached to the telemetry: standard error has its message";
+        attached.read_exact(&mut [0]).map_err(|_| ended)?;
         Ok(process)
     }
 
     fn end(mut self) -> Result<(), Failure> {
         let status = self.wait()?;
-        if status.success() { Ok(()) } else { Err("a reader lost cycles or failed".into()) }
+        if status.success() {
+            return Ok(());
+        }
+        Err(format!("a reader lost cycles or failed ({status}): standard error has its message").into())
     }
 
     fn wait(&mut self) -> io::Result<ExitStatus> {
@@ -151,7 +161,7 @@ pub fn read(arguments: &ReaderArguments) -> Result<(), Failure> {
     let mut reader = Reader::attach(Some(&arguments.name))?;
     let mut view = View::new(&reader.description().configuration);
     let mut file = match arguments.write {
-        true => Some(BufWriter::new(tempfile::tempfile()?)),
+        true => Some(BufWriter::new(tempfile::tempfile().map_err(|error| unwritable(&error))?)),
         false => None,
     };
     let ended = std::thread::spawn(|| io::stdin().read(&mut [0]));
@@ -166,12 +176,31 @@ pub fn read(arguments: &ReaderArguments) -> Result<(), Failure> {
             write(&mut file, || message.encode())?;
         }
     }
-    if reader.lost() == [0; FINGERS] { Ok(()) } else { Err(format!("cycles were lost: {:?}", reader.lost()).into()) }
+    let lost = reader.lost();
+    if lost == [0; FINGERS] {
+        return Ok(());
+    }
+    let [first, second, third] = lost;
+    Err(format!(
+        "the reader was too slow: it lost {first} cycles of finger 1, {second} of finger 2 and {third} of finger 3. \
+         Measure again when the machine has no other work"
+    )
+    .into())
 }
 
-fn write(file: &mut Option<BufWriter<File>>, bytes: impl FnOnce() -> io::Result<Vec<u8>>) -> io::Result<()> {
+fn write(file: &mut Option<BufWriter<File>>, bytes: impl FnOnce() -> io::Result<Vec<u8>>) -> Result<(), Failure> {
     match file {
-        Some(file) => file.write_all(&bytes()?),
+        Some(file) => Ok(file.write_all(&bytes()?).map_err(|error| unwritable(&error))?),
         None => Ok(()),
     }
+}
+
+/// The text of an error in writing a temporary file.
+fn unwritable(error: &io::Error) -> String {
+    let folder = std::env::temp_dir();
+    format!(
+        "cannot write a temporary file in {}: {error}. Make that folder writable and free space there, or set TMPDIR \
+         to another folder",
+        folder.display()
+    )
 }

@@ -158,7 +158,9 @@ pub fn measure(arguments: &Arguments) -> Result<Vec<Row>, Failure> {
     }
     let rows = observe(&mailboxes, &phase, Duration::from_secs(arguments.seconds));
     drop(phase);
-    threads.into_iter().try_for_each(|thread| thread.join().map_err(|_| "a servo panicked"))?;
+    threads
+        .into_iter()
+        .try_for_each(|thread| thread.join().map_err(|_| "a servo panicked: standard error has its message"))?;
     Ok(rows)
 }
 

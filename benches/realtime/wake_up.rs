@@ -75,7 +75,7 @@ fn servo_threads(seconds: u64) -> Result<Vec<Percentiles>, Failure> {
     let threads: Vec<_> = threads.collect::<Result<_, _>>()?;
     let mut all = Vec::new();
     for thread in threads {
-        all.push(Percentiles::of(thread.join().map_err(|_| "a thread panicked")??));
+        all.push(Percentiles::of(thread.join().map_err(|_| "a thread panicked: standard error has its message")??));
     }
     Ok(all)
 }

@@ -19,7 +19,8 @@ const SET_POINTS: [([f64; 3], f64); 6] = [
     // Beyond the soft limit of joint 2, which pushes back.
     ([0.0, 0.5, -0.3], 1.0),
     ([0.2, 0.9, 1.5], 0.3),
-    // Stiffer than the tendons, so that first the stiffness and then the torque is scaled.
+    // Stiffer than the tendons can support. In a cycle, the controller first scales the stiffness down. If the tensions
+    // would still be too large, it also scales the torque down.
     ([0.5, 0.3, 0.7], 40.0),
     ([0.0, 0.5, 1.0], 1.0),
 ];
@@ -33,8 +34,8 @@ const STIFFNESS: Matrix3<f64> = Matrix3::new(
 
 pub const CYCLES: usize = CYCLES_A_SET_POINT * SET_POINTS.len();
 
-/// Index of the set point during which the fingertip is pushed, and the force, N. The tendons cannot withstand this
-/// force.
+/// Index of the set point during which the fingertip is pushed, and the force, N. The tensions that the configuration
+/// permits cannot balance this force.
 const PUSHED: usize = 3;
 const PUSH: Vector3<f64> = Vector3::new(0.0, 8.0, 25.0);
 
@@ -55,7 +56,8 @@ pub struct Recording {
 
 impl Recording {
     pub fn new(finger: ConfiguredFinger) -> Result<Self, Box<dyn Error>> {
-        let controller = Controller::new(&finger, RATE).map_err(|unusable| unusable.reason)?;
+        let controller = Controller::new(&finger, RATE)
+            .map_err(|unusable| format!("finger.{}: {}", unusable.key, unusable.reason))?;
         let mut plant = Plant::new(&finger, Vector3::zeros())?;
         let mut sensors = Sensors::new(&finger);
         plant.release_brake();

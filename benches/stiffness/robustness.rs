@@ -1,4 +1,5 @@
-//! Measures fingers that differ from the controller's configuration, for rows of the table in docs/stiffness.md.
+//! Measures fingers that differ from the controller's configuration, for the rows of `table.rs` on motor constants and
+//! tendon stiffness.
 
 use crate::cases::{Case, Friction, stiffen};
 use crate::closed_loop::{Held, Senses};
@@ -11,21 +12,22 @@ use sun2xp::model::configuration::ConfiguredFinger;
 
 /// Measures the apparent stiffness of a finger that differs from the controller's configuration. There is no friction
 /// and the sensors are exact, so that only the wrong configuration causes the error.
-fn believing_otherwise(case: &Case, stiffness: f64, differ: impl Fn(&mut ConfiguredFinger) + Sync) -> Fidelity {
-    believing(case, stiffness, |finger, _| differ(finger))
+fn fidelity_of_changed_finger(case: &Case, stiffness: f64, change: impl Fn(&mut ConfiguredFinger) + Sync) -> Fidelity {
+    fidelity_after_changes(case, stiffness, |finger, _| change(finger))
 }
 
-/// Does the same as [`believing_otherwise`], but the configuration may differ from the default too.
-fn believing(
+/// Does the same as [`fidelity_of_changed_finger`], but `change` may change the controller's configuration, its second
+/// argument, too.
+fn fidelity_after_changes(
     case: &Case,
     stiffness: f64,
-    differ: impl Fn(&mut ConfiguredFinger, &mut ConfiguredFinger) + Sync,
+    change: impl Fn(&mut ConfiguredFinger, &mut ConfiguredFinger) + Sync,
 ) -> Fidelity {
     Fidelity::worst(&each(&case.poses(), |_, pose| {
         let kx = Matrix3::identity() * stiffness;
         let mut belief = case.finger(pose, Friction::None);
         let mut finger = belief.clone();
-        differ(&mut finger, &mut belief);
+        change(&mut finger, &mut belief);
         let (finger, belief) = (&finger, &belief);
         statics::fidelity(&Held { case, finger, belief, pose, kx: &kx, senses: Senses::Exact })
     }))
@@ -39,43 +41,45 @@ pub const MOTOR_CONSTANTS: [[f64; 4]; 4] = [[1.2; 4], [0.8; 4], [1.2, 0.8, 1.2, 
 /// all tendons, or different signs.
 pub const TENDONS: [[f64; 4]; 4] = [[1.1; 4], [0.9; 4], [1.1, 0.9, 1.1, 0.9], [1.1, 0.9, 0.9, 1.1]];
 
-/// Returns the worst result over motors with each of these ratios.
+/// Returns the worst result over the entries of `ratios`. Each entry has the ratios of the four motors of one finger.
 pub fn motor_constants(case: &Case, stiffness: f64, ratios: &[[f64; 4]]) -> Fidelity {
     let with = |ratio: &[f64; 4]| {
-        believing_otherwise(case, stiffness, |finger| finger.simulation.motor_constant_ratio = *ratio)
+        fidelity_of_changed_finger(case, stiffness, |finger| finger.simulation.motor_constant_ratio = *ratio)
     };
     Fidelity::worst(&ratios.iter().map(with).collect::<Vec<_>>())
 }
 
-/// Returns the worst result over tendons with each of these ratios.
+/// Returns the worst result over the entries of `ratios`. Each entry has the ratios of the four tendons of one finger.
 pub fn tendon_stiffness(case: &Case, stiffness: f64, ratios: &[[f64; 4]]) -> Fidelity {
-    let with = |ratio: &[f64; 4]| believing_otherwise(case, stiffness, |finger| stiffen(finger, ratio));
+    let with = |ratio: &[f64; 4]| fidelity_of_changed_finger(case, stiffness, |finger| stiffen(finger, ratio));
     Fidelity::worst(&ratios.iter().map(with).collect::<Vec<_>>())
 }
 
-/// Measures tendons with each of these ratios after identification. Returns the worst relative error of an identified
-/// tendon stiffness, and how well the tip is the commanded spring at each of the tip stiffnesses `stiffnesses`.
+/// Identifies the tendons of one finger for each entry of `ratios`, and then measures the finger. Each entry has the
+/// ratios of the four tendons. Returns the worst relative error of an identified tendon stiffness, and the worst
+/// [`Fidelity`] for each of the tip stiffnesses `stiffnesses`.
 pub fn identified_tendons(
     case: &Case,
     stiffnesses: [f64; 2],
     ratios: &[[f64; 4]],
 ) -> Result<(f64, [Fidelity; 2]), Obstacle> {
     let found = each(ratios, |_, ratio| identification::tendon_stiffness(case, ratio));
-    let mut off = 0.0;
+    let mut worst_error = 0.0;
     let mut worst_of = [Fidelity { error: 0.0, scale: 1.0 }; 2];
     for (ratio, found) in ratios.iter().zip(found) {
         let found = found?;
         let mut truth = ConfiguredFinger::default();
         stiffen(&mut truth, ratio);
         let truth = truth.simulation.tendon_stiffness;
-        off = worst((0..4).map(|tendon| (found[tendon] / truth[tendon] - 1.0).abs()).chain([off]));
+        let errors = (0..4).map(|tendon| (found[tendon] / truth[tendon] - 1.0).abs());
+        worst_error = worst(errors.chain([worst_error]));
         for (so_far, stiffness) in worst_of.iter_mut().zip(stiffnesses) {
-            let differ = |finger: &mut ConfiguredFinger, belief: &mut ConfiguredFinger| {
+            let change = |finger: &mut ConfiguredFinger, belief: &mut ConfiguredFinger| {
                 finger.simulation.tendon_stiffness = truth;
                 belief.tendon.stiffness = found;
             };
-            *so_far = Fidelity::worst(&[*so_far, believing(case, stiffness, differ)]);
+            *so_far = Fidelity::worst(&[*so_far, fidelity_after_changes(case, stiffness, change)]);
         }
     }
-    Ok((off, worst_of))
+    Ok((worst_error, worst_of))
 }

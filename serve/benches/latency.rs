@@ -73,15 +73,15 @@ impl Measured {
             command.arg("--folder").arg(folder);
         }
         let mut child = command.stdout(Stdio::piped()).spawn()?;
-        let output = BufReader::new(child.stdout.take().ok_or("no pipe")?);
+        let output = BufReader::new(child.stdout.take().expect("its standard output is a pipe"));
         let reading = std::thread::spawn(move || output.lines().map_while(Result::ok).collect::<Vec<_>>());
         let records = records_until(&offer, || reading.is_finished());
         let status = child.wait()?;
-        let sent = reading.join().map_err(|_| "the reading thread panicked")?;
+        let sent = reading.join().map_err(|_| "the reading thread panicked: standard error has its message")?;
         let sent = sent.iter().map(|line| line.parse()).collect::<Result<Vec<u64>, _>>()?;
         self.sent += sent.len() as u32;
         self.latencies.extend(latencies(&sent, &records?));
-        if status.success() { Ok(()) } else { Err("the client has ended early".into()) }
+        if status.success() { Ok(()) } else { Err("the client has ended early: standard error has its message".into()) }
     }
 }
 
@@ -131,7 +131,7 @@ fn print(arguments: &Arguments, measured: &Measured) {
     );
     println!("|---|---|---|---|---|");
     if latencies.is_empty() {
-        println!("| not measured, because faults disturbed every measurement | | | | {goal:.0} us |");
+        println!("| not measured, because every measurement failed or was skipped | | | | {goal:.0} us |");
         return;
     }
     let [median, p99, p999] = [0.5, 0.99, 0.999].map(|part| percentile(latencies, part));

@@ -106,7 +106,7 @@ fn print(arguments: &Arguments, measured: &[[WakeUp; 3]], attempts: &Attempts) {
     let names = ["server alone".to_owned(), format!("{clients}, at another server"), clients];
     for (side, name) in names.iter().enumerate() {
         if measured.is_empty() {
-            println!("| {name} | not measured, because faults disturbed every measurement | |");
+            println!("| {name} | not measured, because every measurement failed or was skipped | |");
             continue;
         }
         let [median, p999] = [0, 1].map(|which| middle(measured.iter().map(|turn| turn[side][which])));
@@ -150,9 +150,9 @@ impl Other {
         let mut command = Command::new(std::env::current_exe()?);
         command.args(["--role", "server"]).args(plain.then_some("--plain")).stdin(Stdio::piped());
         let mut child = command.stdout(Stdio::piped()).spawn()?;
-        let mut lines = BufReader::new(child.stdout.take().ok_or("no pipe")?).lines();
+        let mut lines = BufReader::new(child.stdout.take().expect("its standard output is a pipe")).lines();
         let mut other = Self { child, endpoint: String::new(), folder: None };
-        let mut line = || lines.next().ok_or("the other server did not start");
+        let mut line = || lines.next().ok_or("the other server did not start: standard error has its message");
         other.endpoint = line()??;
         other.folder = if plain { None } else { Some(line()??) };
         Ok(other)
@@ -202,7 +202,7 @@ impl Clients {
     fn check(&mut self) -> Result<(), Failure> {
         for child in &mut self.0 {
             if child.try_wait()?.is_some() {
-                return Err("a client has ended early".into());
+                return Err("a client has ended early: standard error has its message".into());
             }
         }
         Ok(())

@@ -1,5 +1,5 @@
 //! Tests parts of the benchmarks: how they go on when other work on the machine disturbs them, which cores `realtime`
-//! watches, and how `handwritten` compares torques.
+//! watches, how it reads the output of cyclictest, and how `handwritten` compares torques.
 
 #[path = "../../benches/handwritten/agreement.rs"]
 mod agreement;
@@ -9,6 +9,9 @@ mod attempts;
 mod beside_other_work;
 #[path = "../../benches/realtime/cores.rs"]
 mod cores;
+#[allow(dead_code, reason = "cyclictest is not run here")]
+#[path = "../../benches/realtime/cyclictest.rs"]
+mod cyclictest;
 #[path = "../../benches/realtime/delays.rs"]
 mod delays;
 mod disturbed;
@@ -42,7 +45,7 @@ mod turns;
 mod under_control;
 
 use agreement::{apart, larger};
-use attempts::{Attempts, MOST_DISTURBED};
+use attempts::{Attempts, MOST_FAILED};
 use std::error::Error;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -65,8 +68,8 @@ fn a_disturbed_measurement_is_repeated() {
     let mut attempts = Attempts::default();
     let mut results = [Err("a finger has faulted"), Err("a finger has faulted"), Ok(7)].into_iter();
     assert_eq!(attempts.measure("some", || results.next().expect("a result")), Some(7));
-    assert_eq!((attempts.disturbed, attempts.skipped), (2, 0));
-    let said = "2 measurements were disturbed by faults, and 0 were skipped because of them";
+    assert_eq!((attempts.failed, attempts.skipped), (2, 0));
+    let said = "2 measurements failed, and 0 were skipped because too many had failed";
     assert_eq!(attempts.to_string(), said);
     assert_eq!(attempts.check([("some", 1)]), Ok(()));
 }
@@ -75,12 +78,29 @@ fn a_disturbed_measurement_is_repeated() {
 fn measurements_that_are_skipped_are_counted_and_a_missing_result_is_an_error() {
     let mut attempts = Attempts::default();
     assert_eq!(fails(&mut attempts), None);
-    assert_eq!((attempts.disturbed, attempts.skipped), (MOST_DISTURBED, 1));
+    assert_eq!((attempts.failed, attempts.skipped), (MOST_FAILED, 1));
     let unexpected = || -> Result<u32, &str> { panic!("too many have failed") };
     assert_eq!(attempts.measure("others", unexpected), None);
-    assert_eq!((attempts.disturbed, attempts.skipped), (MOST_DISTURBED, 2));
+    assert_eq!((attempts.failed, attempts.skipped), (MOST_FAILED, 2));
     let error = attempts.check([("some", 1), ("failing", 0), ("others", 0)]).expect_err("nothing was measured");
-    assert!(error.contains("failing, others: 10 measurements were disturbed, and 2 were skipped"), "{error}");
+    assert!(error.contains("failing, others: 10 measurements failed, and 2 were skipped"), "{error}");
+}
+
+#[test]
+fn a_number_that_cyclictest_did_not_print_is_named_with_the_remedy() {
+    let printed = "# Histogram\n000002 000001 000000 000002\n# Max Latencies: 00002 00003 00004\n\
+                   # Histogram Overflows: 00000 00001 00000\n";
+    let measured = cyclictest::measurements(printed).unwrap_or_else(|error| panic!("{error}"));
+    let counted: Vec<_> = measured.iter().map(|thread| (thread.count, thread.late, thread.latency.maximum)).collect();
+    assert_eq!(counted, [(1, 0, 0.002), (1, 1, 0.003), (2, 0, 0.004)]);
+    for (good, wrong) in [("000001 ", "1us "), ("00003 ", "3us "), ("00000 00001", "0us 00001")] {
+        let word = wrong.split_whitespace().next().expect("a word");
+        let error = cyclictest::measurements(&printed.replace(good, wrong)).err().expect("no number");
+        assert!(error.contains(&format!("cyclictest printed \"{word}\" in place of a number")), "{error}");
+        assert!(error.contains("install another version of rt-tests"), "{error}");
+    }
+    let error = cyclictest::measurements("").err().expect("no line");
+    assert!(error.starts_with("cyclictest printed no line \"# Histogram Overflows:\""), "{error}");
 }
 
 #[test]

@@ -90,7 +90,8 @@ struct Measured {
 
 /// Measures one failure: lets it happen `repetitions` times.
 fn repeated(failure: Failure, repetitions: u32) -> Measured {
-    let line = Line::new(1).unwrap_or_else(|error| panic!("namespaces and tun interfaces need root: {error}"));
+    let line = Line::new(1)
+        .unwrap_or_else(|error| panic!("namespaces and tun interfaces need root and the device /dev/net/tun: {error}"));
     let mut rig = Rig::new(line, &format!("{failure:?}"), CATCH_MS);
     // The server creates threads and buffers when the first planners connect.
     for _ in 0..3 {
