@@ -112,8 +112,10 @@
 
    for the element type of all its arrays. SendPos, SendKx and GetPos are then plain functions for
    that type; for double they are renamed to SendPosD, SendKxD and GetPosD. The planner's
-   declarations may be int SendPos(); or those of this header. For any other declarations, compile
-   instead with -DSUN2XP_H, which leaves out this header. For double, this also needs
+   declarations may be int SendPos(); or those of this header. With gcc 15 or newer, int SendPos();
+   also needs -std=gnu89, because it declares a function without parameters in C23, the default of that
+   compiler. For any other declarations, compile instead with -DSUN2XP_H, which leaves out this header.
+   For double, this also needs
 
        -DSendPos=SendPosD -DSendKx=SendKxD -DGetPos=GetPosD
 
@@ -126,8 +128,11 @@
 
        #include "Sun2Xp.c"        works, also in several files of a program: it includes this header
        K&R source                 gcc -std=gnu89
-       no include at all          the plain symbols take float; for double compile with
-                                  -DSendPos=SendPosD -DSendKx=SendKxD -DGetPos=GetPosD
+       no include at all          gcc -std=gnu89, unless the planner declares all calls with their parameters.
+                                  Without this option, gcc 14, clang 16 and newer versions refuse a call that
+                                  is not declared, and gcc 15 refuses arguments for a function that is
+                                  declared without parameters. The plain symbols take float; for double
+                                  also add -DSendPos=SendPosD -DSendKx=SendKxD -DGetPos=GetPosD
        return values ignored      see the line on standard error (chapter 2)
        the planner's functions    no conflict: this header declares only OpenHand, SendPos, SendKx, GetPos,
                                   CloseHand and HandError, and SendPosD, SendKxD and GetPosD for double. The

@@ -138,7 +138,8 @@
    Sandbox: install a sandbox (seccomp) before a hand is opened. If it forbids a system call that threads,
    waits, ports or pseudo-terminals need, opening is refused with the errno of the sandbox.
 
-   Slow calls: a slow call runs in a thread of the library, and the program's thread waits for it. The slow
+   Slow calls: a slow call runs in a thread of the library, and the program's thread waits for it. If no
+   such thread can be started, a call that closes a hand runs in the program's thread instead. The slow
    calls are those that open or close a hand, sun2xp_recover, sun2xp_zero, sun2xp_identify, sun2xp_adjust,
    sun2xp_write_black_box, sun2xp_wait, sun2xp_on_event, sun2xp_event_descriptor and, while there is no
    event, sun2xp_wait_event. A signal handler may jump out of the wait for a slow call (siglongjmp). The
@@ -789,7 +790,8 @@ struct sun2xp_tip {
     int force_directions;                   /* Number of directions in which the member force can be computed, 0 to
                                                3. */
     double position[3];                     /* Position of the tip: x, y, z, cm. */
-    double force[3];                        /* Force of the tip on an object, with friction and weight: x, y, z, N. */
+    double force[3];                        /* Force of the tip on an object, with friction, weight, inertia: x, y,
+                                               z, N. */
     double tensions[4];                     /* Measured tendon tensions, N. */
     double stiffness[3][3];                 /* Stiffness of the tip in its present pose, N/cm, row by row. */
     double contact_force[3];                /* Force of the tip on an object, without friction, weight, inertia: x,
@@ -1052,9 +1054,9 @@ struct sun2xp_set_point {
  refused, no finger gets its command.
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
- "board" the periods of the threads follow different clocks. Then a finger may follow one of the groups one
- period later than the other fingers do. This happens at most about once in the time in which the drift
- between two of the clocks grows by one period.
+ "board" the periods of the threads follow different clocks, and the difference between two of these clocks
+ changes slowly. In the time in which it changes by one period, at most about one group takes effect one
+ period later in a finger than in the other fingers.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1098,8 +1100,8 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
  at the joint angles that were computed for it. If a reflex has replaced the set point that was sent last,
  the condition must hold for the set point of the reflex. The same applies if the finger ignored the set
  point because a reflex inhibits set points for some time. The wait then returns only after this time. If
- the set point that was sent last has expired, the condition must hold for the pose that the finger holds
- since then. The event SUN2XP_EVENT_REFLEX_FIRED reports the reaction of a reflex, and the event
+ the set point that was sent last has expired, the condition must be true for the pose in which the finger
+ has stayed since then. The event SUN2XP_EVENT_REFLEX_FIRED reports the reaction of a reflex, and the event
  SUN2XP_EVENT_EXPIRED reports that a set point has expired. Other calls work during the wait. sun2xp_close
  works too, and then the wait is refused.
 
@@ -1905,9 +1907,9 @@ const char *sun2xp_fault_text(int number);
  sun2xp_stop_all - emergency stop
 
  Every finger of every open hand faults (SUN2XP_FAULT_EMERGENCY_STOP_CALL) at the start of its next cycle. The servo
- commands its board to enter the configured end state. Calls that command the finger or read its pose are
- refused with EIO until sun2xp_recover, or sun2xp_close and sun2xp_open. A hand that is opened later is not
- affected.
+ commands its board to bring the motors of the finger into the configured end state. Calls that command the
+ finger or read its pose are refused with EIO until sun2xp_recover, or sun2xp_close and sun2xp_open. A hand
+ that is opened later is not affected.
 
  With hand.end_state = "release", the default, the torque goes to zero at once. With "hold" the motors
  keep their last torque, up to hand.hold_torque_limit, for hand.hold_time_ms, by default 2 s and at most
@@ -1940,11 +1942,11 @@ int sun2xp_stop_all(void);
 
    finger   1 to 3, or SUN2XP_ALL_FINGERS
 
- The finger faults (SUN2XP_FAULT_STOP_CALL) at the start of its next cycle, and its board enters the
- configured end state, as with sun2xp_stop_all. The other fingers continue, unless hand.on_fault is
- "hand". The finger stays stopped until sun2xp_recover, or sun2xp_close and sun2xp_open. A finger that
- has faulted already stays as it is. Like sun2xp_stop_all, sun2xp_stop is not a safety function. Unlike
- sun2xp_stop_all, it must not be called in a signal handler.
+ The finger faults (SUN2XP_FAULT_STOP_CALL) at the start of its next cycle, and its motors enter the
+ configured end state, as with sun2xp_stop_all. The other fingers continue, also those on the same board,
+ unless hand.on_fault is "hand". The finger stays stopped until sun2xp_recover, or sun2xp_close and
+ sun2xp_open. A finger that has faulted already stays as it is. Like sun2xp_stop_all, sun2xp_stop is not a
+ safety function. Unlike sun2xp_stop_all, it must not be called in a signal handler.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -2029,7 +2031,8 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
    EINVAL     no such finger; or the configuration file has changed, and the zeros do not fit it:
               they are in force until sun2xp_close and not stored
    EIO        the finger is faulted. If it faulted after its zeros were found, they are in force. The next
-              sun2xp_zero or sun2xp_identify that succeeds for this finger stores them
+              sun2xp_identify that succeeds for this finger stores them. If a sun2xp_zero succeeds before
+              that, it stores the zeros that it has found instead
    EBUSY      the finger is being calibrated or recovered already
    ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
               joint meets no stop or meets it too early ...). sun2xp_error_text gives the remedy. The finger
@@ -2042,7 +2045,8 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
    ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
    EACCES, ENOSPC, EBUSY ...  the configuration file cannot be written, or another process has kept it
               locked for 30 s. The zeros are in force until sun2xp_close. If the results of a later
-              calibration of this finger can be stored, these zeros are stored with them
+              sun2xp_identify of this finger can be stored, these zeros are stored with them. A later
+              sun2xp_zero that succeeds replaces them
 
  Threads: any.
 
@@ -2273,8 +2277,9 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
  member refractory is above 0, the rule also fires again after this time while its condition stays true.
  After a reaction, the finger ignores set points of the planner for the time in the member inhibition. For
  SUN2XP_THEN_GRIP, the member position is the direction in the finger's frame in which the tip presses
- harder; 0, 0, 0 stands for the direction in which its spring presses. In both cases, if the component of the
- spring's force in this direction is below 0.05 N, the reaction changes no set point, but a path still ends.
+ harder; 0, 0, 0 stands for the direction in which its spring presses. If the component of the spring's
+ force in the given direction, or in the one that 0, 0, 0 stands for, is below 0.05 N, the reaction changes
+ no set point, but a path still ends.
  */
 struct sun2xp_reflex {
     size_t size;                            /* sizeof (struct sun2xp_reflex), set before the call. */

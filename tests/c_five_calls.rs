@@ -1,5 +1,6 @@
-//! A planner that knows only the calls of 1990. Its own functions, types and constants have names that a library for a
-//! hand could use too, such as `GetFault`.
+//! A planner that knows only the calls of `Sun2Xp.h`: the five calls of 1990, their forms for arrays of double, and
+//! HandError. Its own functions, types and constants have names that a library for a hand could use too, such as
+//! `GetFault`.
 
 #[allow(dead_code)]
 mod c;
@@ -49,7 +50,11 @@ fn the_shared_library_does_not_call_functions_of_the_planner() {
     let relocations = said(&run);
     assert!(run.status.success() && uses(&relocations, "pthread_create"), "{relocations}");
     for name in later_symbols() {
-        assert!(!uses(&relocations, &name), "the library refers to its own {name} by name");
+        assert!(
+            !uses(&relocations, &name),
+            "the library refers to its own {name} by name, so the dynamic linker could bind this to a function of the \
+             planner. Call the Rust function that {name} calls"
+        );
     }
 }
 

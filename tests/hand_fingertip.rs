@@ -265,6 +265,7 @@ fn a_finger_that_holds_a_pose_beyond_a_limit_can_be_adjusted() {
     hand.adjust(1, "events.arrived_degrees = 3").expect("adjusted");
     taken_in(&hand, 1);
     assert_eq!(hand.report(1).expect("report").set_point.joints, found);
-    let refused = hand.adjust(1, "joints.maximum_degrees = [60, 99, 120]");
-    assert!(matches!(refused, Err(HandError::SetPoint(SetPointError::BeyondJointLimit { .. }))), "{refused:?}");
+    let refused = hand.adjust(1, "joints.maximum_degrees = [60, 99, 120]").expect_err("99 degrees are 1.73 rad");
+    assert!(matches!(refused, HandError::SetPoint(SetPointError::SentBeyondJointLimit { joint: 1, .. })), "{refused}");
+    assert_eq!(refused.errno(), libc::ERANGE);
 }

@@ -14,6 +14,8 @@ from sun2xp.remote import _messages
 STATUS = struct.Struct("<BBBxIIIQ3d8Q")
 FINGER = struct.Struct("<BxHIQQQQ3d3dddB71s")
 TARGET = struct.Struct("<BBBxIQQQQ")
+#: The beginning of the text of a fault that a Status contains: 71 bytes, here cut in the middle of a word.
+LOST = b"lost replies (17 ms): the board has sent no valid reply for too long; t"
 PART = struct.Struct("<BBBBI3d9dd")
 
 
@@ -29,7 +31,7 @@ def status(turn=0.5, fault=0):
     head = STATUS.pack(4, 1, 7, 100, 10_000, 1, time.monotonic_ns(), 1000.0, 10.0, 1.0, *range(8))
     numbers = (5, 0, 0, 0, -turn, 0.0, 0.0, turn, 1.5, 1.5, 4.0, 0.0)
     finger = FINGER.pack(3, 0, 0, *numbers, 0, b"")
-    second = FINGER.pack(6, fault, 0, *numbers, 4, b"lost") if fault else finger
+    second = FINGER.pack(6, fault, 0, *numbers, len(LOST), LOST) if fault else finger
     return head + finger + second + finger + b"\x07planner"
 
 

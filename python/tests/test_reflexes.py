@@ -59,7 +59,7 @@ def test_a_simulated_object_has_a_state():
 
 
 def test_touch_without_elements_is_refused(shared):
-    with pytest.raises(sun2xp.Refused, match="0 tactile elements"):
+    with pytest.raises(sun2xp.Refused, match="lists 0 elements"):
         shared.touch(1, 0)
     assert shared.lost_touch_events(1) == 0 and shared.tare_touch(1) == []
 

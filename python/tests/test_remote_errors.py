@@ -41,6 +41,13 @@ def test_an_error_has_number_errno_and_remedy(remote, call, number, system):
     assert error.remedy and error.text.endswith(error.remedy)
 
 
+def test_joint_angles_have_the_name_of_the_argument(remote):
+    with pytest.raises(sun2xp.Refused, match=r"^position has the shape \(2,\): pass an array with the shape \(3,\)"):
+        remote.send_position(1, [0.0, 0.0])
+    with pytest.raises(sun2xp.Refused, match=r"^joints is \[\[0.0, nan, 0.0\]\]: pass finite numbers"):
+        remote.send_path(1, [1.0], [[0.0, float("nan"), 0.0]])
+
+
 def test_a_hand_that_is_closed_or_lost_is_named_with_its_remedy(server, remote):
     server.state(owner=server.number + 1)
     with pytest.raises(sun2xp.remote.NotOwner) as lost:
@@ -80,6 +87,9 @@ def test_the_number_of_a_refusal_is_its_reason(server, remote, code, number):
     with pytest.raises(sun2xp.Refused) as refused:
         remote.send_position(1, HOME)
     assert (refused.value.number, refused.value.remedy) == (number, "recover it")
+    # The text of the refusal concerns the earlier set point, and not that of this call.
+    assert refused.value.text.startswith("the hand has refused an earlier set point, and keeps the set point before it")
+    assert "it was not sent: send it again. Reason of the refusal: finger 1 is faulted" in refused.value.text
 
 
 def test_the_refusals_of_several_fingers_are_separated(server, remote):
@@ -88,7 +98,7 @@ def test_the_refusals_of_several_fingers_are_separated(server, remote):
         server.refuse(server.targets[-1][0], f"finger {finger} is faulted: recover finger {finger}")
     with pytest.raises(sun2xp.Refused) as refused:
         remote.wait(timeout=0)
-    assert refused.value.text == "finger 1 is faulted: recover finger 1; finger 2 is faulted: recover finger 2"
+    assert refused.value.text.endswith(": finger 1 is faulted: recover finger 1; finger 2 is faulted: recover finger 2")
 
 
 @pytest.mark.parametrize(
@@ -107,14 +117,20 @@ def test_a_request_that_fails_refuses_no_argument(server, remote, call, number):
     assert not isinstance(failed.value, sun2xp.Refused) and failed.value.number == number
 
 
-def test_a_fault_is_raised_although_the_server_does_not_tell_its_text(server, remote, monkeypatch):
-    remote.send_position(1, HOME)
-    server.records["stage"][0], server.records["fault"][0] = _messages.STAGES.index("faulted"), 10
+@pytest.mark.parametrize(("told", "name"), [(True, ": lost replies (17 ms)"), (False, "")])
+def test_a_fault_has_its_name_unless_the_server_does_not_tell_it(server, remote, monkeypatch, told, name):
+    """The text of the fault in a Status ends in the middle of a word. Only its beginning is shown."""
+    remote.send_position(2, HOME)
+    server.records["stage"][1], server.records["fault"][1] = _messages.STAGES.index("faulted"), 13
+    server.status = {"fault": 13}
     server.apply()
-    monkeypatch.setattr(server, "get", lambda *_: [])
+    if not told:
+        monkeypatch.setattr(server, "get", lambda *_: [])
     with pytest.raises(sun2xp.Fault) as fault:
-        remote.wait(1, timeout=0)
-    assert (fault.value.finger, fault.value.fault) == (1, 10) and "hand.recover(1)" in fault.value.remedy
+        remote.wait(2, timeout=0)
+    assert (fault.value.finger, fault.value.fault) == (2, 13)
+    assert fault.value.remedy == "remove the cause (docs/faults.md), and call hand.recover(2)"
+    assert fault.value.text == f"finger 2 is faulted (fault 13){name}: {fault.value.remedy}"
 
 
 def test_an_event_has_the_values_of_its_kind(server, remote):

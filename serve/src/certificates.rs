@@ -126,7 +126,7 @@ fn files(folder: &Path, name: &str) -> [PathBuf; 2] {
 fn issuer(folder: &Path, user: u32, made: &mut Vec<PathBuf>) -> Result<Issuer<'static, KeyPair>, ServeError> {
     let [certificate, key] = files(folder, AUTHORITY);
     let named = params(authority::NAME, Vec::new(), AUTHORITY_VALIDITY);
-    let mut params = named.map_err(|error| ServeError::certificate(&certificate, error))?;
+    let mut params = named.map_err(|error| unmade(&certificate, &error))?;
     params.is_ca = IsCa::Ca(BasicConstraints::Constrained(0));
     params.key_usages = vec![KeyUsagePurpose::KeyCertSign, KeyUsagePurpose::CrlSign];
     if is_there(&certificate) || is_there(&key) {
@@ -134,8 +134,8 @@ fn issuer(folder: &Path, user: u32, made: &mut Vec<PathBuf>) -> Result<Issuer<'s
         // the stored key give the same authority.
         return Ok(Issuer::new(params, authority::read(&certificate, &key, user)?));
     }
-    let pair = KeyPair::generate().map_err(|error| ServeError::certificate(&key, error))?;
-    let signed = params.self_signed(&pair).map_err(|error| ServeError::certificate(&certificate, error))?;
+    let pair = KeyPair::generate().map_err(|error| unmade(&key, &error))?;
+    let signed = params.self_signed(&pair).map_err(|error| unmade(&certificate, &error))?;
     write(&certificate, &key, &signed, &pair, made)?;
     Ok(Issuer::new(params, pair))
 }
@@ -164,13 +164,17 @@ fn leaf(
     if !addresses.is_empty() {
         uses.push(ExtendedKeyUsagePurpose::ServerAuth);
     }
-    let mut params =
-        params(name.as_str(), addresses, VALIDITY).map_err(|error| ServeError::certificate(&certificate, error))?;
+    let mut params = params(name.as_str(), addresses, VALIDITY).map_err(|error| unmade(&certificate, &error))?;
     params.key_usages = vec![KeyUsagePurpose::DigitalSignature];
     params.extended_key_usages = uses;
-    let pair = KeyPair::generate().map_err(|error| ServeError::certificate(&key, error))?;
-    let signed = params.signed_by(&pair, issuer).map_err(|error| ServeError::certificate(&certificate, error))?;
+    let pair = KeyPair::generate().map_err(|error| unmade(&key, &error))?;
+    let signed = params.signed_by(&pair, issuer).map_err(|error| unmade(&certificate, &error))?;
     write(&certificate, &key, &signed, &pair, made)
+}
+
+/// The error for a file that rcgen cannot make. Names and addresses have been checked, so the cause is not in them.
+fn unmade(path: &Path, error: &rcgen::Error) -> ServeError {
+    ServeError::certificate(path, format!("{error}. This is a defect of the server: please report it"))
 }
 
 fn params(name: &str, addresses: Vec<String>, validity: Duration) -> Result<CertificateParams, rcgen::Error> {

@@ -1,5 +1,6 @@
 //! The errors of the server, each with its cause and its remedy.
 
+use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 use sun2xp::realtime::with_remedy;
@@ -78,6 +79,12 @@ impl ServeError {
         Self::System { doing, reason: with_remedy(error) }
     }
 
+    /// The error for a key that Zenoh refuses to declare.
+    pub(crate) fn undeclared(key: &str, error: impl Display) -> Self {
+        let reason = format!("{error}. Start the server again. If this happens again, please report this defect");
+        Self::Network { doing: format!("declare the Zenoh key {key}"), reason }
+    }
+
     /// The error about this file of a certificate, or about the folder of the certificates.
     pub(crate) fn certificate(path: &Path, reason: impl ToString) -> Self {
         Self::Certificate { path: path.into(), reason: reason.to_string() }
@@ -92,5 +99,12 @@ mod tests {
     fn a_refused_thread_has_a_remedy() {
         let refused = ServeError::refused("start a thread", &io::Error::from_raw_os_error(libc::EAGAIN)).to_string();
         assert!(refused.starts_with("cannot start a thread: ") && refused.contains("(ulimit -u)"), "{refused}");
+    }
+
+    #[test]
+    fn a_refused_key_has_a_remedy() {
+        let refused = ServeError::undeclared("sun2xp/left/state", "the session is closed").to_string();
+        assert!(refused.starts_with("cannot declare the Zenoh key sun2xp/left/state: the session is"), "{refused}");
+        assert!(refused.contains(". Start the server again"), "{refused}");
     }
 }

@@ -1,4 +1,6 @@
-//! Who owns the hand: at most one client. Messages with the epoch of an earlier owner are refused.
+//! Who owns the hand: at most one client. Each successful acquire begins an epoch, which is named by a secret random
+//! number. Targets, and all Requests except acquire and stop, are accepted only with the epoch in force
+//! (docs/remote-protocol.md).
 
 use sun2xp_remote_protocol::ClientName;
 
@@ -7,9 +9,9 @@ use sun2xp_remote_protocol::ClientName;
 pub struct Owner {
     /// The client.
     pub client: ClientName,
-    /// The epoch, which only the owner knows. It is not 0.
+    /// The epoch: a random number that is not 0. Of the clients, only the owner knows it.
     pub epoch: u64,
-    /// The number of the epoch. Later epochs have higher numbers.
+    /// The public number of the epoch. Later epochs have higher numbers.
     pub number: u64,
 }
 

@@ -46,10 +46,7 @@ impl Publishing {
     pub fn new(shared: &Arc<Shared>, session: &Session) -> Result<Self, ServeError> {
         let declare = |key: String| {
             let publisher = session.declare_publisher(key.clone()).congestion_control(CongestionControl::Drop);
-            publisher.express(true).wait().map_err(|error| ServeError::Network {
-                doing: format!("declare the Zenoh key {key}"),
-                reason: error.to_string(),
-            })
+            publisher.express(true).wait().map_err(|error| ServeError::undeclared(&key, error))
         };
         let events = shared.hand.events();
         events.clear();

@@ -36,7 +36,10 @@ pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload:
         Err(error) => {
             shared.desk.lock().count_malformed();
             return reply.send(&match error {
-                DecodeError::Version { .. } => refuse(Code::OtherVersion, error.to_string()),
+                DecodeError::Version { .. } => {
+                    let text = format!("{error}: use a client and a server of the same version");
+                    refuse(Code::OtherVersion, text)
+                }
                 _ => refuse(Code::Malformed, format!("{error}. {DEFECTIVE}")),
             });
         }
@@ -52,7 +55,8 @@ pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload:
         Some(_) if action == Action::Stop => {}
         _ => {
             let text = format!(
-                "{client} may not {}: list it in [serve.clients] of the server as `\"{client}\" = \"command\"`",
+                "the client {client} may not make the request `{}`: list the client in [serve.clients] of the server \
+                 as `\"{client}\" = \"command\"`",
                 action.name()
             );
             return reply.send(&refuse(Code::NotOwner, text));

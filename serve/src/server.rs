@@ -129,7 +129,7 @@ impl Server {
 }
 
 fn refused(what: &'static str) -> impl Fn(zenoh::Error) -> ServeError {
-    move |error| ServeError::Network { doing: format!("declare the Zenoh key {what}"), reason: error.to_string() }
+    move |error| ServeError::undeclared(what, error)
 }
 
 /// Advances set points and checks the silence of the owner, until the server ends.

@@ -34,7 +34,7 @@ pub fn open(settings: &Settings, access: &str, largest: u16) -> Result<Session, 
     let doing = format!(
         "{}{}",
         listed("listen at ", &settings.listen),
-        listed(if settings.listen.is_empty() { "connect to " } else { ", connect to " }, &settings.connect)
+        listed(if settings.listen.is_empty() { "connect to " } else { " or connect to " }, &settings.connect)
     );
     let failed = |reason: String| ServeError::Network { doing: doing.clone(), reason };
     let opening = spawn("sun2xp network", Priority::default(), move |_| zenoh::open(config).wait());

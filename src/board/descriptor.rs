@@ -15,9 +15,9 @@ const LOWEST: RawFd = 512;
 
 /// If the process may have only few descriptors, our numbers begin at this fraction (numerator, denominator) of the
 /// permitted number.
-const BELOW: (libc::rlim_t, libc::rlim_t) = (3, 4);
+const SHARE_OF_LIMIT: (libc::rlim_t, libc::rlim_t) = (3, 4);
 
-// These numbers are the same on every Linux architecture.
+// These numbers are the same on every Linux architecture except parisc.
 const F_SETSIG: libc::c_int = 10;
 const F_GETSIG: libc::c_int = 11;
 
@@ -111,7 +111,8 @@ fn lowest() -> RawFd {
     // SAFETY: `limit` is writable. If the call fails, `limit` stays 0, and this function returns 0.
     unsafe { libc::getrlimit(libc::RLIMIT_NOFILE, &mut limit) };
     // The soft limit of most systems is 1024.
-    RawFd::try_from(limit.rlim_cur / BELOW.1 * BELOW.0).map_or(LOWEST, |below| below.min(LOWEST))
+    let share = limit.rlim_cur / SHARE_OF_LIMIT.1 * SHARE_OF_LIMIT.0;
+    RawFd::try_from(share).map_or(LOWEST, |share| share.min(LOWEST))
 }
 
 /// Returns the result of a system call, or the error in errno.
@@ -139,7 +140,7 @@ mod tests {
 
     #[test]
     fn a_closed_descriptor_does_not_match_or_close_another_file_with_its_number() {
-        // No other test uses this number, even if it is free.
+        // No other test gets such a high number: all tests together open too few files.
         const ALONE: RawFd = 900;
         // SAFETY: the descriptor is open, and nothing else uses the number.
         assert_eq!(unsafe { libc::dup2(open().number(), ALONE) }, ALONE);

@@ -159,7 +159,10 @@ fn opening(source: &io::Error) -> String {
             format!("{source}: no device belongs to it. Check the cable, the adapter's driver (dmesg) and finger.port")
         }
         Some(libc::EIO) => format!("{source}: the adapter does not respond. Unplug and replug it"),
-        _ => with_remedy_at_port(source),
+        _ => match remedy_at_port(source) {
+            Some(remedy) => format!("{source}: {remedy}"),
+            None => format!("{source}. Check finger.port"),
+        },
     }
 }
 
@@ -222,6 +225,8 @@ mod tests {
             (libc::EIO, "Unplug and replug"),
             (libc::ENOMEM, "memory"),
             (libc::EPERM, "container"),
+            (libc::ENOTDIR, "Check finger.port"),
+            (libc::ELOOP, "Check finger.port"),
         ] {
             let error = PortError::at_opening(Path::new("/dev/port"), io::Error::from_raw_os_error(errno));
             assert_eq!(error.errno(), errno, "{error}");

@@ -53,8 +53,8 @@ pub enum Obstacle {
     /// A gauge is far from its configured zero although its tendon was let out and should be slack.
     #[error(
         "gauge {tendon} is {newton:.1} N from its configured zero with the motors off: its tendon is still under \
-         tension, or the gauge is damaged. If the gauge was replaced, first set gauge.zero to its approximate \
-         count at rest"
+         tension, or the gauge is damaged. Slacken the tendon, and check the gauge. If the gauge was replaced, first \
+         set gauge.zero to its approximate count at rest"
     )]
     GaugeOffset {
         /// The gauge's number, 1 to 4.
@@ -93,8 +93,8 @@ pub enum Obstacle {
     },
     /// A joint moved beyond the expected position of its stop.
     #[error(
-        "joint {joint} moved by {degrees:.0} degrees and reached no stop: a tendon is off its pulley, or the range \
-         from zeroing.lower_stop_degrees to upper_stop_degrees is too small for it. Check them"
+        "joint {joint} moved by {degrees:.0} degrees and reached no stop: a tendon is off its pulley, or the \
+         configured range of this joint from zeroing.lower_stop_degrees to upper_stop_degrees is too small. Check both"
     )]
     NoStop {
         /// The joint, 0 to 2.
@@ -265,8 +265,9 @@ pub enum Obstacle {
     },
     /// The scale of a gauge differs from that of the others.
     #[error(
-        "gauge {gauge} reads {:.0} % too {}, compared with the other gauges: calibrate it again (sun2xp calibrate \
-         --identify), or check its amplifier and that nothing touches the finger",
+        "gauge {gauge} reads {:.0} % too {}, compared with the other gauges: its scale is wrong, its amplifier has \
+         changed, or something touches the finger. Calibrate it again (sun2xp calibrate --identify), or check its \
+         amplifier and that nothing touches the finger",
         percent.abs(), if *percent > 0.0 { "high" } else { "low" }
     )]
     GaugeScale {

@@ -8,8 +8,8 @@
 //! the gauges show whether their scales agree.
 
 mod holding;
-mod pushing;
 mod readings;
+mod single_pull;
 mod verdict;
 
 use super::findings::Findings;
@@ -20,8 +20,8 @@ use crate::model::LinkDynamics;
 use crate::model::configuration::ConfiguredFinger;
 use holding::Holding;
 use nalgebra::{Vector3, Vector4};
-use pushing::Pushing;
 use readings::Readings;
+use single_pull::SinglePull;
 use std::ops::ControlFlow::{Break, Continue};
 use verdict::judge;
 
@@ -45,7 +45,7 @@ pub(super) struct SelfTest {
 #[derive(Clone, Debug)]
 enum Phase {
     /// One motor pulls alone.
-    Pushing(Pushing),
+    PullingAlone(SinglePull),
     /// All motors are held.
     Holding(Holding),
 }
@@ -58,7 +58,7 @@ impl SelfTest {
             seconds: 0.0,
             start: None,
             last: Vector4::zeros(),
-            phase: Phase::Pushing(Pushing::of(0)),
+            phase: Phase::PullingAlone(SinglePull::of(0)),
             friction: Vector4::from(finger.friction.motor_coulomb).component_div(&radius),
             dynamics: LinkDynamics::new(finger.links(), links.masses, links.radii, Vector3::zeros()),
         }
@@ -69,9 +69,9 @@ impl SelfTest {
         self.seconds += instruments.period;
         let readings = self.read(instruments, sample.feedback);
         let pulls = match &mut self.phase {
-            Phase::Pushing(pushing) => {
-                let pulls = pushing.step(instruments, &readings)?;
-                if pushing.motor() == 4 {
+            Phase::PullingAlone(single) => {
+                let pulls = single.step(instruments, &readings)?;
+                if single.motor() == 4 {
                     self.phase = Phase::Holding(Holding::new(&readings.travel));
                 }
                 pulls

@@ -41,7 +41,8 @@ use std::ffi::c_int;
 ///   EINVAL     no such finger; or the configuration file has changed, and the zeros do not fit it:
 ///              they are in force until sun2xp_close and not stored
 ///   EIO        the finger is faulted. If it faulted after its zeros were found, they are in force. The next
-///              sun2xp_zero or sun2xp_identify that succeeds for this finger stores them
+///              sun2xp_identify that succeeds for this finger stores them. If a sun2xp_zero succeeds before
+///              that, it stores the zeros that it has found instead
 ///   EBUSY      the finger is being calibrated or recovered already
 ///   ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
 ///              joint meets no stop or meets it too early ...). sun2xp_error_text gives the remedy. The finger
@@ -54,7 +55,8 @@ use std::ffi::c_int;
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s. The effects are those of ECANCELED
 ///   EACCES, ENOSPC, EBUSY ...  the configuration file cannot be written, or another process has kept it
 ///              locked for 30 s. The zeros are in force until sun2xp_close. If the results of a later
-///              calibration of this finger can be stored, these zeros are stored with them
+///              sun2xp_identify of this finger can be stored, these zeros are stored with them. A later
+///              sun2xp_zero that succeeds replaces them
 ///
 /// Threads: any.
 ///

@@ -28,7 +28,7 @@ pub struct sun2xp_tip {
     pub force_directions: c_int,
     /// Position of the tip: x, y, z, cm.
     pub position: [f64; 3],
-    /// Force of the tip on an object, with friction and weight: x, y, z, N.
+    /// Force of the tip on an object, with friction, weight, inertia: x, y, z, N.
     pub force: [f64; 3],
     /// Measured tendon tensions, N.
     pub tensions: [f64; 4],

@@ -15,9 +15,9 @@ use std::ffi::c_int;
 /// sun2xp_stop_all - emergency stop
 ///
 /// Every finger of every open hand faults (SUN2XP_FAULT_EMERGENCY_STOP_CALL) at the start of its next cycle. The servo
-/// commands its board to enter the configured end state. Calls that command the finger or read its pose are
-/// refused with EIO until sun2xp_recover, or sun2xp_close and sun2xp_open. A hand that is opened later is not
-/// affected.
+/// commands its board to bring the motors of the finger into the configured end state. Calls that command the
+/// finger or read its pose are refused with EIO until sun2xp_recover, or sun2xp_close and sun2xp_open. A hand
+/// that is opened later is not affected.
 ///
 /// With hand.end_state = "release", the default, the torque goes to zero at once. With "hold" the motors
 /// keep their last torque, up to hand.hold_torque_limit, for hand.hold_time_ms, by default 2 s and at most
@@ -55,11 +55,11 @@ pub extern "C" fn sun2xp_stop_all() -> c_int {
 ///
 ///   finger   1 to 3, or SUN2XP_ALL_FINGERS
 ///
-/// The finger faults (SUN2XP_FAULT_STOP_CALL) at the start of its next cycle, and its board enters the
-/// configured end state, as with sun2xp_stop_all. The other fingers continue, unless hand.on_fault is
-/// "hand". The finger stays stopped until sun2xp_recover, or sun2xp_close and sun2xp_open. A finger that
-/// has faulted already stays as it is. Like sun2xp_stop_all, sun2xp_stop is not a safety function. Unlike
-/// sun2xp_stop_all, it must not be called in a signal handler.
+/// The finger faults (SUN2XP_FAULT_STOP_CALL) at the start of its next cycle, and its motors enter the
+/// configured end state, as with sun2xp_stop_all. The other fingers continue, also those on the same board,
+/// unless hand.on_fault is "hand". The finger stays stopped until sun2xp_recover, or sun2xp_close and
+/// sun2xp_open. A finger that has faulted already stays as it is. Like sun2xp_stop_all, sun2xp_stop is not a
+/// safety function. Unlike sun2xp_stop_all, it must not be called in a signal handler.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -70,8 +70,9 @@ pub const SUN2XP_THEN_DAMP: c_int = 6;
 /// member refractory is above 0, the rule also fires again after this time while its condition stays true.
 /// After a reaction, the finger ignores set points of the planner for the time in the member inhibition. For
 /// SUN2XP_THEN_GRIP, the member position is the direction in the finger's frame in which the tip presses
-/// harder; 0, 0, 0 stands for the direction in which its spring presses. In both cases, if the component of the
-/// spring's force in this direction is below 0.05 N, the reaction changes no set point, but a path still ends.
+/// harder; 0, 0, 0 stands for the direction in which its spring presses. If the component of the spring's
+/// force in the given direction, or in the one that 0, 0, 0 stands for, is below 0.05 N, the reaction changes
+/// no set point, but a path still ends.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_reflex {

@@ -55,7 +55,8 @@ pub(super) fn with_culprit(
     let others = KEYS.iter().filter(|(key, _)| *key != named);
     match own.chain(others).find(|(_, reset)| permits(*reset)) {
         Some(&(key, _)) if key != named => {
-            let reason = format!("must be corrected first, because with its present value {named} {reason}");
+            let reason =
+                format!("has a value that causes an error of another key. Correct this value first. {named}: {reason}");
             Unusable { key, reason }
         }
         _ => Unusable { key: named, reason },

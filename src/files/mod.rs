@@ -19,13 +19,13 @@ pub use update::{UpdateError, update_file};
 
 use std::io::{Error, ErrorKind};
 
-/// Returns the remedy of an error in writing a file, as a sentence after its text. Returns no text unless permission is
-/// missing, because the texts of other errors already show what to change, for example that the disk is full.
+/// Returns the remedy for an error in writing a file. The caller appends the remedy to the text of the error, so it
+/// begins with a full stop and a space. The remedy is empty unless permission is missing or the file system is
+/// read-only. The texts of other errors already show what to change, for example that the disk is full.
 pub fn write_remedy(error: &Error) -> &'static str {
     match error.kind() {
-        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            ". This user needs permission to write the file and its folder"
-        }
+        ErrorKind::PermissionDenied => ". This user needs permission to write the file and its folder",
+        ErrorKind::ReadOnlyFilesystem => ". Make the file system writable, or choose a folder on another one",
         _ => "",
     }
 }

@@ -87,7 +87,7 @@ fn name_of(kind: FileType) -> &'static str {
         kind if kind.is_fifo() => "a FIFO (a pipe)",
         kind if kind.is_socket() => "a socket",
         kind if kind.is_char_device() || kind.is_block_device() => "a device",
-        _ => "something else",
+        _ => "a file of an unknown kind",
     }
 }
 

@@ -60,7 +60,7 @@ pub use reflexes::{
 };
 pub use relay::Relay;
 #[cfg(feature = "internals")]
-pub use replay::{ContinuousReplay, Difference, NotReplayable, Recomputed, Replayed, Step, Unsound};
+pub use replay::{ContinuousReplay, Difference, NotReplayable, Recomputed, Replayed, Step, Unsound, without_remedy};
 pub use report::FingerReport;
 pub use sent::Replaced;
 pub use served_port::ServedPort;

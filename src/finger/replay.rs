@@ -1,9 +1,11 @@
 //! Replay: runs the pure controller over a recording. It must compute the same commands, to the last bit.
 
 mod continuous;
+mod remedy;
 mod soundness;
 
 pub use continuous::{ContinuousReplay, Recomputed, Step, Unsound};
+pub use remedy::without_remedy;
 
 use crate::control::Controller;
 use crate::finger::recording::ALTERED;
@@ -39,7 +41,7 @@ pub struct Difference {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum NotReplayable {
     /// The hand's configuration, or a number in the data that all cycles start from, is invalid.
-    #[error("line 1: {key} {reason}. {ALTERED}")]
+    #[error("line 1: {key}: {reason}. {ALTERED}")]
     Origin {
         /// The key, with dots.
         key: String,
@@ -47,7 +49,7 @@ pub enum NotReplayable {
         reason: String,
     },
     /// No controller can be constructed from a configuration.
-    #[error("line 1: controller {number}: {key} {reason}. {ALTERED}")]
+    #[error("line 1: controller {number}: {key}: {reason}. {ALTERED}")]
     Unusable {
         /// Number of the controller.
         number: u32,
@@ -65,7 +67,7 @@ pub enum NotReplayable {
         number: u32,
     },
     /// A cycle contains a value that no servo can have recorded.
-    #[error("cycle {cycle}, line {line}: {key} {reason}. {ALTERED}")]
+    #[error("cycle {cycle}, line {line}: {key}: {reason}. {ALTERED}")]
     Cycle {
         /// Number of the cycle.
         cycle: u64,
@@ -138,7 +140,8 @@ impl Controllers<'_> {
         let source = controllers.iter().find(|source| source.number == number);
         let source = source.ok_or(NotReplayable::UnknownController { cycle, number })?;
         let made = Controller::in_gravity(&source.finger, &source.gravity, hand.rate);
-        let unusable = |Unusable { key, reason }| NotReplayable::Unusable { number, key, reason };
+        let unusable =
+            |Unusable { key, reason }| NotReplayable::Unusable { number, key, reason: without_remedy(&reason) };
         self.made.insert(number, made.map_err(unusable)?);
         Ok(())
     }

@@ -139,7 +139,13 @@ fn joints_within(
             high[joint] = high[joint].max(sent[joint]);
         }
     }
-    Ranges { joint_limits: (low, high), ..changed.ranges() }.joints((*sent).into())
+    let admitted = Ranges { joint_limits: (low, high), ..changed.ranges() }.joints((*sent).into());
+    admitted.map_err(|error| match error {
+        SetPointError::BeyondJointLimit { finger, joint, value, low, high } => {
+            SetPointError::SentBeyondJointLimit { finger, joint, value, low, high }
+        }
+        other => other,
+    })
 }
 
 /// Returns whether a path that has not ended leaves the changed joint limits. A path may begin beyond a limit, so only

@@ -98,13 +98,13 @@ fn port_of(
 ) -> Result<PathBuf, HandError> {
     let is_wanted = |found: &FoundFinger| found.identity.unique_number == number.0;
     let mut ports = searched.iter().filter(|port| port.answer.iter().flatten().any(is_wanted));
-    let twice = match (ports.next(), ports.next()) {
+    let result = match (ports.next(), ports.next()) {
         (Some(port), None) => return Ok(port.path.clone()),
-        (Some(_), Some(_)) => "found twice",
-        (None, _) => "not found",
+        (Some(_), Some(_)) => "found at several of the ports",
+        (None, _) => "not found at",
     };
     let patterns = configuration.hand.search_ports.join(", ");
-    Err(HandError::NoSuchBoard { finger, number, patterns, found: listed(searched), twice })
+    Err(HandError::NoSuchBoard { finger, number, patterns, found: listed(searched), searched: result })
 }
 
 /// What the search has found at each port, in one line.
@@ -196,6 +196,34 @@ fn fits(name: &str, pattern: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::board::protocol::{Capabilities, FirmwareVersion};
+
+    #[test]
+    fn a_board_that_is_missing_or_answers_at_several_ports_is_refused() {
+        let identity = Identity {
+            version: 1,
+            addresses: 0b10,
+            board_kind: 0,
+            unique_number: [7; 12],
+            firmware: FirmwareVersion::default(),
+            counts_per_revolution: 0,
+            gauge_bits: 12,
+            torque_unit: 1000,
+            torque_limit: 1000,
+            shortest_watchdog_ms: 2,
+            capabilities: Capabilities::default(),
+        };
+        let answers =
+            |path: &str| SearchedPort { path: path.into(), answer: Ok(vec![FoundFinger { address: 1, identity }]) };
+        let refused = |ports: &[SearchedPort]| {
+            let number = BoardNumber(identity.unique_number);
+            let refused = port_of(FingerNumber::ONE, number, &Configuration::default(), ports);
+            refused.expect_err("refused").to_string()
+        };
+        let (none, three) = (refused(&[]), refused(&["/dev/a", "/dev/b", "/dev/c"].map(answers)));
+        assert!(none.contains("was not found at /dev/") && none.contains("Found: no port"), "{none}");
+        assert!(three.contains("was found at several of the ports /dev/"), "{three}");
+    }
 
     #[test]
     fn a_star_stands_for_any_text() {

@@ -21,7 +21,7 @@ use crate::calibration::Obstacle;
 use crate::finger::{Fault, FaultKind};
 use crate::hand::missing_permissions::MissingPermission;
 use crate::model::configuration::BoardNumber;
-use crate::model::{FingerNumber, Fingers};
+use crate::model::{Counted, FingerNumber, Fingers};
 use crate::model::{ShownPath, UnusableConfiguration};
 use crate::realtime::{with_remedy, with_terminal_remedy};
 use std::path::PathBuf;
@@ -53,8 +53,9 @@ pub enum HandError {
     NoSuchStage(i32),
     /// The finger has no tactile element with this number.
     #[error(
-        "finger {finger} has {count} tactile elements, numbered from 0, and none with the number {element}: list its \
-         elements in [finger.{finger}.touch]"
+        "finger {finger} has no tactile element with the number {element}, because its configuration lists {listed} \
+         and the numbers begin at 0: list its elements in [finger.{finger}.touch]",
+        listed = Counted(*count as u64, "element", "elements")
     )]
     NoSuchElement {
         /// The finger.
@@ -109,7 +110,7 @@ pub enum HandError {
     },
     /// The board that the configuration names by its unique number was not found.
     #[error(
-        "finger {finger}: the board with the number {number} of finger.{finger}.board was {twice} at {patterns}. \
+        "finger {finger}: the board with the number {number} of finger.{finger}.board was {searched} {patterns}. \
          Found: {found}. Connect exactly one board with this number and switch it on, correct finger.{finger}.board, \
          or add its port to hand.search_ports"
     )]
@@ -122,8 +123,8 @@ pub enum HandError {
         patterns: String,
         /// What answered at each port.
         found: String,
-        /// "not found", or "found twice" if boards at two ports report the number.
-        twice: &'static str,
+        /// "not found at", or "found at several of the ports" if boards at two or more ports report the number.
+        searched: &'static str,
     },
     /// The self-test of a finger has found a part that is wired wrongly. The motors of the finger are off.
     #[error("finger {finger} (fault {}): {obstacle}", FaultKind::WrongWiring.number())]
@@ -191,9 +192,9 @@ pub enum HandError {
     Busy(FingerNumber),
     /// The motors of the finger are off, and no call is in progress that switches them on.
     #[error(
-        "the motors of finger {0} are off, because its last calibration failed, because its signs were found or its \
-         wiring was tested, or because a program opened the hand with the motors off: zero or identify the finger, or \
-         close the hand and open it again"
+        "the motors of finger {0} are off. Either its last calibration failed, or a call found the signs of its \
+         motors, encoders and gauges, or a call tested its wiring, or a program opened the hand with the motors off: \
+         zero or identify the finger, or close the hand and open it again"
     )]
     Limp(FingerNumber),
     /// A wait has reached its time limit.

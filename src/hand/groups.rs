@@ -129,9 +129,9 @@ impl Hand {
     /// or none is. A single command takes effect in the next cycle of its finger.
     ///
     /// If a servo is so late that it skips this period, its fingers follow in their next cycle. With
-    /// `hand.clock = "board"` the periods of the threads follow different clocks. Then a finger may follow one of the
-    /// groups one period later than the other fingers do. This happens at most about once in the time in which the
-    /// drift between two of the clocks grows by one period.
+    /// `hand.clock = "board"` the periods of the threads follow different clocks, and the difference between two of
+    /// these clocks changes slowly. In the time in which it changes by one period, at most about one group takes effect
+    /// one period later in a finger than in the other fingers.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if a finger has two commands, if a finger refuses its command, if a

@@ -130,8 +130,8 @@ pub(super) fn warn_of_lost_zero(number: FingerNumber, finger: &ConfiguredFinger,
 pub(super) fn warn_of_doubtful_zero(number: FingerNumber) {
     print_notice(&format!(
         "the hardware of finger {number} starts again without a reference for its encoder counts \
-         (SUN2XP_IO_ZERO_LOST). If its counts have begun again since the finger was zeroed, its joint angles are \
-         wrong: zero the finger again"
+         (SUN2XP_IO_ZERO_LOST). If the hardware has restarted its counts since the finger was zeroed, the joint \
+         angles of the finger are wrong: zero the finger again"
     ));
 }
 

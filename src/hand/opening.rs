@@ -183,7 +183,8 @@ fn longer_watchdog(finger: FingerNumber, configured_ms: u16, agreed_ms: u16) -> 
         format!(
             "the shortest watchdog time of the board of finger {finger} is {agreed_ms} ms, but hand.watchdog_ms is \
              {configured_ms}. After the last command the motors of this finger may continue for {agreed_ms} ms, plus \
-             1 % and 1 ms for the tolerance of the board's timer"
+             1 % and 1 ms for the tolerance of the board's timer. If this is too long for the hand, use a board with a \
+             shorter watchdog time; otherwise, nothing needs to be done"
         )
     })
 }
@@ -287,7 +288,10 @@ mod tests {
         assert_eq!(longer_watchdog(FingerNumber::TWO, 18, 18), None);
         let text = longer_watchdog(FingerNumber::TWO, 18, 20).expect("longer");
         assert!(
-            text.contains("finger 2") && text.contains("20 ms") && text.contains("hand.watchdog_ms is 18"),
+            text.contains("finger 2")
+                && text.contains("20 ms")
+                && text.contains("hand.watchdog_ms is 18.")
+                && text.ends_with("; otherwise, nothing needs to be done"),
             "{text}"
         );
     }

@@ -226,9 +226,9 @@ impl Hand {
         Ok(())
     }
 
-    /// Stops finger 1, 2 or 3: it faults at the beginning of its next cycle, and its board enters the configured end
-    /// state. The other fingers continue, unless `hand.on_fault` is `"hand"`. The finger stays faulted until it
-    /// recovers. A finger that has faulted already stays as it is.
+    /// Stops finger 1, 2 or 3: it faults at the beginning of its next cycle, and its motors enter the configured end
+    /// state. The other fingers continue, also those on the same board, unless `hand.on_fault` is `"hand"`. The finger
+    /// stays faulted until it recovers. A finger that has faulted already stays as it is.
     ///
     /// # Errors
     /// Returns an error if there is no such finger.

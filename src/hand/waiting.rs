@@ -98,7 +98,7 @@ impl Hand {
     /// Waits until the condition holds for each of these fingers, for the set point that was sent last to the finger.
     /// Returns at once if the condition holds already. If a reflex has replaced the set point of a finger, or if the
     /// finger did not follow it because of an inhibition, the condition must hold for the set point of the reflex. If
-    /// the set point has expired, the condition must hold for the pose that the finger has held since then.
+    /// the set point has expired, the condition must be true for the pose in which the finger has stayed since then.
     ///
     /// # Errors
     /// Returns the errors of [`Waiting::begin`] and [`Waiting::poll`].

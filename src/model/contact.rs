@@ -27,13 +27,14 @@ pub struct Contact(Matrix6<f64>);
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ContactError {
-    /// K, Normal, the selection S or the product S^T K S contains NaN or infinity.
-    #[error("an entry of K or Normal is {0}: every entry must be a finite number")]
+    /// K, the normal, the selection S or the product S^T K S contains NaN or infinity.
+    #[error("an entry of the stiffness or of the normal is {0}: every entry must be a finite number")]
     NotFinite(f64),
     /// `K[row][column]` and `K[column][row]` differ.
     #[error(
-        "K is not symmetric: K[{row}][{column}] and K[{column}][{row}] differ by {difference:.3e}, more than a \
-         thousandth of its largest entry. Send a symmetric K: the stiffness of a spring is always symmetric"
+        "the stiffness is not symmetric: its entries [{row}][{column}] and [{column}][{row}] differ by \
+         {difference:.3e}, more than a thousandth of its largest entry. The stiffness of a spring is always symmetric: \
+         send a symmetric one"
     )]
     NotSymmetric {
         /// Row of the first such pair.
@@ -44,13 +45,16 @@ pub enum ContactError {
         difference: f64,
     },
     /// K has a negative eigenvalue.
-    #[error("K has the negative eigenvalue {smallest:.3e}: send a K whose eigenvalues are zero or positive")]
+    #[error(
+        "the stiffness has the negative eigenvalue {smallest:.3e}: send a stiffness whose eigenvalues are zero or \
+         positive"
+    )]
     Negative {
         /// Smallest eigenvalue.
         smallest: f64,
     },
     /// The contact's normal is zero.
-    #[error("Normal is zero, so it has no direction: pass a vector of any other length, such as 1")]
+    #[error("the normal is zero, so it has no direction: pass a vector of any other length, such as 1")]
     NoNormal,
 }
 

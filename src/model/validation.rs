@@ -183,7 +183,7 @@ impl ConfiguredFinger {
     fn check_sensors_and_motors(&self) -> Result<(), Unusable> {
         let signs = |key, signs: &[i8; 4]| match signs.iter().all(|sign| sign.abs() == 1) {
             true => Ok(()),
-            false => unusable(key, format!("{signs:?}: each sign must be 1 or -1")),
+            false => unusable(key, format!("{signs:?} has an entry other than 1 and -1: set each sign to 1 or -1")),
         };
         signs("motor.sign", &self.motor.sign)?;
         signs("encoder.sign", &self.encoder.sign)?;
@@ -201,8 +201,8 @@ impl ConfiguredFinger {
             let (low, high) = (self.joints.minimum_degrees[joint], self.joints.maximum_degrees[joint]);
             if low >= high {
                 let reason = format!(
-                    "joint {joint}: its lower limit {low:.4} is not below its upper limit {high:.4}: lower it, or \
-                     raise joints.maximum_degrees"
+                    "the lower limit of joint {joint}, {low:.4} degrees, is not below its upper limit, {high:.4} \
+                     degrees: lower joints.minimum_degrees, or raise joints.maximum_degrees"
                 );
                 return unusable("joints.minimum_degrees", reason);
             }

@@ -4,7 +4,7 @@ use crate::board::protocol::Status;
 use crate::simulated::finger::SimulatedFinger;
 use crate::simulated::wiring::Wiring;
 
-/// A part of the wiring between a board and its finger.
+/// A cable between a board and its finger, or a tendon. Two parts of one kind can be connected in each other's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WiredPart {
     /// The cable of a motor.
@@ -23,7 +23,7 @@ pub enum Defect {
     /// A tendon is torn.
     CutTendon(u8),
     /// A tendon slips in its clamp above a certain tension.
-    SlackTendon {
+    SlippingTendon {
         /// The tendon's number.
         tendon: u8,
         /// The largest tension that the clamp holds, N.
@@ -63,7 +63,7 @@ pub enum Defect {
     GaugeGain {
         /// The gauge's number.
         gauge: u8,
-        /// Ratio of the new gain to the old one.
+        /// Ratio of the new gain to the gain without this defect.
         ratio: f64,
     },
     /// A motor is not connected.
@@ -85,11 +85,12 @@ pub enum Defect {
 }
 
 impl SimulatedFinger {
-    /// Adds this defect to the finger. Returns false, and does nothing, if the finger has no such part.
+    /// Adds this defect to the finger. Returns false, and does nothing, if the finger has no such part, or if the part
+    /// cannot have this defect.
     pub fn inject(&mut self, defect: &Defect) -> bool {
         let part = match *defect {
             Defect::CutTendon(part) | Defect::JammedMotor(part) | Defect::HotMotor(part) => part,
-            Defect::SlackTendon { tendon: part, .. } | Defect::DeadGauge { gauge: part, .. } => part,
+            Defect::SlippingTendon { tendon: part, .. } | Defect::DeadGauge { gauge: part, .. } => part,
             Defect::DriftingGauge { gauge: part, .. } | Defect::EncoderJump { encoder: part, .. } => part,
             Defect::Swapped(_, part, other) if (1..=4).contains(&other) => part,
             Defect::Swapped(..) => 0,
@@ -105,7 +106,7 @@ impl SimulatedFinger {
         let Some(index) = usize::from(part).checked_sub(1).filter(|&index| index < 4) else { return false };
         match *defect {
             Defect::CutTendon(_) => self.plant().cut_tendon(index),
-            Defect::SlackTendon { grip, .. } => self.plant().loosen_tendon(index, grip),
+            Defect::SlippingTendon { grip, .. } => self.plant().loosen_tendon(index, grip),
             Defect::JammedMotor(_) => self.plant().jam_motor(index),
             Defect::HotMotor(_) => self.add_faults(Status::DRIVER_FAULT),
             Defect::DeadGauge { count, .. } => self.sensors().kill_gauge(index, count),

@@ -25,7 +25,7 @@ pub enum AttachError {
         open: Vec<String>,
     },
     /// Several hands are open.
-    #[error("several hands are open: choose one of {}", .0.join(", "))]
+    #[error("several hands are open: name one of {} (the argument NAME, or the option --hand NAME)", .0.join(", "))]
     Several(Vec<String>),
     /// Another user's process has the name.
     #[error(

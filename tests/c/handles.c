@@ -108,7 +108,7 @@ static void keeps_errors_apart(sun2xp_hand *a, sun2xp_hand *b)
     CHECK(pthread_create(&other, NULL, refused_elsewhere, a) == 0 && pthread_join(other, NULL) == 0);
     error.size = sizeof error;
     CHECK(sun2xp_error(a, &error) == 0 && error.number == SUN2XP_ERROR_LIMIT && error.system_errno == ERANGE);
-    CHECK(strcmp(error.call, "sun2xp_send_position") == 0 && strstr(error.text, "Pos[0]") != NULL);
+    CHECK(strcmp(error.call, "sun2xp_send_position") == 0 && strstr(error.text, "joint 0") != NULL);
     CHECK(error.remedy[0] == '\0' && error.size == sizeof error);
     CHECK(sun2xp_error(b, &error) == 0 && error.number == SUN2XP_ERROR_ARGUMENT);
     CHECK(strcmp(error.call, "sun2xp_position") == 0 && strstr(error.text, "44") != NULL);

@@ -45,7 +45,7 @@ static void refused(void)
     wrong = rule(SUN2XP_WHEN_OTHER_FINGER, 0, SUN2XP_THEN_HOLD), wrong.finger = 1, wrong.event = SUN2XP_EVENT_SLIP;
     refuse(wrong, EINVAL, "of the same finger");
     wrong = rule(SUN2XP_WHEN_FORCE_ABOVE, 1, SUN2XP_THEN_RETRACT), wrong.position[0] = 9;
-    refuse(wrong, ERANGE, "Pos[0]");
+    refuse(wrong, ERANGE, "joint 0");
     wrong = rule(SUN2XP_WHEN_FORCE_ABOVE, 1, SUN2XP_THEN_SOFTEN), wrong.stiffness[0][0] = -1;
     CHECK(sun2xp_install_reflex(HAND, 1, &wrong) < 0);
     CHECK(sun2xp_install_reflex(HAND, 4, &good) < 0 && errno == EINVAL);

@@ -44,9 +44,9 @@ static void refuses_what_is_not_finite(void)
 static void refuses_what_is_out_of_range(void)
 {
     Pos[2] = 0.0f;
-    REFUSED(SendPos(1, Pos), ERANGE, "Pos[2]");
+    REFUSED(SendPos(1, Pos), ERANGE, "joint 2");
     Pos[2] = 2.2f;
-    REFUSED(SendPos(1, Pos), ERANGE, "Pos[2]");
+    REFUSED(SendPos(1, Pos), ERANGE, "joint 2");
     Kx[0][0] = 6.1;
     REFUSED(SendKx(1, Kx), ERANGE, "Kx");
     Kx[0][0] = 6.0;

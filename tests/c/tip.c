@@ -113,7 +113,7 @@ static void contact(void)
     CHECK(sun2xp_send_contact(HAND, 1, 3, Hard, NULL) == 0);
     REFUSED(sun2xp_send_contact(HAND, 4, 3, Hard, NULL), EINVAL, "1, 2 and 3");
     REFUSED(sun2xp_send_contact(HAND, 1, 2, Hard, Normal), EINVAL, "2 dimensions");
-    REFUSED(sun2xp_send_contact(HAND, 1, 4, &Soft[0][0], Nothing), EDOM, "Normal");
+    REFUSED(sun2xp_send_contact(HAND, 1, 4, &Soft[0][0], Nothing), EDOM, "the normal is zero");
     REFUSED(sun2xp_send_contact(HAND, 1, 4, &Soft[0][0], Nan), EINVAL, "finite");
     REFUSED(sun2xp_send_contact(HAND, 1, 3, Skewed, NULL), EDOM, "symmetric");
     Soft[3][3] = -1;
@@ -152,7 +152,7 @@ static void adjustment(void)
     REFUSED(sun2xp_adjust(HAND, 1, "tendon.minimum = "), EINVAL, "line 1");
     REFUSED(sun2xp_adjust(HAND, 1, "tendon.minimum = 6\ntendon.maximum = 7"), EINVAL, "tendon.maximum");
     REFUSED(sun2xp_adjust(HAND, 1, "priority = 3"), EBUSY, "priority");
-    REFUSED(sun2xp_adjust(HAND, 1, "joints.maximum_degrees = [60, 40, 40]"), ERANGE, "Pos[");
+    REFUSED(sun2xp_adjust(HAND, 1, "joints.maximum_degrees = [60, 40, 40]"), ERANGE, "sent last");
     REFUSED(sun2xp_adjust(HAND, 1, "tendon.minimum = 6\n\377"), EINVAL,
         "line 2 of the keys to adjust: the line is not UTF-8");
     CHECK(sun2xp_adjust(HAND, 1, "tendon.minimum = 8\ncontroller.tension_gain = 3") == 0);

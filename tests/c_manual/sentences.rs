@@ -98,7 +98,7 @@ fn counts_of_the_status_are_those_of_the_timing() {
 fn the_entries_say_what_else_a_result_depends_on() {
     let manual = Manual::read(HANDLES);
     for (call, sentence) in [
-        ("sun2xp_wait", "If the set point that was sent last has expired, the condition must hold for the pose"),
+        ("sun2xp_wait", "If the set point that was sent last has expired, the condition must be true for the pose"),
         ("sun2xp_send_path", "With hand.out_of_range = \"clamp\" joint angles and Kx are clamped"),
         ("sun2xp_zero", "an interpolated motion (finger.motion.interpolate_ms) that it followed has ended"),
         ("sun2xp_recover", "one after the other, up to the first that does not recover"),

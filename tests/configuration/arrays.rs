@@ -1,5 +1,5 @@
-//! An array must have as many entries as its key has places. An extra entry would be lost silently, and a missing one
-//! would become a default.
+//! An array must have exactly the number of entries that its key requires. An extra entry would be lost silently, and a
+//! missing one would become a default.
 
 use crate::reading::{keys, read, with_optional_keys};
 use toml_edit::{Array, Value};
@@ -35,7 +35,7 @@ fn shorter(array: &mut Array) {
 }
 
 #[test]
-fn every_array_has_exactly_as_many_entries_as_its_key_has_places() {
+fn every_array_has_exactly_the_number_of_entries_that_its_key_requires() {
     let mut tried = 0;
     for key in keys(&with_optional_keys()) {
         let value: Value = key.value.parse().expect("a value");
@@ -43,7 +43,7 @@ fn every_array_has_exactly_as_many_entries_as_its_key_has_places() {
         if matches!(&*key.name, "fingers" | "search_ports") {
             continue;
         }
-        // A list of tables may have any length. The arrays in its tables are tested below.
+        // The length of a list of tables is not fixed. The arrays in its tables are tested below.
         if value.as_array().is_some_and(|array| array.get(0).is_some_and(Value::is_inline_table)) {
             continue;
         }
@@ -65,7 +65,7 @@ fn every_array_has_exactly_as_many_entries_as_its_key_has_places() {
 }
 
 #[test]
-fn arrays_inside_inline_tables_have_exactly_as_many_entries() {
+fn arrays_inside_inline_tables_have_exactly_the_number_of_entries_that_their_keys_require() {
     for wrong in ["point = [4, 0, 0, 0]", "normal = [-1, 0]"] {
         let right = ["point = [4, 0, 0]", "normal = [-1, 0, 0]"]
             .map(|right| if right[..4] == wrong[..4] { wrong } else { right })

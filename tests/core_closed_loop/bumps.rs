@@ -30,7 +30,8 @@ fn time_of_return(finger: &ConfiguredFinger, joints: Vector3<f64>, force: Vector
     f64::from(last) / RATE
 }
 
-/// If the inertia of the rotors is configured correctly, the tensions return equally fast with every inertia.
+/// The rotors have 0.5, 1 and 2.5 times their default inertia, and this inertia is configured. The tensions return in
+/// less than 65 ms in all three cases.
 #[test]
 fn tensions_return_after_a_bump_whatever_the_inertia_of_the_rotors() {
     for ratio in [0.5, 1.0, 2.5] {

@@ -99,7 +99,7 @@ fn of_the_tendons() -> Vec<Case> {
         }),
         case("slack tendon (its clamp slips above 1 N)", SlackTendon, |bench| {
             let tendon = bench.part();
-            inject(bench, Defect::SlackTendon { tendon, grip: 1.0 });
+            inject(bench, Defect::SlippingTendon { tendon, grip: 1.0 });
             at(tendon)
         }),
         case("gauge keeps its last count", GaugeStuck, |bench| {

@@ -168,14 +168,14 @@ fn data_that_no_servo_records_is_refused() {
     let mut skips = all[1];
     skips.control.as_mut().expect("control").input.skipped = u64::MAX;
     let refused = replay.cycle(&skips).expect_err("refused").to_string();
-    assert!(refused.starts_with(&format!("cycle {}: control.input.skipped is 1844", number + 1)), "{refused}");
+    assert!(refused.starts_with(&format!("cycle {}: control.input.skipped: is 1844", number + 1)), "{refused}");
 
     let mut source = first.origin.controllers[0].clone();
     source.finger.geometry.links[1] = -1.0;
     let refused = replay.controller(source, first.origin.hand.clone()).expect_err("refused").to_string();
-    assert!(refused.starts_with("controller 0: geometry.links"), "{refused}");
+    assert!(refused.starts_with("controller 0: geometry.links: "), "{refused}");
     let mut hand = first.origin.hand.clone();
     hand.rate = 1.0;
     let refused = replay.controller(first.origin.controllers[0].clone(), hand).expect_err("refused").to_string();
-    assert!(refused.starts_with("hand.rate"), "{refused}");
+    assert!(refused.starts_with("hand.rate: "), "{refused}");
 }

@@ -32,7 +32,7 @@ fn a_joint_that_is_pushed_beyond_its_limit_is_reported_at_its_stop() {
 /// Returns a finger whose tendon 3 has just been without tension for a moment, and the warning of this.
 fn warned_of_slack() -> (Bench, Fault) {
     let mut bench = Bench::new();
-    bench.with_finger(|finger| finger.inject(&Defect::SlackTendon { tendon: 3, grip: 0.0 }));
+    bench.with_finger(|finger| finger.inject(&Defect::SlippingTendon { tendon: 3, grip: 0.0 }));
     bench.cycles(6);
     bench.with_finger(|finger| finger.repair());
     let warning = bench.warns(FaultKind::SlackInMotion);

@@ -46,8 +46,8 @@ fn every_range_to_lock_is_mapped_and_belongs_to_one_value() {
 /// it is rounded.
 #[test]
 #[cfg(target_pointer_width = "64")]
-fn the_sizes_of_records_are_those_of_the_page() {
-    let page = include_str!("../../docs/architecture.md").split_whitespace().collect::<Vec<_>>().join(" ");
+fn the_sizes_of_records_are_those_of_the_documentation() {
+    let text = include_str!("../../docs/architecture.md").split_whitespace().collect::<Vec<_>>().join(" ");
     let (record, state) = (size_of::<CycleRecord>(), size_of::<State>());
     let kept = (2000 * record) as f64 * 1e-6;
     for sentence in [
@@ -55,6 +55,6 @@ fn the_sizes_of_records_are_those_of_the_page() {
         format!("The two seconds that are kept need {kept:.1} MB for each kilohertz and finger."),
         format!("the state of the controller, which has {:.1} kB.", state as f64 * 1e-3),
     ] {
-        assert!(page.contains(&sentence), "docs/architecture.md does not contain: {sentence}");
+        assert!(text.contains(&sentence), "docs/architecture.md does not contain: {sentence}");
     }
 }

@@ -22,7 +22,8 @@ fn elements_reach_the_planner(emulated: Emulated) {
     );
     with_configured_hand(emulated, "touch on the firmware", &keys, |machine, hand| {
         assert!(!hand.touch(2, 1).expect("an element").valid);
-        hand.touch(1, 0).expect_err("no element is configured");
+        let none = hand.touch(1, 0).expect_err("no element is configured").to_string();
+        assert!(none.contains("no tactile element with the number 0, because its configuration lists 0 elements"));
         machine.finger(1).touch[1] = 600;
         let pressed = wait_until(PATIENCE, || hand.touch(2, 1).expect("an element").pressed);
         let reading = hand.touch(2, 1).map_err(text)?;

@@ -55,7 +55,7 @@ const TROUBLES: [Trouble; 18] = [
     Trouble::Finger(Defect::CutTendon(2)),
     Trouble::Finger(Defect::DeadGauge { gauge: 1, count: None }),
     Trouble::Line(LineFault::Drop),
-    Trouble::Finger(Defect::SlackTendon { tendon: 3, grip: 1.0 }),
+    Trouble::Finger(Defect::SlippingTendon { tendon: 3, grip: 1.0 }),
     Trouble::Finger(Defect::DeadGauge { gauge: 2, count: Some(0) }),
     Trouble::Line(LineFault::Corrupt),
     Trouble::Finger(Defect::DeadGauge { gauge: 4, count: Some(4095) }),

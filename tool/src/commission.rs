@@ -42,15 +42,16 @@ use sun2xp::model::{FingerNumber, ShownPath};
 use terminal::Terminal;
 pub use vitals::Vitals;
 
-/// Number of times that `sun2xp health --yes` repeats a failed step or reading without a question.
+/// Number of times in total that `sun2xp health` with --yes or --json repeats failed steps and readings without a
+/// question.
 const RETRIES: u32 = 3;
 
 /// Leads through the bring-up of a finger, and writes what it finds into the configuration file.
 ///
 /// The steps are board, computer, encoders, gauges, motors, zeros, tendons, bound and spring. Each step says what it
-/// does and what you should see, asks you to act at the finger, and names every fault and its remedy. The motors are
-/// off between the steps. Steps that have passed are noted in a file beside the configuration, for example
-/// hand.commission.json, and are skipped when the tool runs again.
+/// does and what you should see, and names every fault and its remedy. All steps except computer and bound ask you to
+/// act at the finger. The motors are off between the steps. Steps that have passed are noted in a file beside the
+/// configuration, for example hand.commission.json, and are skipped when the tool runs again.
 ///
 /// Answer each request with Enter when it is done, with n if it cannot be done, and with q to leave.
 ///
@@ -69,17 +70,17 @@ pub struct Arguments {
     /// part of the path stands for any text. May be repeated. By default these are the ports of hand.search_ports.
     #[arg(long = "port", value_name = "PATH")]
     ports: Vec<String>,
-    /// Do this step, and no other, even if it has passed before. May be repeated.
+    /// Do only this step, even if it has passed before. To do several steps, give this option several times.
     #[arg(long = "step", value_name = "STEP")]
     steps: Vec<Step>,
     /// Do every step again.
     #[arg(long, conflicts_with = "steps")]
     again: bool,
-    /// The masses of the weights for the gauges, kg. The tool asks for them in rising order. The weight of the heaviest
-    /// must not exceed `finger.tendon.maximum`.
+    /// The masses of the weights that you hang on the tendons in the step gauges, kg. The tool asks for the lightest
+    /// weight first. The heaviest one must not pull with more than `finger.tendon.maximum`.
     #[arg(long, value_name = "KG", value_delimiter = ',', default_values_t = [0.5, 1.0], value_parser = mass)]
     weights: Vec<f64>,
-    /// Do not wait for Enter: a jig does what the tool asks for.
+    /// Do not wait for Enter. Use this only if a machine, and not a person, does at the finger what the tool asks for.
     #[arg(long)]
     yes: bool,
 }
@@ -166,8 +167,8 @@ pub fn examine(file: &Path, finger: FingerNumber, yes: bool, quiet: bool) -> Res
     }
     if ![Step::Zeros, Step::Tendons].iter().all(|step| known.steps.contains_key(step)) {
         return Err(format!(
-            "the steps zeros and tendons of finger {finger} do not both count as passed, because an earlier step was \
-             done again, or because one of the two was not done or has failed: {advice}"
+            "the steps \"zeros\" and \"tendons\" of finger {finger} do not both count as passed, because an earlier \
+             step was done again, or because one of the two was not done or has failed: {advice}"
         )
         .into());
     }
@@ -188,12 +189,13 @@ pub fn examine(file: &Path, finger: FingerNumber, yes: bool, quiet: bool) -> Res
     Ok(Examined { before: (known.vitals, before), today })
 }
 
-/// Does these steps. A step that fails is repeated as long as the person or the terminal requests this.
+/// Does these steps. A step that fails is repeated as long as the person agrees. Without a person (--yes or --json), it
+/// is repeated until the [`RETRIES`] are used up.
 fn measure(desk: &mut Desk, steps: &[Step]) -> Result<(), Failure> {
     for &step in steps {
         let outcome = desk.complete(step, |_| Ok(()))?;
         if let Some(wrong) = outcome.wrong.iter().find(|wrong| !wrong.compensated()) {
-            return Err(format!("the step {step} stopped: {}", wrong.with_remedy()).into());
+            return Err(format!("the step \"{step}\" stopped: {}", wrong.with_remedy()).into());
         }
     }
     Ok(())

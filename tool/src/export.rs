@@ -14,6 +14,7 @@ use std::collections::btree_map::Entry;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use sun2xp::files::write_remedy;
 use sun2xp::model::ShownPath;
 use sun2xp::simulated::ObjectState;
 
@@ -213,7 +214,7 @@ impl Arguments {
     fn explained(&self, failure: Failure) -> Failure {
         let folder = Some(self.folder()).filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         match failure.downcast_ref::<io::Error>() {
-            Some(error) => format!("cannot write into {}: {error}", ShownPath(folder)).into(),
+            Some(error) => format!("cannot write into {}: {error}{}", ShownPath(folder), write_remedy(error)).into(),
             None => failure,
         }
     }

@@ -26,7 +26,8 @@ pub struct Arguments {
     /// The finger.
     #[arg(long, value_name = "N", default_value = "1", value_parser = crate::commission::finger)]
     finger: FingerNumber,
-    /// Do not wait for Enter: the space around the finger is free, or a jig holds the finger in its zeroing pose.
+    /// Do not wait for Enter. Use this only if the space around the finger is free, or if a jig holds the finger in its
+    /// zeroing pose.
     #[arg(long)]
     yes: bool,
     /// Print one JSON object with `healthy` and `findings`, for other programs. Implies --yes.

@@ -26,6 +26,7 @@ use std::io::{self, Write};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::sync::Arc;
 use std::thread;
+use sun2xp::realtime::with_remedy;
 
 /// An address that is reserved for documentation, so that no host has it.
 const DISTANT: (Ipv4Addr, u16) = (Ipv4Addr::new(192, 0, 2, 1), 9);
@@ -64,11 +65,13 @@ pub fn serve(listener: TcpListener, wanted: Wanted, control: Option<Control>) ->
     writeln!(io::stdout(), "{}", url(bound, token.as_deref()))?;
     let hub = Arc::new(Hub::new());
     let (its_hub, may_control) = (Arc::clone(&hub), control.is_some());
-    thread::Builder::new().name("sun2xp feed".into()).spawn(move || feed::run(&wanted, may_control, &its_hub))?;
+    let failed = |error: io::Error| format!("cannot serve the page at {bound}: {}", with_remedy(&error));
+    let reading = thread::Builder::new().name("sun2xp feed".into());
+    reading.spawn(move || feed::run(&wanted, may_control, &its_hub)).map_err(failed)?;
     let access = Arc::new(Access { address: bound, token, machine: access::machine() });
     let server = Server { access, hub, control: control.map(Arc::new) };
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-    Ok(runtime.block_on(server.run(listener))?)
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(failed)?;
+    Ok(runtime.block_on(server.run(listener)).map_err(failed)?)
 }
 
 /// Returns the address of the page. Browsers send what follows # to no server, so the token is in no log.

@@ -31,8 +31,8 @@ pub enum AdmissionError {
     },
     /// A joint angle is outside its limits.
     #[error(
-        "Pos[{joint}] = {value:.4} rad is outside the limits of finger {finger}, {low:.4} to {high:.4} rad: send an \
-         angle within the limits, or change `finger.joints` in the configuration of the server"
+        "joint {joint} would be at {value:.4} rad, outside the limits of finger {finger}, {low:.4} to {high:.4} rad: \
+         send an angle within the limits, or widen them in `finger.joints` of the server's configuration"
     )]
     BeyondJointLimit {
         /// The finger.

@@ -61,9 +61,13 @@ impl RemoteConfiguration {
     pub fn read(path: &Path) -> Result<Option<Self>, RemoteError> {
         let unreadable = |source| RemoteError::System { doing: format!("read {}", path.display()), source };
         let metadata = std::fs::metadata(path).map_err(unreadable)?;
-        if !metadata.is_file() || metadata.len() > LARGEST {
-            let reason = "it is not a regular file of at most 1 MiB".into();
-            return Err(RemoteError::Configuration { file: path.into(), line: None, reason });
+        let unsuitable =
+            |reason: &str| Err(RemoteError::Configuration { file: path.into(), line: None, reason: reason.into() });
+        if !metadata.is_file() {
+            return unsuitable("it is not a regular file: name the configuration file of a hand");
+        }
+        if metadata.len() > LARGEST {
+            return unsuitable("it is larger than 1 MiB: name the configuration file of a hand");
         }
         let text = std::fs::read_to_string(path).map_err(unreadable)?;
         let folder = path.parent().unwrap_or(Path::new(""));

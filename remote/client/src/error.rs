@@ -19,7 +19,9 @@ pub enum RemoteError {
     #[error("there is no finger {0}: fingers are 1, 2 and 3")]
     NoSuchFinger(i32),
     /// The hand does not have this finger.
-    #[error("the hand {hand} has no finger {finger}: use one of its fingers, or add it to hand.fingers of the server")]
+    #[error(
+        "the hand \"{hand}\" has no finger {finger}: use one of its fingers, or add it to hand.fingers of the server"
+    )]
     NotInHand {
         /// The finger.
         finger: Finger,
@@ -30,20 +32,20 @@ pub enum RemoteError {
     #[error(transparent)]
     Argument(#[from] AdmissionError),
     /// A hand is commanded twice in one call.
-    #[error("the call has two groups for the hand {0}: put their commands into one group")]
+    #[error("the call has two groups for the hand \"{0}\": put their commands into one group")]
     TwiceTogether(HandName),
     /// The finger has stopped because of a fault.
     #[error(
-        "finger {finger} is faulted (fault {fault}){}{text}. Remove the cause (docs/faults.md), and recover the finger",
-        if text.is_empty() { "" } else { ": " }
+        "finger {finger} is faulted (fault {fault}){}{name}. Remove the cause (docs/faults.md), and recover the finger",
+        if name.is_empty() { "" } else { ": " }
     )]
     Faulted {
         /// The finger.
         finger: Finger,
         /// The number of the fault.
         fault: u16,
-        /// The beginning of the text of the fault; empty if no Status had it yet.
-        text: String,
+        /// The name of the fault, with the affected part and its value; empty if no Status had them yet.
+        name: String,
     },
     /// The finger does not act as a spring now.
     #[error("finger {finger} is {stage}: {}", until_running(stage))]
@@ -73,7 +75,7 @@ pub enum RemoteError {
     },
     /// The client has heard nothing of the hand for so long that it does not send the set point.
     #[error(
-        "for {age_ms} ms, nothing was received from the hand {hand}, and remote.stale_ms is {stale_ms}, so the set \
+        "for {age_ms} ms, nothing was received from the hand \"{hand}\", and remote.stale_ms is {stale_ms}, so the set \
          point is not sent: check the line to {endpoint} and the server, and send a new set point when the position \
          can be read"
     )]
@@ -91,7 +93,7 @@ pub enum RemoteError {
     #[error("{0}")]
     Owned(String),
     /// This client does not own the hand.
-    #[error("this client does not own the hand {hand}: {loss}")]
+    #[error("this client does not own the hand \"{hand}\": {loss}")]
     NotOwner {
         /// The name of the hand.
         hand: HandName,
@@ -99,7 +101,10 @@ pub enum RemoteError {
         loss: Loss,
     },
     /// The server has refused an earlier set point.
-    #[error("the hand has refused an earlier set point, and keeps the set point before it: {0}")]
+    #[error(
+        "the hand has refused an earlier set point, and keeps the set point before it. If this call has a set point, \
+         it was not sent: send it again. Reason of the refusal: {0}"
+    )]
     Refused(String),
     /// The server has refused a request.
     #[error("{text}")]
@@ -111,8 +116,8 @@ pub enum RemoteError {
     },
     /// The server does not speak this version of the protocol.
     #[error(
-        "the server of the hand {hand} has sent data that is not a message of version 1 of the protocol ({reason}): \
-             use a client and a server of the same version"
+        "the server of the hand \"{hand}\" has sent data that is not a message of version 1 of the protocol \
+         ({reason}): use a client and a server of the same version"
     )]
     Protocol {
         /// The name of the hand.
@@ -131,7 +136,7 @@ pub enum RemoteError {
         reason: String,
     },
     /// The system has refused an operation.
-    #[error("cannot {doing}: {source}{}", more_threads(source))]
+    #[error("cannot {doing}: {source}{}", remedy(source))]
     System {
         /// The refused operation.
         doing: String,
@@ -151,12 +156,14 @@ fn until_running(stage: &str) -> &'static str {
     }
 }
 
-/// Returns the remedy if the system has refused to start a thread. Every other error of the system already shows what
-/// to change, so the remedy is empty.
-fn more_threads(source: &std::io::Error) -> &'static str {
+/// Returns the remedy if the system has refused to start a thread, or if a file is missing or this user may not read
+/// it. Every other error of the system already shows what to change, so the remedy is empty.
+fn remedy(source: &std::io::Error) -> &'static str {
     match source.kind() {
         // EAGAIN: the start of a thread can cause this error, and the reading of a file cannot.
         std::io::ErrorKind::WouldBlock => ". Raise the limit of threads (ulimit -u)",
+        std::io::ErrorKind::NotFound => ". Name an existing file",
+        std::io::ErrorKind::PermissionDenied => ". This user needs permission to read the file and to enter its folder",
         _ => "",
     }
 }
@@ -167,10 +174,16 @@ mod tests {
     use std::io::ErrorKind;
 
     #[test]
-    fn a_refused_thread_has_a_remedy_and_a_refused_file_has_not() {
+    fn a_refused_thread_and_an_unreadable_file_have_their_remedies() {
         let text = |kind: ErrorKind| RemoteError::System { doing: "do it".into(), source: kind.into() }.to_string();
-        let (thread, file) = (text(ErrorKind::WouldBlock), text(ErrorKind::PermissionDenied));
-        assert!(thread.starts_with("cannot do it: ") && thread.ends_with(". Raise the limit of threads (ulimit -u)"));
-        assert!(!file.contains("ulimit"), "{file}");
+        for (kind, remedy) in [
+            (ErrorKind::WouldBlock, ". Raise the limit of threads (ulimit -u)"),
+            (ErrorKind::NotFound, ". Name an existing file"),
+            (ErrorKind::PermissionDenied, ". This user needs permission to read the file and to enter its folder"),
+            (ErrorKind::InvalidData, "invalid data"),
+        ] {
+            let text = text(kind);
+            assert!(text.starts_with("cannot do it: ") && text.ends_with(remedy), "{text}");
+        }
     }
 }

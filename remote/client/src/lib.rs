@@ -37,7 +37,7 @@ pub use events::RemoteEvents;
 pub use hand::{RemoteFingerTip, RemoteHand};
 pub use progress::RemoteProgress;
 pub use sun2xp_remote_protocol::{
-    ClientName, Counts, Event, FINGERS, Finger, FingerStatus, HandName, PathPose, Record, Stage, Status,
+    ClientName, Counts, Event, FINGERS, FaultText, Finger, FingerStatus, HandName, PathPose, Record, Stage, Status,
 };
 pub use together::send_together;
 pub use view::RemoteStatistics;

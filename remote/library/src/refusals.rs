@@ -23,10 +23,10 @@ mod number {
 
 /// The refusal for an error of the client.
 pub(crate) fn refusal(error: RemoteError) -> RemoteRefusal {
-    if let RemoteError::Faulted { finger, text, .. } = &error
+    if let RemoteError::Faulted { finger, name, .. } = &error
         && let Some(kind) = FaultKind::from_number(error.fault().into())
     {
-        return faulted(finger.number().into(), kind, text);
+        return faulted(finger.number().into(), kind, name);
     }
     let (number, errno) = numbers(error.kind());
     let actions = match error.kind() {
@@ -37,11 +37,11 @@ pub(crate) fn refusal(error: RemoteError) -> RemoteRefusal {
     RemoteRefusal::Other { number, errno, text: error.to_string(), actions }
 }
 
-/// The refusal by a finger with a fault. `beginning` is the beginning of the server's text of this fault. The client
-/// gets the part and the value of the fault only in this text: they follow the name, and end at the first colon.
-fn faulted(finger: i32, kind: FaultKind, beginning: &str) -> RemoteRefusal {
+/// The refusal by a finger with a fault. `name` is the name of the fault with its part and its value, or empty if the
+/// client has not received them.
+fn faulted(finger: i32, kind: FaultKind, name: &str) -> RemoteRefusal {
     let description = kind.description();
-    let fault = beginning.split_once(": ").map_or(description.name, |(fault, _)| fault);
+    let fault = if name.is_empty() { description.name } else { name };
     RemoteRefusal::Other {
         number: number::FAULTED,
         errno: libc::EIO,
@@ -98,8 +98,8 @@ pub(crate) fn closed() -> RemoteRefusal {
 /// The refusal to a client that may not command the hand.
 pub(crate) fn forbidden(hand: &HandName) -> RemoteRefusal {
     let text = format!(
-        "the server does not let this client command the hand {hand}: give the client the permission \"command\" in \
-         [serve.clients] of the server, and start the server again"
+        "the server does not let this client command the hand \"{hand}\": give the client the permission \"command\" \
+         in [serve.clients] of the server, and start the server again"
     );
     RemoteRefusal::Other { number: number::SYSTEM, errno: libc::EACCES, text, actions: Vec::new() }
 }
@@ -114,7 +114,7 @@ mod tests {
     use super::*;
     use sun2xp::model::Part;
     use sun2xp::{Fault, FingerNumber, HandError};
-    use sun2xp_remote_client::Finger;
+    use sun2xp_remote_client::{FaultText, Finger};
 
     fn numbers_of(refusal: RemoteRefusal) -> (i32, i32) {
         match refusal {
@@ -141,17 +141,18 @@ mod tests {
         let mut fault = Fault::of(FaultKind::BrokenTendon, 0.2);
         fault.part = Part::Tendon(3);
         let local = HandError::Faulted { finger: FingerNumber::ALL[0], fault }.to_string();
-        let told = |text: String| {
+        let told = |text: &str| {
             let (finger, fault) = (Finger::ALL[0], FaultKind::BrokenTendon.number().into());
-            match refusal(RemoteError::Faulted { finger, fault, text }) {
+            let name = FaultText::beginning_of(text).fault().into();
+            match refusal(RemoteError::Faulted { finger, fault, name }) {
                 RemoteRefusal::Other { number: number::FAULTED, errno: libc::EIO, text, actions } => (text, actions),
                 _ => panic!("not the refusal of a fault"),
             }
         };
-        let (text, actions) = told(fault.to_string()[..71].to_owned());
+        let (text, actions) = told(&fault.to_string());
         assert_eq!(text, local);
         assert_eq!(actions, FaultKind::BrokenTendon.description().actions);
-        let (text, _) = told(String::new());
+        let (text, _) = told("");
         assert!(text.starts_with("finger 1 is faulted (fault 2): broken tendon: "), "{text}");
     }
 }

@@ -18,10 +18,7 @@ pub enum DecodeError {
         found: u8,
     },
     /// The payload has another version of the protocol.
-    #[error(
-        "version {found} of the protocol, and not version {}: use a client and a server of the same version",
-        crate::VERSION
-    )]
+    #[error("the version of the protocol is {found}, and not {}", crate::VERSION)]
     Version {
         /// The version in the payload.
         found: u8,

@@ -45,7 +45,8 @@ impl Line {
     /// Makes the namespaces and a perfect line. Equal seeds give equal losses and delays for equal packets.
     ///
     /// # Errors
-    /// Returns `PermissionDenied` or `NotFound` if this process may not make namespaces or interfaces.
+    /// Returns `PermissionDenied` if this process may not make namespaces or interfaces, and `NotFound` if the device
+    /// `/dev/net/tun` is missing.
     pub fn new(seed: u64) -> io::Result<Self> {
         let (left, right) = (Namespace::new()?, Namespace::new()?);
         let devices = [

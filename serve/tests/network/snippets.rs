@@ -35,9 +35,9 @@ fn the_snippet_of_the_page_runs() {
 #[test]
 fn every_snippet_in_rust_of_the_page_is_in_this_file() {
     let blocks: Vec<&str> = PAGE.split("```rust\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(blocks.len(), 1);
+    assert!(!blocks.is_empty(), "docs/remote.md has no snippet in Rust: correct how this test searches for them");
     for block in blocks {
         let indented: String = block.lines().map(|line| format!("    {line}\n")).collect();
-        assert!(THIS_FILE.contains(&indented), "copy this snippet into a test here:\n{indented}");
+        assert!(THIS_FILE.contains(&indented), "copy this snippet into a function here that a test runs:\n{indented}");
     }
 }

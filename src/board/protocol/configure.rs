@@ -36,7 +36,7 @@ pub struct Configure {
 /// | byte | field |
 /// |---|---|
 /// | 2..34 | the Configure's body |
-/// | 34..50 | whole counts of encoders 1 to 4, i32 each |
+/// | 34..50 | full counts of encoders 1 to 4, i32 each |
 /// | 50..58 | counts of gauges 1 to 4, u16 each |
 /// | 58..60 | status |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

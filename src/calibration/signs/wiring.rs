@@ -2,7 +2,8 @@
 //!
 //! At rest a free finger shares every pull among all its tendons, so a steady pull does not show which tendon the motor
 //! pulls. But a pull reaches the other tendons only by moving the links, whose inertia delays it. For some milliseconds
-//! after a sudden pull, the motor's own gauge therefore leads by far.
+//! after a sudden pull, the gauge of the pulled tendon therefore leads by far. It must be the gauge with the motor's
+//! number, which is called the motor's own gauge.
 
 use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;
@@ -30,17 +31,20 @@ pub(super) struct Wiring {
     motor: usize,
     pulses: u32,
     seconds: f64,
-    base: Vector4<f64>,
-    bases: f64,
+    /// Sum of the tensions in the time [`BASE`], N.
+    base_sum: Vector4<f64>,
+    /// Number of samples in `base_sum`.
+    base_samples: f64,
     /// Sum of the rises of the gauges, N.
     risen: Vector4<f64>,
+    /// Number of samples in `risen`.
     samples: f64,
 }
 
 impl Wiring {
     pub fn new() -> Self {
-        let zeros = Vector4::zeros();
-        Self { motor: 0, pulses: 0, seconds: 0.0, base: zeros, bases: 0.0, risen: zeros, samples: 0.0 }
+        let (base_sum, risen) = (Vector4::zeros(), Vector4::zeros());
+        Self { motor: 0, pulses: 0, seconds: 0.0, base_sum, base_samples: 0.0, risen, samples: 0.0 }
     }
 
     /// Returns the pulls of this cycle, N at each tendon, or `None` when every motor has been checked. `tensions`, N,
@@ -54,15 +58,16 @@ impl Wiring {
         let since = self.seconds - REST;
         if since < 0.0 {
             if since > -BASE {
-                self.base += tensions;
-                self.bases += 1.0;
+                self.base_sum += tensions;
+                self.base_samples += 1.0;
             }
             return Ok(Some(Vector4::zeros()));
         }
-        self.risen += tensions - self.base / self.bases;
+        self.risen += tensions - self.base_sum / self.base_samples;
         self.samples += 1.0;
         if since > WATCHED.max(3.0 * instruments.period) {
-            (self.pulses, self.seconds, self.base, self.bases) = (self.pulses + 1, 0.0, Vector4::zeros(), 0.0);
+            (self.pulses, self.seconds) = (self.pulses + 1, 0.0);
+            (self.base_sum, self.base_samples) = (Vector4::zeros(), 0.0);
             if self.pulses == PULSES {
                 self.check(self.risen / self.samples)?;
                 *self = Self { motor: self.motor + 1, ..Self::new() };
@@ -74,9 +79,9 @@ impl Wiring {
     }
 
     fn check(&self, risen: Vector4<f64>) -> Result<(), Obstacle> {
-        let first = risen.imax();
-        if first != self.motor && risen[first] > LEADING_RISE && risen[first] > LEADING_RATIO * risen[self.motor] {
-            return Err(Obstacle::Swapped { motor: self.motor as u8 + 1, gauge: first as u8 + 1 });
+        let (leading, own) = (risen.imax(), risen[self.motor]);
+        if leading != self.motor && risen[leading] > LEADING_RISE && risen[leading] > LEADING_RATIO * own {
+            return Err(Obstacle::Swapped { motor: self.motor as u8 + 1, gauge: leading as u8 + 1 });
         }
         Ok(())
     }

@@ -21,7 +21,9 @@ pub enum Symptom {
     EncoderJump,
     /// A motor does not turn although pull and tension are not balanced (pull minus tension, N).
     StalledMotor,
-    /// A motor has been near its continuous heat for too long (heat, per cent of the continuous heat).
+    /// The heat of a motor has been above 95 % of its continuous heat for longer than its thermal time constant (heat,
+    /// per cent of the continuous heat). The heat is the filtered mean square of the torque. The continuous heat is the
+    /// square of the torque that the motor may give permanently.
     OverheatedMotor,
     /// A joint is at its mechanical stop (angle, degrees).
     JointAtStop,

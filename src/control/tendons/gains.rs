@@ -37,8 +37,10 @@ impl Gains {
         let scheme = configured.scheme(rate);
         let tuned = TunedGains::of(scheme, rate);
         let absent = |key, term: &str| {
+            let named = if scheme == Scheme::Figure11 { "figure 11" } else { "figure 9" };
             let reason = format!(
-                "is set, but this scheme has no {term} term: leave it out, or set controller.scheme = \"figure 10\""
+                "is set, but the controller scheme \"{named}\" has no {term} term: leave this key out, or set \
+                 controller.scheme = \"figure 10\""
             );
             Err(Unusable { key, reason })
         };
@@ -98,9 +100,15 @@ mod tests {
     fn an_unusable_gain_is_refused_with_its_key() {
         let refused = |configured: ConfiguredController| Gains::new(&configured, 1000.0).unwrap_err().key;
         let base = ConfiguredController::default();
-        let proportional =
-            ConfiguredController { scheme: Some(Scheme::Figure9), tension_gain: Some(1.0), ..base.clone() };
-        assert_eq!(refused(proportional), "controller.tension_gain");
+        for (scheme, reason) in [
+            (Scheme::Figure9, "the controller scheme \"figure 9\" has no proportional term: "),
+            (Scheme::Figure11, "the controller scheme \"figure 11\" has no proportional term: "),
+        ] {
+            let proportional = ConfiguredController { scheme: Some(scheme), tension_gain: Some(1.0), ..base.clone() };
+            let unusable = Gains::new(&proportional, 1000.0).unwrap_err();
+            assert_eq!(unusable.key, "controller.tension_gain");
+            assert!(unusable.reason.contains(reason), "{}", unusable.reason);
+        }
         assert_eq!(refused(ConfiguredController { rate_time: Some(f64::NAN), ..base.clone() }), "controller.rate_time");
         assert_eq!(refused(ConfiguredController { stretch_filter: Some(0.0), ..base }), "controller.stretch_filter");
     }

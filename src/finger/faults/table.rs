@@ -248,7 +248,7 @@ faults! {
         "Remove the cause, or remove the reflex, then recover the finger", [Recover];
     53 HardwareFailed "HARDWARE_FAILED" Refusal Finger Errno "hardware failed",
         "the hardware that the program provides for this finger does not start or stop",
-        "the program's own function \"start\" or \"stop\" for this hardware has returned this errno",
+        "the program's own function \"start\" or \"stop\" for this hardware has returned the errno in the value",
         "Check the power and the cables of the hardware, end other programs that use it, and look up the errno in the \
          documentation of the program or of its hardware", [];
     54 WrongWiring "WRONG_WIRING" Refusal Finger Nothing "wrong wiring",

@@ -10,7 +10,7 @@ impl Mailbox {
         self.requests.closing.store(true, Ordering::Release);
     }
 
-    /// Requests a stop: the finger faults at the beginning of its next cycle, and its board enters the end state.
+    /// Requests a stop: the finger faults at the beginning of its next cycle, and its motors enter the end state.
     pub fn stop(&self) {
         self.requests.stops.fetch_add(1, Ordering::AcqRel);
     }

@@ -66,7 +66,7 @@ pub enum Condition {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reaction {
-    /// The finger stops with a fault: its board goes to its end state.
+    /// The finger stops with a fault: its motors enter the end state.
     Stop,
     /// The anchor of the spring (the joint angles of the set point) moves to the present joint angles.
     Hold,

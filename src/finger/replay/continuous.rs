@@ -1,5 +1,6 @@
 //! Replay of one finger's cycles as they arrive, for recordings of any length. The memory that it takes is limited.
 
+use super::remedy::without_remedy;
 use super::same;
 use super::soundness::{InputLimits, check_source, within_bounds};
 use crate::control::{Controller, State};
@@ -63,7 +64,7 @@ pub enum Step {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum Unsound {
     /// The hand's configuration is invalid.
-    #[error("hand.{key} {reason}. {ALTERED}")]
+    #[error("hand.{key}: {reason}. {ALTERED}")]
     Hand {
         /// The key, with dots.
         key: String,
@@ -71,7 +72,7 @@ pub enum Unsound {
         reason: String,
     },
     /// No controller can be constructed from a configuration.
-    #[error("controller {number}: {key} {reason}. {ALTERED}")]
+    #[error("controller {number}: {key}: {reason}. {ALTERED}")]
     Controller {
         /// Number of the controller.
         number: u32,
@@ -81,7 +82,7 @@ pub enum Unsound {
         reason: String,
     },
     /// A keyframe contains a number that is out of bounds.
-    #[error("the state before cycle {cycle}: {key} {reason}. {ALTERED}")]
+    #[error("the state before cycle {cycle}: {key}: {reason}. {ALTERED}")]
     Keyframe {
         /// Number of the cycle.
         cycle: u64,
@@ -91,7 +92,7 @@ pub enum Unsound {
         reason: String,
     },
     /// A cycle contains a value that no servo can have recorded.
-    #[error("cycle {cycle}: {key} {reason}. {ALTERED}")]
+    #[error("cycle {cycle}: {key}: {reason}. {ALTERED}")]
     Cycle {
         /// Number of the cycle.
         cycle: u64,
@@ -116,7 +117,8 @@ impl ContinuousReplay {
     pub fn controller(&mut self, source: ControllerSource, hand: ConfiguredHand) -> Result<(), Unsound> {
         let number = source.number;
         if self.hand.as_ref() != Some(&hand) {
-            hand.check().map_err(|Unusable { key, reason }| Unsound::Hand { key: key.into(), reason })?;
+            let unsound = |Unusable { key, reason }| Unsound::Hand { key: key.into(), reason: without_remedy(&reason) };
+            hand.check().map_err(unsound)?;
             self.hand = Some(hand);
             self.ready.clear();
         }
@@ -207,7 +209,8 @@ impl ContinuousReplay {
             }
             let Some(source) = self.sources.get(&number) else { return Ok(Some(number)) };
             let made = Controller::in_gravity(&source.finger, &source.gravity, hand.rate);
-            let unusable = |Unusable { key, reason }| Unsound::Controller { number, key, reason };
+            let unusable =
+                |Unusable { key, reason }| Unsound::Controller { number, key, reason: without_remedy(&reason) };
             self.ready.insert(number, made.map_err(unusable)?);
         }
         Ok(None)

@@ -3,6 +3,7 @@
 //! or panic.
 
 use super::NotReplayable;
+use super::remedy::without_remedy;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::{ControlInput, ControllerSource, Recording};
 use crate::model::configuration::{ConfiguredHand, Unusable};
@@ -32,7 +33,7 @@ impl Recording {
             return wrong("finger", format!("is {}: fingers are 1, 2 and 3", origin.finger));
         }
         if let Err(Unusable { key, reason }) = origin.hand.check() {
-            return wrong(&format!("hand.{key}"), reason);
+            return wrong(&format!("hand.{key}"), without_remedy(&reason));
         }
         for source in &origin.controllers {
             let number = source.number;
@@ -71,7 +72,7 @@ impl Recording {
 
 /// Checks that a finger can have this controller. Otherwise returns the key and the reason.
 pub(super) fn check_source(source: &ControllerSource) -> Result<(), (&'static str, String)> {
-    source.finger.check().map_err(|Unusable { key, reason }| (key, reason))?;
+    source.finger.check().map_err(|Unusable { key, reason }| (key, without_remedy(&reason)))?;
     check_gravity(&source.gravity)
 }
 
@@ -79,7 +80,7 @@ fn check_gravity(gravity: &Vector3<f64>) -> Result<(), (&'static str, String)> {
     match gravity.iter().find(|part| !GRAVITY.contains(part)) {
         None => Ok(()),
         Some(part) => {
-            let reason = format!("of {part:?} m/s^2 is outside {} to {}", GRAVITY.start(), GRAVITY.end());
+            let reason = format!("is {part:?} m/s^2, outside {} to {}", GRAVITY.start(), GRAVITY.end());
             Err(("gravity", reason))
         }
     }
@@ -103,7 +104,7 @@ impl<'a> InputLimits<'a> {
         let most_skipped = self.most_skipped;
         let ControlInput { skipped, fading, .. } = *input;
         if skipped > most_skipped {
-            let reason = format!("is {skipped}: with this watchdog it is at most {most_skipped}");
+            let reason = format!("is {skipped}: with the hand.watchdog_ms of this file it is at most {most_skipped}");
             return Err(("skipped".into(), reason));
         }
         if fading.is_some_and(|fading| !fading.possible(self.hand)) {

@@ -22,7 +22,7 @@ impl Admission {
         let finger = self.finger;
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);
         let (symmetric, (smallest, largest)) = spring(&asked).map_err(|error| match error {
-            ContactError::NotFinite(value) => SetPointError::NotFinite { what: "K", finger, value },
+            ContactError::NotFinite(value) => SetPointError::NotFinite { what: "the joint stiffness", finger, value },
             source => SetPointError::JointStiffness { finger, source },
         })?;
         let bound = self.stiffness_bound * self.links.0[2].powi(2);

@@ -64,8 +64,8 @@ pub enum PathError {
     /// The path leaves the joint limits between two poses.
     #[error(
         "on the way to pose {pose}, joint {joint} of finger {finger} would go to {value:.4} rad, outside the permitted \
-         range of {low:.4} to {high:.4} rad: add poses on this way, or allow more time for the ways directly before \
-         and after this way"
+         range of {low:.4} to {high:.4} rad: add poses in this part of the path, or allow more time for the parts \
+         directly before and after this part"
     )]
     BeyondJointLimit {
         /// The finger.

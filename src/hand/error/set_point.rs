@@ -20,8 +20,8 @@ pub enum SetPointError {
     },
     /// A joint angle is outside its limits.
     #[error(
-        "Pos[{joint}] = {value:.4} rad is outside the limits of finger {finger}, {low:.4} to {high:.4} rad: send an \
-         angle within the limits, change `finger.joints`, or set `hand.out_of_range = \"clamp\"`"
+        "joint {joint} would be at {value:.4} rad, outside the limits of finger {finger}, {low:.4} to {high:.4} rad: \
+         send an angle within the limits, widen them in `finger.joints`, or set `hand.out_of_range = \"clamp\"`"
     )]
     BeyondJointLimit {
         /// The finger.
@@ -33,6 +33,24 @@ pub enum SetPointError {
         /// Lower limit, rad.
         low: f64,
         /// Upper limit, rad.
+        high: f64,
+    },
+    /// The set point that was sent last is beyond the joint limits that an adjustment would set.
+    #[error(
+        "the set point that was sent last to finger {finger} has joint {joint} at {value:.4} rad, outside the new \
+         limits, {low:.4} to {high:.4} rad: send a set point within the new limits first, set wider limits, or set \
+         `hand.out_of_range = \"clamp\"`, which moves the joint to the limit"
+    )]
+    SentBeyondJointLimit {
+        /// The finger.
+        finger: FingerNumber,
+        /// Number of the joint, 0 to 2.
+        joint: usize,
+        /// The angle in the set point, rad.
+        value: f64,
+        /// The new lower limit, rad.
+        low: f64,
+        /// The new upper limit, rad.
         high: f64,
     },
     /// The path that the finger follows goes beyond the joint limits that an adjustment would set.
@@ -221,7 +239,8 @@ impl SetPointError {
             Self::Contact { source: ContactError::NotFinite(_), .. } => libc::EINVAL,
             Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
             Self::TooStiffJoints { .. } | Self::TooMuchTorque { .. } => libc::ERANGE,
-            Self::OutOfReach { .. } | Self::Damping { .. } | Self::PathBeyondJointLimit { .. } => libc::ERANGE,
+            Self::OutOfReach { .. } | Self::Damping { .. } => libc::ERANGE,
+            Self::SentBeyondJointLimit { .. } | Self::PathBeyondJointLimit { .. } => libc::ERANGE,
             Self::NotSymmetric { .. } | Self::Negative { .. } | Self::Contact { .. } => libc::EDOM,
             Self::JointStiffness { .. } => libc::EDOM,
         }

@@ -42,13 +42,14 @@ const STATE_FEEDBACK_RATE: f64 = 750.0;
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredController {
-    /// The controller of the whole finger. Without it [`ConfiguredController::scheme`] selects one.
+    /// The controller of the whole finger. If it is absent, the method [`ConfiguredController::scheme()`] selects one
+    /// by the rate.
     pub scheme: Option<Scheme>,
     /// The stiffness law for set points in joint angles. A fingertip set point always uses the exact law.
     pub law: Law,
     /// Whether the controller compensates the torques of gravity on the links.
     pub gravity_compensation: bool,
-    /// K_T, dimensionless: commanded tension per tension error.
+    /// K_T, dimensionless: the gain from the tension error to the pull of a motor.
     pub tension_gain: Option<f64>,
     /// K_TI, 1/s.
     pub tension_integral: Option<f64>,
@@ -65,19 +66,20 @@ pub struct ConfiguredController {
     pub set_point_speed: Option<f64>,
     /// Figure 11: bandwidth with which the motor model follows the gauges, 1/s.
     pub adaptation_gain: Option<f64>,
-    /// State feedback: alpha, the commanded tension per tension error. The motors then appear to have 1/alpha of their
-    /// inertia.
+    /// State feedback: alpha, the gain from the tension error to the pull of a motor. The motors appear to have 1/alpha
+    /// of their inertia.
     pub inertia_gain: Option<f64>,
-    /// State feedback: damping ratio of the spring. A finger with 0.5 or more can oscillate.
+    /// State feedback: damping ratio of the spring, 0.05 to 0.45. Too much damping makes a finger oscillate, because of
+    /// the delay of one cycle: a finger with 0.5 or more can oscillate.
     pub damping_ratio: Option<f64>,
     /// State feedback: time constant of each of the five poles of the set point filter, s.
     pub set_point_time: Option<f64>,
-    /// State feedback: amplitude of the dither divided by the Coulomb friction of the joints. With 0 there is no
-    /// dither.
+    /// State feedback: amplitude of the dither of the joints, divided by their Coulomb friction. With 0 the joints have
+    /// no dither.
     pub dither: Option<f64>,
     /// State feedback: smallest amplitude of the dither of the tensions, as a fraction of each tension. If all tendons
     /// have equal friction, the dither causes no joint torque. Otherwise it moves the tip a little. Its amplitude rises
-    /// with `friction.pulley`. With 0 there is no such dither.
+    /// with `friction.pulley`. If `tension_dither` is 0, the tensions have no dither, whatever `friction.pulley` is.
     pub tension_dither: Option<f64>,
     /// State feedback: the part of the motors' friction that is fed forward, 0 to 1.
     pub friction_share: Option<f64>,

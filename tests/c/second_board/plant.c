@@ -3,7 +3,7 @@
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
-static const double pulley = 4.75e-4;
+static const double pulley_radius = 4.75e-4;
 static const double stiffness = 30000.0;
 static const double rotor_inertia = 6e-7, rotor_damping = 2e-6;
 static const double joint_inertia[JOINTS] = {3.7e-4, 1.4e-4, 2.5e-5};
@@ -13,8 +13,9 @@ static const double gauge_range = 100.0;
 static const double start_degrees[JOINTS] = {0.0, 30.0, 60.0};
 static const double stop_degrees[JOINTS][2] = {{-63.0, 63.0}, {-33.0, 103.0}, {2.0, 123.0}};
 
-/* Moment arms: joint torque for each tendon's tension, m. A motor that pulls its tendon shortens the tendon, and so
-   turns each joint in the direction of the sign of its moment arm. */
+/* Moment arms, m: the torque of each tendon (column) on each joint (row), divided by the tension of the tendon. A motor
+   that pulls its tendon shortens the tendon. This turns each joint in the direction of the sign of the tendon's moment
+   arm at this joint. */
 static const double R[JOINTS][MOTORS] = {
     {-0.0109, 0.0062, 0.0062, -0.0109},
     {0.0109, 0.0062, -0.0062, -0.0109},
@@ -26,7 +27,7 @@ static const double home_tension[MOTORS] = {5.0, 5.0 * 109 / 62, 5.0 * 109 / 62,
 static void find_tensions(struct plant *plant)
 {
     for (int i = 0; i < MOTORS; i++) {
-        double stretch = pulley * plant->motor[i];
+        double stretch = pulley_radius * plant->motor[i];
         for (int j = 0; j < JOINTS; j++)
             stretch -= R[j][i] * plant->theta[j];
         plant->tension[i] = stretch > 0 ? stiffness * stretch : 0;
@@ -42,7 +43,7 @@ void start_plant(struct plant *plant)
         double pulled = home_tension[i] / stiffness;
         for (int j = 0; j < JOINTS; j++)
             pulled += R[j][i] * plant->theta[j];
-        plant->motor[i] = pulled / pulley;
+        plant->motor[i] = pulled / pulley_radius;
     }
     plant->braked = 1;
     find_tensions(plant);
@@ -52,7 +53,7 @@ static void step_plant(struct plant *plant, double h)
 {
     find_tensions(plant);
     for (int i = 0; i < MOTORS; i++) {
-        double torque = plant->torque[i] - pulley * plant->tension[i] - rotor_damping * plant->motor_rate[i];
+        double torque = plant->torque[i] - pulley_radius * plant->tension[i] - rotor_damping * plant->motor_rate[i];
         plant->motor_rate[i] = plant->braked ? 0 : plant->motor_rate[i] + h * torque / rotor_inertia;
         plant->motor[i] += h * plant->motor_rate[i];
     }
@@ -77,9 +78,9 @@ void advance_plant(struct plant *plant, int64_t nanoseconds)
     const int64_t step = 50000;
     plant->clock += nanoseconds;
     while (nanoseconds > 0) {
-        int64_t now = nanoseconds < step ? nanoseconds : step;
-        step_plant(plant, 1e-9 * (double)now);
-        nanoseconds -= now;
+        int64_t length = nanoseconds < step ? nanoseconds : step;
+        step_plant(plant, 1e-9 * (double)length);
+        nanoseconds -= length;
     }
     find_tensions(plant);
 }
@@ -87,12 +88,12 @@ void advance_plant(struct plant *plant, int64_t nanoseconds)
 /* The encoder reads zero when the finger is straight and its tendons have the tensions of the start. */
 int32_t encoder(const struct plant *plant, int i)
 {
-    double angle = plant->motor[i] - home_tension[i] / stiffness / pulley;
+    double angle = plant->motor[i] - home_tension[i] / stiffness / pulley_radius;
     return (int32_t)floor(angle * COUNTS_A_REVOLUTION / (2 * pi));
 }
 
-/* Includes converter noise, one count up or down: the library considers a gauge dead if its count never
-   changes. */
+/* Includes converter noise, one count up or down, like a real gauge. The library can report a gauge without noise as
+   stuck while the other gauges fluctuate. */
 unsigned gauge(const struct plant *plant, int i)
 {
     static uint32_t random = 1;

@@ -104,7 +104,7 @@ impl Trouble {
         };
         let defect = match (name, numbers) {
             ("cut", &[tendon]) => Defect::CutTendon(part(tendon)?),
-            ("slack", &[tendon, grip]) if grip >= 0.0 => Defect::SlackTendon { tendon: part(tendon)?, grip },
+            ("slack", &[tendon, grip]) if grip >= 0.0 => Defect::SlippingTendon { tendon: part(tendon)?, grip },
             ("jam", &[motor]) => Defect::JammedMotor(part(motor)?),
             ("hot", &[motor]) => Defect::HotMotor(part(motor)?),
             ("dead-gauge", &[gauge]) => Defect::DeadGauge { gauge: part(gauge)?, count: None },
@@ -241,7 +241,7 @@ mod tests {
     fn troubles_are_read() {
         for (line, trouble) in [
             ("cut 1 3", Trouble::Finger(1, Defect::CutTendon(3))),
-            ("slack 2 4 1.5", Trouble::Finger(2, Defect::SlackTendon { tendon: 4, grip: 1.5 })),
+            ("slack 2 4 1.5", Trouble::Finger(2, Defect::SlippingTendon { tendon: 4, grip: 1.5 })),
             ("dead-gauge 1 2", Trouble::Finger(1, Defect::DeadGauge { gauge: 2, count: None })),
             ("dead-gauge 1 2 4095", Trouble::Finger(1, Defect::DeadGauge { gauge: 2, count: Some(4095) })),
             ("jump 1 2 -300", Trouble::Finger(1, Defect::EncoderJump { encoder: 2, counts: -300 })),

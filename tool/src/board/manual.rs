@@ -42,7 +42,7 @@ const DEFECTS: [Entry; 19] = [
     ("swap-motors FINGER A B", "swap the cables of two motors; also swap-encoders and swap-gauges"),
     ("swap-tendons FINGER A B", "route two tendons to each other's motor"),
     ("reverse-motor FINGER MOTOR", "connect a motor backwards; also reverse-encoder and reverse-gauge"),
-    ("gauge-gain FINGER GAUGE RATIO", "multiply the gain of a gauge"),
+    ("gauge-gain FINGER GAUGE RATIO", "set the gain of a gauge to RATIO times its original value"),
     ("dead-motor FINGER MOTOR", "disconnect a motor; also dead-encoder"),
     ("jump FINGER ENCODER COUNTS", "add COUNTS to the count of an encoder"),
     ("zero-lost FINGER", "declare the encoder counts invalid"),

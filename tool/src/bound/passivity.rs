@@ -45,7 +45,7 @@ struct Pose {
 pub fn compute(arguments: &Arguments, searched: &Searched, progress: &Progress) -> Result<(f64, Passivity), Failure> {
     let Searched { number, finger, rate } = *searched;
     let map = OneCycleMap::new(finger, rate)
-        .map_err(|unusable| format!("finger {number}: {} {}", unusable.key, unusable.reason))?;
+        .map_err(|unusable| format!("finger {number}: {}: {}", unusable.key, unusable.reason))?;
     let stiffness = finger.stiffness_bound(rate);
     let ratio = (HIGHEST / LOWEST).powf(1.0 / f64::from(STEPS));
     let frequencies: Vec<f64> = (0..=STEPS).map(|step| LOWEST * ratio.powi(step)).collect();

@@ -18,6 +18,9 @@ const SAMPLES_OF_NOMINAL: usize = 2000;
 /// those of the nominal plant without walls. A few almost straight poses with a very slow motion are permitted.
 const USELESS: f64 = 0.1;
 
+/// The failure for a set without a plant, which no arguments give.
+const NO_PLANT: &str = "the set of plants is empty. This is a defect of sun2xp: please report it";
+
 /// The bounds of all plants.
 #[derive(Debug, Serialize)]
 pub struct SetBound {
@@ -96,12 +99,12 @@ pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -
             let search = Search { samples, seed: arguments.seed, walls };
             let bound = search
                 .bound(finger, rate, variant)
-                .map_err(|unusable| format!("finger {number}: {} {}", unusable.key, unusable.reason))?;
+                .map_err(|unusable| format!("finger {number}: {}: {}", unusable.key, unusable.reason))?;
             plants.push(Member::new(variant, walls, &bound));
             progress.step();
         }
     }
-    let nominal = plants.first().ok_or("the set of plants is empty")?;
+    let nominal = plants.first().ok_or(NO_PLANT)?;
     if nominal.uncovered as f64 > USELESS * nominal.samples as f64 {
         return Err(format!(
             "finger {number}: the controller leaves the finger unstable at every stiffness in {} of {} poses: remove \
@@ -115,18 +118,18 @@ pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -
     let counts = |&(index, member): &(usize, &Member)| index == 0 || member.uncovered == 0;
     let numbered = plants.iter().enumerate().filter(counts);
     let least = numbered.min_by(|(_, one), (_, other)| one.bound.total_cmp(&other.bound));
-    let (limited_by, least) = least.ok_or("the set of plants is empty")?;
+    let (limited_by, least) = least.ok_or(NO_PLANT)?;
     let stiffness = least.bound;
     let near = Search { samples, seed: arguments.seed, walls: least.walls }
         .near_axis(finger, rate, &Variant::NOMINAL, stiffness)
-        .map_err(|unusable| format!("finger {number}: {} {}", unusable.key, unusable.reason))?;
+        .map_err(|unusable| format!("finger {number}: {}: {}", unusable.key, unusable.reason))?;
     progress.step();
     let near_axis = NearAxis { samples: near.samples, unstable: near.unstable, distance: near.distance };
     Ok((stiffness, SetBound { plants, limited_by, near_axis }))
 }
 
 fn place(walls: bool) -> &'static str {
-    if walls { "against walls" } else { "free" }
+    if walls { "against walls" } else { "without walls" }
 }
 
 impl Member {

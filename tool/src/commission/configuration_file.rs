@@ -100,7 +100,10 @@ fn with(text: &str, finger: i32, changed: &[Changed], comment: &dyn Fn(&str) -> 
     let configuration = parse_configuration(&text)
         .map_err(|error| format!("the results do not fit the configuration file: {error}"))?;
     // A hand would refuse to open with values with which no controller can be constructed.
-    let found = configuration.fingers.get(finger as usize - 1).ok_or("a finger has vanished")?;
+    let found = configuration
+        .fingers
+        .get(finger as usize - 1)
+        .ok_or_else(|| format!("the results have no finger {finger}. This is a defect of sun2xp: please report it"))?;
     Controller::new(found, configuration.hand.rate).map_err(|Unusable { key, reason }| {
         format!("a hand would not open with the results: finger.{finger}.{key}: {reason}")
     })?;
@@ -144,8 +147,12 @@ pub fn table<'a>(parent: &'a mut Table, key: &str) -> Result<&'a mut Table, Fail
             key.leaf_decor_mut().clear();
         }
     }
-    let entry = parent.get_mut(key).ok_or("a table has vanished")?;
-    entry.as_table_mut().ok_or_else(|| format!("{key} is not a table in the configuration file").into())
+    let entry = parent
+        .get_mut(key)
+        .ok_or_else(|| format!("the table {key} could not be created. This is a defect of sun2xp: please report it"))?;
+    entry
+        .as_table_mut()
+        .ok_or_else(|| format!("{key} is not a table in the configuration file: write it as one").into())
 }
 
 #[cfg(test)]

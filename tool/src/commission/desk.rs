@@ -79,7 +79,7 @@ impl Desk<'_> {
                     return Err(NoAnswer::GivenUp(failure.to_string()).into());
                 }
             } else {
-                self.person.show(&format!("{failure}: reading again"));
+                self.person.show(&format!("{failure}. The tool opens the finger again and repeats the reading"));
             }
             attempt += 1;
         }
@@ -93,7 +93,7 @@ impl Desk<'_> {
         step: Step,
         mut failed: impl FnMut(&Outcome) -> Result<(), Failure>,
     ) -> Result<Outcome, Failure> {
-        let question = format!("Remove the cause, then do the step {step} again.");
+        let question = format!("Remove the cause, then do the step \"{step}\" again.");
         loop {
             let done = self.carry_out(step);
             match &done {

@@ -33,14 +33,16 @@ fn adopt(desk: &mut Desk, outcome: &mut Outcome, found: &Findings) {
         let by_weight: i8 = if desk.finger.gauge.newton_per_count[motor] < 0.0 { -1 } else { 1 };
         if signs.gauge[motor] != by_weight {
             outcome.wrong(Wrong::Refused(format!(
-                "the sign of gauge {} is now opposite to the sign that the step gauges found. Do the step gauges again",
+                "the sign of gauge {} is now opposite to the sign that the step \"gauges\" found: its wires, its \
+                 amplifier or gauge.newton_per_count was changed since then, or the weights did not hang as that step \
+                 asked. Do that step again",
                 motor + 1
             )));
         }
         if signs.encoder[motor] != desk.finger.encoder.sign[motor] {
             outcome.wrong(Wrong::Refused(format!(
                 "motor {0} was turned by hand in the direction that winds its tendon in, or tendon {0} is wound on its \
-                 drum the other way round now. Do the step encoders again",
+                 drum the other way round now. Do the step \"encoders\" again",
                 motor + 1
             )));
         }

@@ -56,9 +56,9 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
     let WakeUp { late, refusals, .. } = wake_up;
     let period = 1e6 / configuration.hand.rate;
     let periods = late.maximum / period;
-    let lost = if periods > 1.0 { format!(", {periods:.1} periods") } else { String::new() };
+    let lost = if periods > 1.0 { format!(" ({periods:.1} periods)") } else { String::new() };
     let found = format!(
-        "median {:.0}, 99 % {:.0}, worst {:.0} us of a period of {period:.0} us{lost}",
+        "median {:.0} us, 99 % {:.0} us, worst {:.0} us{lost}; a period is {period:.0} us",
         late.median, late.p99, late.maximum
     );
     let watchdog = f64::from(configuration.hand.watchdog_ms) * 1e3;
@@ -126,9 +126,9 @@ mod tests {
         assert_eq!(judged(5000.0, 110.0, RealtimeRefusals::default()).verdict, Rating::Failure);
         // The worst wake-up counts too. The watchdog of the board trips after 18 ms.
         for (worst, verdict, part) in [
-            (400.0, Rating::Good, "worst 400 us of a period of 1000 us"),
-            (4700.0, Rating::Warning, "worst 4700 us of a period of 1000 us, 4.7 periods"),
-            (18_100.0, Rating::Failure, "18.1 periods"),
+            (400.0, Rating::Good, "worst 400 us; a period is 1000 us"),
+            (4700.0, Rating::Warning, "worst 4700 us (4.7 periods); a period is 1000 us"),
+            (18_100.0, Rating::Failure, "(18.1 periods); a period is 1000 us"),
         ] {
             let finding = judged_by_worst(1000.0, 90.0, worst, RealtimeRefusals::default());
             assert!(finding.verdict == verdict && finding.found.ends_with(part), "{finding:?}");

@@ -56,7 +56,9 @@ impl Screen {
         match self.events.recv_timeout(time) {
             Ok(event) => event.map(Some),
             Err(RecvTimeoutError::Timeout) => Ok(None),
-            Err(RecvTimeoutError::Disconnected) => Err(io::Error::other("the thread that reads the keys has ended")),
+            Err(RecvTimeoutError::Disconnected) => {
+                Err(io::Error::other("the thread that reads the keys has ended: start the command again"))
+            }
         }
     }
 

@@ -17,7 +17,8 @@ pub fn draw(svg: &str) -> Result<Vec<u8>, Failure> {
     }
     let tree = Tree::from_str(svg, &options)?;
     let size = tree.size().to_int_size();
-    let mut pixels = Pixmap::new(size.width(), size.height()).ok_or("the picture has no size")?;
+    let mut pixels = Pixmap::new(size.width(), size.height())
+        .ok_or("the picture has no size. This is a defect of sun2xp: please report it")?;
     resvg::render(&tree, Transform::identity(), &mut pixels.as_mut());
     Ok(pixels.encode_png()?)
 }

@@ -7,14 +7,16 @@ use std::sync::{Mutex, PoisonError};
 use std::thread::{self, Thread};
 use std::time::{Duration, Instant};
 
-/// Work that is shorter than this shows no line, unless every new name gets a line at once.
+/// Work that is shorter than this shows no line, except with [`Progress::with_every_name`], where each new name that
+/// [`Progress::now`] receives gets a line at once.
 const FIRST_LINE: Duration = Duration::from_secs(1);
 
-/// Time between two lines.
+/// Shortest time between two lines, unless the second one has a new name (see [`Progress::with_every_name`]).
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
 
-/// Time between two redraws of the bar, so that it moves while a step takes long.
-const PICTURE: Duration = Duration::from_millis(100);
+/// Time between two redraws of the bar. During a long step, the redraws update the remaining time. [`Progress::during`]
+/// also counts the time at this interval.
+const BETWEEN_REDRAWS: Duration = Duration::from_millis(100);
 
 /// The progress of one piece of work. It disappears from a terminal when it is dropped. All methods may be called from
 /// any thread.
@@ -30,10 +32,11 @@ struct Lines {
     printed: Option<Instant>,
     done: u64,
     total: u64,
-    now: String,
-    /// Whether every new value of `now` gets a line at once.
+    /// Names what is done now.
+    name: String,
+    /// Whether every new name gets a line at once.
     named: bool,
-    /// Whether `now` has a new value that must get a line at once.
+    /// Whether `name` is new and must get a line at once.
     renamed: bool,
 }
 
@@ -52,11 +55,11 @@ impl Progress {
     }
 
     /// Names what is done now, for example the plant whose bound is searched.
-    pub fn now(&self, now: impl Into<String>) {
-        let now = now.into();
+    pub fn now(&self, name: impl Into<String>) {
+        let name = name.into();
         self.change(|lines| {
-            lines.renamed = lines.named && lines.now != now;
-            lines.now = now;
+            lines.renamed = lines.named && lines.name != name;
+            lines.name = name;
         });
     }
 
@@ -78,7 +81,7 @@ impl Progress {
             let clock = scope.spawn(|| {
                 while !ended.load(Ordering::Acquire) {
                     progress.reach(began.elapsed().min(duration).as_millis() as u64);
-                    thread::park_timeout(PICTURE);
+                    thread::park_timeout(BETWEEN_REDRAWS);
                 }
             });
             // The clock also ends if the work panics.
@@ -102,7 +105,7 @@ impl Progress {
         match &self.bar {
             Some(bar) => {
                 bar.set_position(lines.done);
-                bar.set_message(lines.now.clone());
+                bar.set_message(lines.name.clone());
             }
             None => {
                 if let Some(line) = lines.due(Instant::now()) {
@@ -137,8 +140,8 @@ impl Drop for Progress {
 
 impl Lines {
     fn new(total: u64) -> Self {
-        let now = String::new();
-        Self { began: Instant::now(), printed: None, done: 0, total, now, named: false, renamed: false }
+        let name = String::new();
+        Self { began: Instant::now(), printed: None, done: 0, total, name, named: false, renamed: false }
     }
 
     /// Returns the line to print at this instant, if one is due.
@@ -153,7 +156,7 @@ impl Lines {
         self.renamed = false;
         self.printed = Some(now);
         let percent = 100 * self.done / self.total.max(1);
-        Some(if self.now.is_empty() { format!("{percent} %") } else { format!("{percent} %, {}", self.now) })
+        Some(if self.name.is_empty() { format!("{percent} %") } else { format!("{percent} %, {}", self.name) })
     }
 }
 
@@ -167,7 +170,7 @@ fn bar(what: &str, total: u64) -> ProgressBar {
         bar.set_style(style.progress_chars("━╸─"));
     }
     bar.set_prefix(what.to_owned());
-    bar.enable_steady_tick(PICTURE);
+    bar.enable_steady_tick(BETWEEN_REDRAWS);
     bar
 }
 
@@ -182,7 +185,7 @@ mod tests {
         let printed: Vec<(u64, String)> = (0..80)
             .filter_map(|tenth| {
                 lines.done = tenth / 10;
-                lines.now = if tenth < 30 { String::new() } else { "slow motors".into() };
+                lines.name = if tenth < 30 { String::new() } else { "slow motors".into() };
                 lines.due(began + Duration::from_millis(100 * tenth)).map(|line| (tenth, line))
             })
             .collect();

@@ -2,12 +2,19 @@
 
 use crate::failure::Failure;
 use std::path::Path;
-use sun2xp::finger::ALTERED;
+use sun2xp::finger::{ALTERED, without_remedy};
 use sun2xp::model::ShownPath;
+use sun2xp::model::configuration::Unusable;
 
 /// Returns the failure of a file that `library` has written, with the cause and the remedy.
 pub fn unusable(path: &Path, library: &str, reason: &str) -> Failure {
     format!("{} cannot be used: {reason}. {ALTERED}{}", ShownPath(path), or_by(library)).into()
+}
+
+/// Returns the key of a recorded configuration that cannot be used, and the reason. The remedy of the check is for a
+/// person who writes a configuration, so it is left out.
+pub fn named(wrong: &Unusable) -> String {
+    format!("{}: {}", wrong.key, without_remedy(&wrong.reason))
 }
 
 /// If a library of another version has written the file, returns a second remedy as the end of a sentence: libraries of
@@ -25,7 +32,7 @@ mod tests {
 
     #[test]
     fn only_a_file_of_another_library_has_the_second_remedy() {
-        let text = |library: &str| unusable(Path::new("hand.mcap"), library, "rate 0 Hz").to_string();
+        let text = |library: &str| unusable(Path::new("hand.mcap"), library, "rate: 0 Hz is too low").to_string();
         assert!(text(env!("CARGO_PKG_VERSION")).ends_with("copy it again"));
         assert!(text("0.0.9").ends_with("copy it again, or use the program of library 0.0.9, which wrote it"));
     }

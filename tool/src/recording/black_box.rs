@@ -1,6 +1,6 @@
 //! A black box as a recording of one finger.
 
-use super::altered::unusable;
+use super::altered::{named, unusable};
 use super::entry::{Entry, Item};
 use crate::failure::Failure;
 use std::fs::File;
@@ -64,10 +64,9 @@ pub fn read(path: &Path) -> Result<(Description, Vec<Entry>), Failure> {
 /// Checks the configurations. An altered file may have any values. The commands that draw and convert a recording
 /// expect values that a hand may have.
 fn check(origin: &Origin) -> Result<(), String> {
-    let refused = |key: &str, reason: &str| format!("{key} {reason}");
-    origin.hand.check().map_err(|wrong| refused(wrong.key, &wrong.reason))?;
+    origin.hand.check().map_err(|wrong| named(&wrong))?;
     let mut fingers = origin.controllers.iter().map(|source| &source.finger);
-    fingers.try_for_each(|finger| finger.check().map_err(|wrong| refused(wrong.key, &wrong.reason)))
+    fingers.try_for_each(|finger| finger.check().map_err(|wrong| named(&wrong)))
 }
 
 /// Returns the stage that has this text in a black box.

@@ -1,6 +1,6 @@
 //! Reading a recording: an MCAP file that `sun2xp record` has written, complete or not, or a black box.
 
-use super::altered::{or_by, unusable};
+use super::altered::{named, or_by, unusable};
 use super::black_box;
 use super::channels::{DESCRIPTION, EVENTS, FORMAT, LOST, OBJECT, POSTCARD, STATUS, VERSION};
 use super::entry::{Entry, Item};
@@ -100,7 +100,7 @@ impl Recording {
                 }
                 Some(Found::Description(description)) => {
                     description.configuration.check().map_err(|wrong| {
-                        let reason = format!("{}.{} {}", wrong.section, wrong.unusable.key, wrong.unusable.reason);
+                        let reason = format!("{}.{}", wrong.section, named(&wrong.unusable));
                         unusable(path, &description.library, &reason)
                     })?;
                     return Ok(Self::new(path, Source::Mcap(Box::new(mcap)), *description));
@@ -261,8 +261,7 @@ fn message(topic: &str, encoding: &str, time: u64, data: &[u8]) -> Result<Option
             let message =
                 Message::decode(data).map_err(|error| format!("a message of {topic} cannot be read: {error}"))?;
             if let Message::Controller { source, .. } = &message {
-                let refused = |key: &str, reason: &str| format!("a controller of {topic}: {key} {reason}");
-                source.finger.check().map_err(|wrong| refused(wrong.key, &wrong.reason))?;
+                source.finger.check().map_err(|wrong| format!("a controller of {topic}: {}", named(&wrong)))?;
             }
             Item::Message(message)
         }

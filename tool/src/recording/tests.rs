@@ -105,6 +105,28 @@ fn a_recording_in_another_version_of_the_format_is_refused_with_the_library_to_u
 }
 
 #[test]
+fn altered_configurations_are_refused_without_the_remedy_for_their_authors() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hand.mcap");
+    let (reader, mut messages) = messages("altered", Duration::from_millis(200));
+    let mut description = reader.description().clone();
+    description.configuration.fingers[1].motor.sign[3] = 0;
+    let writer = RecordingWriter::new(File::create(&path).expect("a file"), &description, now()).expect("begun");
+    writer.finish().expect("finished");
+    let refusal = Recording::open(&path).err().expect("altered").to_string();
+    let reason = "motor.sign: [1, 1, 1, 0] has an entry other than 1 and -1. The file was altered";
+    assert!(refusal.contains(&format!("cannot be used: finger.2.{reason}")), "{refusal}");
+    for message in &mut messages {
+        if let Message::Controller { source, .. } = message {
+            source.finger.motor.sign[3] = 0;
+        }
+    }
+    write(&path, &reader, &messages);
+    let refusal = Recording::open(&path).expect("a recording").find_map(Result::err).expect("altered").to_string();
+    assert!(refusal.contains(&format!("/replay: {reason}")), "{refusal}");
+}
+
+#[test]
 fn a_recording_that_is_cut_between_two_records_is_incomplete() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("hand.mcap");

@@ -34,7 +34,8 @@ pub struct FingerReport {
     pub contents: Tally,
     /// Number of cycles that were computed again.
     pub replayed: u64,
-    /// Number of cycles that were not computed again, because no recorded state precedes them.
+    /// Number of cycles that were not computed again, because the replay waits for a recorded state after the beginning
+    /// of the file, after a gap, and after a cycle with an unknown controller.
     pub without_state: u64,
     /// Number of cycles that were not computed again, because the file does not describe their controller.
     pub without_controller: u64,
@@ -201,7 +202,11 @@ impl FingerReport {
             row(format!("{}, {} missing cycles in all", Counted(more, "more gap", "more gaps"), self.missing_cycles));
         }
         if self.without_state > 0 {
-            let text = format!("{}, which no recorded state precedes", Counted(self.without_state, "cycle", "cycles"));
+            let text = format!(
+                "{}, because the replay waits for a recorded state after the beginning of the file, after a gap, and \
+                 after a cycle with an unknown controller",
+                Counted(self.without_state, "cycle", "cycles")
+            );
             table.row([Cell::new(Look::Dim, "not replayed"), text.into()]);
         }
         if let Some(WithoutController { cycle, controller }) = self.first_without_controller {

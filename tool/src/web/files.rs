@@ -51,7 +51,7 @@ files! {
 pub fn response(path: &str, headers: &HeaderMap) -> Response<Body> {
     let name = if path == "/" { "index.html" } else { path.trim_start_matches('/') };
     let Some(&(_, kind, contents)) = FILES.iter().find(|(file, ..)| *file == name) else {
-        return status(StatusCode::NOT_FOUND, "No such file.\n");
+        return status(StatusCode::NOT_FOUND, "No such file. Open the address that sun2xp has printed.\n");
     };
     // The browser keeps files, but asks each time whether they are those of the running program.
     let tag = tag(contents);

@@ -32,7 +32,7 @@ impl Place {
     }
 
     /// Notes that the header of the request has arrived.
-    pub fn answers(&self) {
+    pub fn header_arrived(&self) {
         self.change(|progress| match progress {
             Progress::Header(permit) => Progress::Answer { _permit: permit },
             later => later,

@@ -1,5 +1,5 @@
-//! The server, which has one thread. It gives the files of the page to everybody who requests them at its address, and
-//! data to those who may have it.
+//! The server, which has one thread. It gives the files of the page to everybody who opens its address, and data to
+//! those who may have it. It refuses requests that come from other pages.
 
 use super::access::{Access, Refusal};
 use super::control::Control;
@@ -23,7 +23,7 @@ use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::sync::Semaphore;
 
-/// Largest number of pages.
+/// Largest number of pages, in browsers, that receive data at the same time.
 const PAGES: usize = 16;
 
 /// Interval at which the server checks whether a signal requests its end.
@@ -34,7 +34,7 @@ const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 pub struct Server {
     /// Who may read.
     pub access: Arc<Access>,
-    /// The messages.
+    /// Distributes the messages of the hand to the pages.
     pub hub: Arc<Hub>,
     /// The hand that pages may move; none without `--control`.
     pub control: Option<Arc<Control>>,
@@ -89,7 +89,7 @@ async fn guard(
     request: Request,
     next: Next,
 ) -> Response<Body> {
-    place.answers();
+    place.header_arrived();
     let mut response = match access.check(request.headers()) {
         Ok(()) => next.run(request).await,
         Err(refusal) => refused(refusal),
@@ -105,8 +105,8 @@ async fn guard(
         headers.insert(name, HeaderValue::from_static(value));
     }
     if response.status() != StatusCode::SWITCHING_PROTOCOLS {
-        // A connection has only one request. Otherwise it could hold its place with further requests that it never
-        // completes.
+        // The connection ends with this response. A client that kept it open would take a place from other clients,
+        // because the number of connections is limited.
         response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
     }
     response

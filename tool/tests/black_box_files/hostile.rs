@@ -39,11 +39,11 @@ fn skipped_periods_without_end_are_refused() {
         }
     };
     let told = refusal(&altered(skipped(7, 1_000_000_000_000)));
-    assert!(told.contains(", line 9: control.input.skipped is 1000000000000:"), "{told}");
+    assert!(told.contains(", line 9: control.input.skipped: is 1000000000000:"), "{told}");
     // The number of skipped periods is limited by the watchdog.
     assert!(altered(skipped(7, 12)).replay().is_ok());
     let told = refusal(&altered(skipped(7, 13)));
-    assert!(told.contains("with this watchdog it is at most 12"), "{told}");
+    assert!(told.contains("with the hand.watchdog_ms of this file it is at most 12"), "{told}");
     // The total of skipped periods is limited too.
     let slow = altered(|recording| {
         recording.origin.hand.watchdog_ms = 1000;
@@ -62,19 +62,31 @@ fn skipped_periods_without_end_are_refused() {
 #[test]
 fn invalid_configurations_make_no_controller() {
     type Alter = fn(&mut Recording);
-    let alterations: [(Alter, &str); 8] = [
+    let weak = "friction.joint_coulomb: has a value that causes an error of another key. The file was altered";
+    let sign = "motor.sign: [1, 0, 1, 1] has an entry other than 1 and -1. The file was altered";
+    let alterations: [(Alter, &str); 10] = [
         (|recording| recording.origin.controllers[0].finger.geometry.r[1][2] = 1e308, "geometry.r"),
         (|recording| recording.origin.controllers[0].finger.motor.torque_limit[0] = 1e308, "motor.torque_limit"),
         (|recording| recording.origin.controllers[1].finger.motor.continuous_torque[3] = 5e-324, "continuous_torque"),
-        (|recording| recording.origin.controllers[1].gravity[2] = 1e308, "gravity"),
+        (|recording| recording.origin.controllers[0].finger.motor.sign = [1, 0, 1, 1], sign),
+        (|recording| recording.origin.controllers[1].gravity[2] = 1e308, "gravity: is 1e308 m/s^2, outside "),
         (|recording| recording.origin.hand.rate = 1e308, "origin.hand.rate"),
         (|recording| recording.origin.hand.watchdog_ms = 0, "origin.hand.watchdog_ms"),
         (|recording| recording.origin.finger = -1, "origin.finger"),
         (|recording| recording.origin.controllers.reverse(), "origin.controllers"),
+        (
+            |recording| {
+                let controllers = &mut recording.origin.controllers;
+                controllers.iter_mut().for_each(|source| source.finger.friction.joint_coulomb = [20.0; 3]);
+            },
+            weak,
+        ),
     ];
     for (alter, key) in alterations {
         let told = refusal(&altered(alter));
         assert!(told.contains("line 1: ") && told.contains(key), "{told}");
+        // The remedies for a configuration are no remedies for an altered file.
+        assert!(!["aise ", "heck ", "Correct "].iter().any(|remedy| told.contains(remedy)), "{told}");
     }
 }
 
@@ -84,7 +96,7 @@ fn a_fade_with_impossible_numbers_is_refused() {
         let told = refusal(&altered(|recording| {
             recording.cycles[8].control.as_mut().expect("computed").input.fading = Some(Fading { left, rest });
         }));
-        assert!(told.contains(", line 10: control.input.fading "), "{told}");
+        assert!(told.contains(", line 10: control.input.fading: "), "{told}");
     }
 }
 
@@ -94,7 +106,7 @@ fn a_gravity_that_no_hand_has_is_refused() {
         let input = &mut recording.cycles[8].control.as_mut().expect("computed").input;
         input.gravity = Some([0.0, 0.0, 1e3].into());
     }));
-    assert!(told.contains(", line 10: control.input.gravity "), "{told}");
+    assert!(told.contains(", line 10: control.input.gravity: is "), "{told}");
 }
 
 #[test]

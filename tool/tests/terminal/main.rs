@@ -112,7 +112,7 @@ fn jog_moves_and_pushes_the_simulated_hand() {
     terminal.keys(&["]"]);
     // The range of joint 0 ends at 60 degrees.
     terminal.keys(&["Right", "Right", "Right", "Right", "Right", "Right"]);
-    terminal.until_words("is outside the limits of finger 1, -1.0472 to 1.0472 rad: send an angle within the limits");
+    terminal.until_words("rad, outside the limits of finger 1, -1.0472 to 1.0472 rad: send an angle within the limits");
     terminal.keys(&["2", "t", "Up"]);
     terminal.until(&["finger 2: tip to"]);
     terminal.keys(&["f", "Down"]);

@@ -257,10 +257,10 @@ class RemoteHand(Reading):
         # A wait goes on during a short pause of the line.
         record = self._receiver.newest(finger, max(self._stale, _PAUSE))
         if STAGES[record["stage"]] == "faulted":
-            number = int(record["fault"])
+            number, name = int(record["fault"]), self._fault_name(finger)
+            fault = f"finger {finger} is faulted (fault {number})" + (name and f": {name}")
             remedy = f"remove the cause (docs/faults.md), and call hand.recover({finger})"
-            text = f"{self._fault_text(finger) or f'finger {finger} has fault {number}'}: {remedy}"
-            raise Fault(text, number=ErrorNumber.FAULTED, finger=finger, fault=number)
+            raise Fault(f"{fault}: {remedy}", number=ErrorNumber.FAULTED, finger=finger, fault=number)
 
     def _send(self, parts: List[Part]) -> None:
         self._network.sender.send([(self._owner, parts)])

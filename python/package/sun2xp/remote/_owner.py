@@ -118,7 +118,10 @@ class Owner:
         refusals = [self._refusals.pop(finger) for finger in fingers if finger in self._refusals]
         texts = sorted({refusal.text for refusal in refusals})
         if texts:
-            raise Refused("; ".join(texts), number=refusals[0].number)
+            kept = "the hand has refused an earlier set point, and keeps the set point before it"
+            again = "If this call has a set point, it was not sent: send it again"
+            text = f"{kept}. {again}. Reason of the refusal: {'; '.join(texts)}"
+            raise Refused(text, number=refusals[0].number)
 
     def command(self, changes: List[Part]) -> None:
         """Accepts new set points. Each contains only the values that shall change. All other values stay the same."""

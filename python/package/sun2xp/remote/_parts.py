@@ -39,7 +39,8 @@ def _part(set_point: SetPoint, status: FingerStatus) -> Part:
     if set_point.position is not None and set_point.tip is not None:
         raise _refused(f"the set point of finger {set_point.finger} has a position and a tip: leave one of them out")
     if set_point.position is not None:
-        part.place, part.values = JOINTS, tuple(_joints(set_point.finger, set_point.position, (3,), status))
+        part.place = JOINTS
+        part.values = tuple(_joints("position", set_point.finger, set_point.position, (3,), status))
     elif set_point.tip is not None:
         part.place, part.values = TIP, tuple(_array("tip", set_point.tip, (3,)))
     if set_point.stiffness is not None:
@@ -67,12 +68,12 @@ def path(
     if instants[0] <= 0 or (numpy.diff(instants) <= 0).any():
         text = f"the times of the path are {instants.tolist()} s"
         raise _refused(f"{text}: send times above 0, each later than the time before it")
-    poses = _joints(finger, joints, (count, 3), status)
+    poses = _joints("joints", finger, joints, (count, 3), status)
     return Part(finger, 0, PATH, poses=[(instant, *pose) for instant, pose in zip(instants, poses)])
 
 
-def _joints(finger: int, angles: Any, shape: tuple, status: FingerStatus) -> Array:
-    array = _array("joint angles", angles, shape)
+def _joints(name: str, finger: int, angles: Any, shape: tuple, status: FingerStatus) -> Array:
+    array = _array(name, angles, shape)
     low, high = status.joints
     rounding = _ROUNDING * numpy.maximum(abs(low), abs(high))
     if (array < low - rounding).any() or (array > high + rounding).any():

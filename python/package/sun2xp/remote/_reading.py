@@ -118,7 +118,7 @@ class Reading:
         for finger in fingers:
             # A float can equal the number of a finger, but the messages need an integer.
             if not hasattr(finger, "__index__") or finger not in self._status.fingers:
-                remedy = f"the hand {self.name} has the fingers {self.fingers}"
+                remedy = f'the hand "{self.name}" has the fingers {self.fingers}'
                 raise Refused(f"there is no finger {finger!r}: {remedy}", number=ErrorNumber.ARGUMENT)
 
     def _record(self, finger: int) -> Any:
@@ -132,12 +132,16 @@ class Reading:
                 return status(message)
         raise self._no_answer("status")
 
-    def _fault_text(self, finger: int) -> str:
+    def _fault_name(self, finger: int) -> str:
+        """Returns the name of the fault of a finger, with the affected part and its value; empty if they are not
+        known."""
         try:
-            return self._ask_status().fingers[finger].fault_text
+            # The text of a fault begins with them, up to the first colon. It is cut, maybe in the middle of a word.
+            name, colon, _ = self._ask_status().fingers[finger].fault_text.partition(": ")
         except NoAnswer:
-            # The caller knows the fault from the State. Only its text is missing.
+            # The caller knows the number of the fault from the State.
             return ""
+        return name if colon else ""
 
     def _stopped(self, finger: int) -> Tuple[int, int]:
         """Returns the finger that an Answer concerns, and the number of its fault, or 0 if the fault is not known. If
@@ -164,5 +168,5 @@ class Reading:
     def _no_answer(self, asked: str) -> NoAnswer:
         where = f"the client {self._network.client} over {self._network.endpoint}"
         remedy = "check the names of the hand and of the client, [serve.clients] of the server, and the line"
-        text = f"the hand {self.name} has not answered the request `{asked}` of {where}: {remedy}"
+        text = f'the hand "{self.name}" has not answered the request `{asked}` of {where}: {remedy}'
         return NoAnswer(text, number=ErrorNumber.TIMED_OUT)

@@ -43,6 +43,11 @@ fn errors_name_the_line_and_the_remedy() {
     assert_eq!(stale, format!("{file}:8: remote.stale_ms = 0 must be 1 to 60000"));
     let client = refusal(&GOOD.replace("client = \"p\"\n", ""));
     assert!(client.starts_with(&format!("{file}:4: remote.client is missing")), "{client}");
+    let refusal = |file: &Path| RemoteConfiguration::read(file).expect_err("refused").to_string();
+    let device = refusal(Path::new("/dev/zero"));
+    assert_eq!(device, "/dev/zero: it is not a regular file: name the configuration file of a hand");
+    let large = refusal(&std::env::current_exe().expect("this program"));
+    assert!(large.ends_with(": it is larger than 1 MiB: name the configuration file of a hand"), "{large}");
 }
 
 #[test]

@@ -114,7 +114,7 @@ impl Exchange {
         let status = self.view.status().ok_or_else(|| self.nothing_heard())?;
         match self.view.silence(now) {
             Some(silence) if silence > LONGEST_SILENCE => Err(RemoteError::NotConnected(format!(
-                "for {:.1} s, nothing was received from the hand {}: check the line to {} and the server",
+                "for {:.1} s, nothing was received from the hand \"{}\": check the line to {} and the server",
                 silence as f64 * 1e-9,
                 self.hand,
                 self.endpoint
@@ -128,13 +128,13 @@ impl Exchange {
         let finger = record.finger;
         let status = self.view.status().and_then(|status| status.fingers[finger.index()].as_ref());
         // The Status comes once a second, and may still describe another fault.
-        let text = status.filter(|status| status.stage == record.stage).map(|status| status.fault_text.to_string());
-        Err(RemoteError::Faulted { finger, fault, text: text.unwrap_or_default() })
+        let name = status.filter(|status| status.stage == record.stage).map(|status| status.fault_text.fault());
+        Err(RemoteError::Faulted { finger, fault, name: name.unwrap_or_default().into() })
     }
 
     fn nothing_heard(&self) -> RemoteError {
         RemoteError::NotConnected(format!(
-            "nothing was received from the hand {} yet: check the line to {}, and whether the server permits this \
+            "nothing was received from the hand \"{}\" yet: check the line to {}, and whether the server permits this \
              client to read",
             self.hand, self.endpoint
         ))

@@ -237,11 +237,13 @@ fn an_open_that_fails_says_why() {
     let server = FakeServer::start(port, &["left"]);
     let error = RemoteHand::open(&configuration(port, "right", "planner")).map(drop).expect_err("another hand");
     assert_eq!(error.kind(), RemoteErrorKind::NotConnected);
-    assert!(error.to_string().contains("no connection to the hand right") && error.to_string().contains("remote.hand"));
+    assert!(
+        error.to_string().contains("no connection to the hand \"right\"") && error.to_string().contains("remote.hand")
+    );
     server.hand().lock().version = 2;
     let error = RemoteHand::open(&configuration(port, "left", "planner")).map(drop).expect_err("another version");
     assert_eq!(error.kind(), RemoteErrorKind::Protocol);
-    assert!(error.to_string().contains("version 2 of the protocol, and not version 1"), "{error}");
+    assert!(error.to_string().contains("(the version of the protocol is 2, and not 1): use a client"), "{error}");
 }
 
 #[test]

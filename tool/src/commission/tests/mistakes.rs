@@ -78,7 +78,7 @@ fn a_step_whose_routine_has_failed_is_offered_again() {
     let mut person = Helper::new(&world);
     (world.borrow_mut().lost.1, person.patience) = (1, 1);
     assert!(step(Step::Motors, &world, &mut person, &belief).0.passed());
-    assert_eq!(person.questions, ["Remove the cause, then do the step motors again."]);
+    assert_eq!(person.questions, ["Remove the cause, then do the step \"motors\" again."]);
 }
 
 /// The step is noted as failed, so that it does not count as passed any more.
@@ -197,7 +197,7 @@ fn health_stops_with_the_cause_and_its_remedy() {
     let (weights, vitals) = (Vec::new(), Vitals::default());
     let mut desk = Desk { machine: &mut machine, person: &mut person, finger: belief, weights, vitals };
     let text = measure(&mut desk, &[Step::Board]).expect_err("no supply").to_string();
-    assert!(text.contains("the step board stopped: the motors have no supply. Switch the supply on"), "{text}");
+    assert!(text.contains("the step \"board\" stopped: the motors have no supply. Switch the supply on"), "{text}");
 }
 
 /// The person turns motor 2 twice, or hangs a weight on tendon 2 twice.

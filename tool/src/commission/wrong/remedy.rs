@@ -75,8 +75,8 @@ impl Wrong {
             Self::GaugeScale(gauge, _) if self.suspect() => format!(
                 "gauge.newton_per_count is corrected. But the tolerances of sound parts do not explain so large an \
                  error, so the cause is probably the wiring of gauge {gauge} or a wrong mass: check the masses, the \
-                 supply of its bridge, the gain of its amplifier, and the wires of the bridge. After a repair do the \
-                 step gauges again"
+                 supply of its bridge, the gain of its amplifier, and the wires of the bridge. After a repair, do the \
+                 step \"gauges\" again"
             ),
             Self::GaugeScale(..) => "Nothing to do: gauge.newton_per_count is corrected".into(),
             Self::GaugeZero(..) => "Nothing to do: gauge.zero is corrected".into(),
@@ -114,7 +114,10 @@ impl Wrong {
                 format!("Shorten tendon {tendon}, or look for friction in its path")
             }
             Self::TendonTension(tendon, _) => format!("Look for friction in the path of tendon {tendon}"),
-            Self::SpringStiffness(..) => "Do the step tendons again, and push along one direction only".into(),
+            Self::SpringStiffness(..) => {
+                "Do the step \"tendons\" again. Then do the step \"spring\" again, and push along one direction only"
+                    .into()
+            }
             Self::SpringReturn(_) => "The cause is friction. docs/tuning.md says how to compensate for it".into(),
             Self::InitialLowered(..) => {
                 "stiffness.initial is lowered to the bound. sun2xp bound shows the bound of each plant, and what \

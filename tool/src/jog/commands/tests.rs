@@ -111,7 +111,7 @@ fn refusals_have_the_text_of_the_hand_and_change_nothing() {
     let execute = |command: Command| command.execute(&hand, &configuration, &|| false);
     let before = desired_joints(&hand, 1).expect("there");
     for (command, text) in [
-        (Command::MoveJoints { finger: 1, by: [2.0, 0.0, 0.0] }, "Pos[0] = "),
+        (Command::MoveJoints { finger: 1, by: [2.0, 0.0, 0.0] }, "joint 0 would be at "),
         (Command::MoveTip { finger: 1, by: [0.0, 0.0, 20.0] }, "the tip of finger 1 cannot be at"),
         (Command::ScaleStiffness { finger: 1, factor: 100.0 }, "above the bound"),
         (Command::Joints { finger: 1, joints: [f64::NAN, 0.0, 0.0] }, "finite"),

@@ -225,8 +225,8 @@ fn without_a_hand_the_reason_is_shown_and_controls_have_their_lines() {
         assert_complete(&picture(&view, size), "no hand of this user is open: start the program that opens it");
     }
     view.jog = Some(JogPanel::new(false));
-    let refusal = "Pos[0] = 2.1 rad is outside the limits of finger 1: send an angle within the limits, or change \
-                   `finger.joints`, or set `hand.out_of_range`";
+    let refusal = "joint 0 would be at 2.1 rad, outside the limits of finger 1: send an angle within the limits, widen \
+                   them in `finger.joints`, or set `hand.out_of_range`";
     view.jog.as_mut().expect("there").result = Some((refusal.into(), true));
     let picture = picture(&view, (80, 24));
     assert_contains(&picture, &["sun2xp jog", "jog finger 1", "[j joints 1°]", "EMERGENCY STOP"]);

@@ -97,6 +97,8 @@ fn a_file_that_cannot_be_written_or_deleted_is_named_with_the_cause_and_the_reme
     let remedy = ": permission denied. This user needs permission to write the file and its folder";
     let failure = unwritten(&path, &denied).to_string();
     assert!(failure.starts_with("cannot write ") && failure.ends_with(remedy), "{failure}");
+    let failure = unwritten(&path, &io::Error::from(ErrorKind::ReadOnlyFilesystem)).to_string();
+    assert!(failure.ends_with(". Make the file system writable, or choose a folder on another one"), "{failure}");
     let message = undeleted(&path, &denied);
     assert!(message.contains(&format!("{remedy}. The file stays")), "{message}");
 }

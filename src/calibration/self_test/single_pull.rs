@@ -1,7 +1,10 @@
-//! One motor pulls alone, with a force that rises until an encoder moves. If the encoder of another motor moves first,
-//! or if the motor's own encoder moves backward, the motor pulls on. This pull ends when a gauge responds, and at the
-//! latest after the time [`LONGEST`] or the travel [`FARTHEST`]. It is left out if the motor's gauge has already shown
-//! that the motor's own encoder is dead. The unit t_min of some forces is `tendon.minimum`.
+//! One motor pulls alone, with a force that rises until an encoder moves. If no encoder has moved at the force
+//! [`HARDEST`], the motor or its encoder is dead. If the motor's own encoder moves forward, the motor is stopped, and
+//! the next motor follows. If the encoder of another motor moves first, or if the motor's own encoder moves backward, a
+//! second stage begins ([`Stage::Pulling`]), in which the motor pulls with the constant force [`PULL`]. The second
+//! stage ends when a gauge responds, when the time [`LONGEST`] is over, or when the travel of an encoder since the rest
+//! reaches [`FARTHEST`]. There is no second stage if the motor's gauge has already shown that the motor's own encoder
+//! is dead. The unit t_min of some forces is `tendon.minimum`.
 
 use super::readings::Readings;
 use crate::calibration::average::Average;
@@ -25,7 +28,8 @@ const MOVED: f64 = 0.004;
 const PULL: f64 = 1.2;
 /// Longest time in [`Stage::Pulling`], s. It is short, because the motor may be unwinding its tendon.
 const LONGEST: f64 = 0.12;
-/// Largest travel of an encoder in [`Stage::Pulling`], cm. It is short for the same reason as [`LONGEST`].
+/// Travel of an encoder since the rest, cm, at which [`Stage::Pulling`] ends. It is short for the same reason as
+/// [`LONGEST`].
 const FARTHEST: f64 = 0.12;
 /// A gauge has responded if its tension has changed by more than this, in t_min.
 const RESPONDED: f64 = 0.35;
@@ -36,7 +40,7 @@ const BRAKING: f64 = 0.02;
 
 /// The test of one motor.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pushing {
+pub(super) struct SinglePull {
     motor: usize,
     stage: Stage,
     /// Time in the stage, s.
@@ -59,7 +63,7 @@ enum Stage {
     Braking,
 }
 
-impl Pushing {
+impl SinglePull {
     pub fn of(motor: usize) -> Self {
         let (tensions, travel) = (Average::default(), Average::default());
         Self { motor, stage: Stage::Resting, seconds: 0.0, waited: 0.0, tensions, travel }
@@ -84,18 +88,18 @@ impl Pushing {
             Stage::Rising => {
                 // `enter` restarts the time, so the pull is computed before.
                 let pull = RISE * self.seconds;
-                let first = moved.iamax();
-                if moved[first].abs() > MOVED {
+                let leading = moved.iamax();
+                if moved[leading].abs() > MOVED {
                     // The motor's gauge shows the pull, and the pull has unwound another motor, but the motor's own
                     // encoder has not moved.
-                    if first != self.motor && moved[first] < 0.0 && risen[self.motor] > RESPONDED * minimum {
+                    if leading != self.motor && moved[leading] < 0.0 && risen[self.motor] > RESPONDED * minimum {
                         return Err(Obstacle::DeadEncoder { encoder: self.motor as u8 + 1 });
                     }
-                    if first == self.motor && moved[first] > 0.0 {
+                    if leading == self.motor && moved[leading] > 0.0 {
                         self.enter(Stage::Braking);
                         0.0
                     } else {
-                        self.enter(Stage::Pulling { encoder: first, direction: moved[first].signum() });
+                        self.enter(Stage::Pulling { encoder: leading, direction: moved[leading].signum() });
                         pull
                     }
                 } else if pull > HARDEST {
@@ -105,7 +109,7 @@ impl Pushing {
                 }
             }
             Stage::Pulling { encoder, direction } => {
-                self.pull(encoder, direction, &moved, &risen, minimum)?;
+                self.judge_response(encoder, direction, &moved, &risen, minimum)?;
                 PULL
             }
             Stage::Braking => {
@@ -140,7 +144,7 @@ impl Pushing {
     }
 
     /// Waits for the response of a gauge, and names what is wrong.
-    fn pull(
+    fn judge_response(
         &self,
         encoder: usize,
         direction: f64,
@@ -149,19 +153,19 @@ impl Pushing {
         minimum: f64,
     ) -> Result<(), Obstacle> {
         let (motor, number, other) = (self.motor, self.motor as u8 + 1, encoder as u8 + 1);
-        let first = risen.iamax();
-        let responded = risen[first].abs() > RESPONDED * minimum;
+        let leading = risen.iamax();
+        let responded = risen[leading].abs() > RESPONDED * minimum;
         if !responded && self.seconds < LONGEST && moved.amax() < FARTHEST {
             return Ok(());
         }
         let (low, high) = (number.min(other), number.max(other));
         Err(if encoder != motor {
             match responded {
-                true if first == encoder => Obstacle::SwappedMotors { first: low, second: high },
-                true if first == motor => Obstacle::SwappedEncoders { first: low, second: high },
+                true if leading == encoder => Obstacle::SwappedMotors { first: low, second: high },
+                true if leading == motor => Obstacle::SwappedEncoders { first: low, second: high },
                 _ => Obstacle::SwappedMotor { motor: number, encoder: other },
             }
-        } else if direction < 0.0 && responded && first == motor && risen[first] > 0.0 {
+        } else if direction < 0.0 && responded && leading == motor && risen[leading] > 0.0 {
             Obstacle::ReversedEncoder { encoder: number }
         } else {
             Obstacle::ReversedMotor { motor: number }
@@ -187,13 +191,13 @@ mod tests {
         let instruments = Instruments::new(&ConfiguredFinger::default(), 1000.0).expect("usable");
         let zeros = Vector4::zeros();
         let mut readings = Readings { travel: zeros, speed: zeros, tensions: zeros };
-        let mut pushing = Pushing::of(0);
+        let mut single = SinglePull::of(0);
         let mut before = 0.0;
         for _ in 0..80 {
-            before = pushing.step(&instruments, &readings).expect("nothing is wrong yet")[0];
+            before = single.step(&instruments, &readings).expect("nothing is wrong yet")[0];
         }
         readings.travel[encoder] = 2.0 * MOVED;
-        (before, pushing.step(&instruments, &readings).expect("no gauge has responded")[0])
+        (before, single.step(&instruments, &readings).expect("no gauge has responded")[0])
     }
 
     #[test]
