@@ -34,7 +34,7 @@ impl Attempts {
     /// these measurements.
     ///
     /// # Errors
-    /// Returns the names of what was not measured at all.
+    /// Returns the names of the entries without a measurement that has succeeded.
     pub fn check<'a>(&self, measured: impl IntoIterator<Item = (&'a str, usize)>) -> Result<(), String> {
         let missing = measured.into_iter().filter(|&(_, number)| number == 0).map(|(name, _)| name);
         let missing = missing.collect::<Vec<_>>().join(", ");

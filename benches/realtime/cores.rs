@@ -1,4 +1,4 @@
-//! The cores on which this process may run.
+//! The cores on which the calling thread may run.
 
 use std::io;
 

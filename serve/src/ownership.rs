@@ -24,8 +24,9 @@ pub struct Ownership {
 }
 
 impl Ownership {
-    /// A hand without an owner. `start` is the time at which the server has started, ns. The numbers of epochs begin
-    /// above `start`, so they are higher than the numbers of an earlier server.
+    /// A hand without an owner. `start` is the time at which the server has started, by CLOCK_MONOTONIC, ns. The
+    /// numbers of epochs begin above `start`, so they are higher than the numbers of an earlier server, unless the
+    /// machine was restarted in between.
     #[must_use]
     pub fn new(start: u64) -> Self {
         Self { owner: None, newest: start }

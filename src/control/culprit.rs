@@ -55,8 +55,10 @@ pub(super) fn with_culprit(
     let others = KEYS.iter().filter(|(key, _)| *key != named);
     match own.chain(others).find(|(_, reset)| permits(*reset)) {
         Some(&(key, _)) if key != named => {
-            let reason =
-                format!("has a value that causes an error of another key. Correct this value first. {named}: {reason}");
+            let reason = format!(
+                "this value causes an error of the key {named}. Correct this value first. The error is: {named}: \
+                 {reason}"
+            );
             Unusable { key, reason }
         }
         _ => Unusable { key: named, reason },

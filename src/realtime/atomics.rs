@@ -3,8 +3,8 @@
 
 pub use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicU64, AtomicUsize, Ordering, fence};
 
-/// Memory that two threads access in turns. It has the interface of loom's cell. That cell reports a write and another
-/// access by different threads if neither happens before the other.
+/// Memory that two threads access in turns. It has the interface of loom's cell. That cell reports a data race: two
+/// accesses by different threads, at least one of them a write, that no happens-before relation orders.
 pub struct UnsafeCell<T>(std::cell::UnsafeCell<T>);
 
 impl<T> UnsafeCell<T> {

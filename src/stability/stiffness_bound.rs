@@ -90,8 +90,8 @@ impl Search {
         let supported = Trial::new(finger, rate, &Variant::NOMINAL)?.supported_stiffness(&clear);
         let Some(softest) = (0..clear.len()).min_by(|&one, &other| supported[one].total_cmp(&supported[other])) else {
             let reason = format!(
-                "and joints.maximum_degrees leave no pose whose tip is {CLEAR_OF_AXIS} cm or more from the axis of \
-                 joint 0: widen the joint limits"
+                "together with joints.maximum_degrees, this key leaves no pose whose tip is {CLEAR_OF_AXIS} cm or more \
+                 from the axis of joint 0: widen the joint limits"
             );
             return Err(Unusable { key: "joints.minimum_degrees", reason });
         };

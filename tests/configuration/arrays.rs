@@ -39,7 +39,7 @@ fn every_array_has_exactly_the_number_of_entries_that_its_key_requires() {
     let mut tried = 0;
     for key in keys(&with_optional_keys()) {
         let value: Value = key.value.parse().expect("a value");
-        // The fingers of a hand and the ports to search are lists of any length.
+        // The lengths of these lists are not fixed: the fingers of a hand, and the ports to search.
         if matches!(&*key.name, "fingers" | "search_ports") {
             continue;
         }

@@ -76,8 +76,8 @@ pub struct Arguments {
     /// Do every step again.
     #[arg(long, conflicts_with = "steps")]
     again: bool,
-    /// The masses of the weights that you hang on the tendons in the step gauges, kg. The tool asks for the lightest
-    /// weight first. The heaviest one must not pull with more than `finger.tendon.maximum`.
+    /// The masses, kg, of the weights that you hang on the tendons during the step "gauges". The tool asks for the
+    /// lightest weight first. The heaviest one must not pull with more than `finger.tendon.maximum`.
     #[arg(long, value_name = "KG", value_delimiter = ',', default_values_t = [0.5, 1.0], value_parser = mass)]
     weights: Vec<f64>,
     /// Do not wait for Enter. Use this only if a machine, and not a person, does at the finger what the tool asks for.

@@ -1,10 +1,11 @@
 //! One motor pulls alone, with a force that rises until an encoder moves. If no encoder has moved at the force
 //! [`HARDEST`], the motor or its encoder is dead. If the motor's own encoder moves forward, the motor is stopped, and
-//! the next motor follows. If the encoder of another motor moves first, or if the motor's own encoder moves backward, a
-//! second stage begins ([`Stage::Pulling`]), in which the motor pulls with the constant force [`PULL`]. The second
-//! stage ends when a gauge responds, when the time [`LONGEST`] is over, or when the travel of an encoder since the rest
-//! reaches [`FARTHEST`]. There is no second stage if the motor's gauge has already shown that the motor's own encoder
-//! is dead. The unit t_min of some forces is `tendon.minimum`.
+//! the next motor follows. If the encoder of another motor moves first, or if the motor's own encoder moves backward,
+//! [`Stage::Pulling`] begins: the motor pulls with the constant force [`PULL`]. This stage ends when a gauge responds,
+//! when the time [`LONGEST`] is over, or when an encoder has moved by [`FARTHEST`] from its mean reading in
+//! [`Stage::Resting`]. There is one exception: if the encoder of another motor moves backward first, and the pulling
+//! motor's own gauge has already responded, the pulling motor's own encoder is dead, and the test ends at once. The
+//! unit t_min of some forces is `tendon.minimum`.
 
 use super::readings::Readings;
 use crate::calibration::average::Average;
@@ -28,8 +29,8 @@ const MOVED: f64 = 0.004;
 const PULL: f64 = 1.2;
 /// Longest time in [`Stage::Pulling`], s. It is short, because the motor may be unwinding its tendon.
 const LONGEST: f64 = 0.12;
-/// Travel of an encoder since the rest, cm, at which [`Stage::Pulling`] ends. It is short for the same reason as
-/// [`LONGEST`].
+/// Travel of an encoder from its mean reading in [`Stage::Resting`], cm, at which [`Stage::Pulling`] ends. It is short
+/// for the same reason as [`LONGEST`].
 const FARTHEST: f64 = 0.12;
 /// A gauge has responded if its tension has changed by more than this, in t_min.
 const RESPONDED: f64 = 0.35;

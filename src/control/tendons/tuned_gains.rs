@@ -144,7 +144,7 @@ impl TunedGains {
     pub fn of(scheme: Scheme, rate: f64) -> Self {
         let table = match scheme {
             Scheme::Figure9 => &FIGURE_9,
-            // With state feedback, calibration controls the tensions with the gains of Figure 10.
+            // State feedback takes its filters from the table of Figure 10.
             Scheme::Figure10 | Scheme::StateFeedback => &FIGURE_10,
             Scheme::Figure11 => &FIGURE_11,
         };

@@ -124,8 +124,8 @@ faults! {
         "the serial port no longer exists",
         "the cable was unplugged, or the adapter or the board lost its power; for a simulated finger: the program \
          closed descriptors of the library",
-        "Plug the cable in; then recover the finger if finger.reconnect is true, otherwise close the hand and open it \
-         again", [Recover, Close, Open];
+        "Plug the cable in; then recover the finger if its port is real and finger.reconnect is true, otherwise close \
+         the hand and open it again", [Recover, Close, Open];
     26 PortFailed "PORT_FAILED" Fault Finger Errno "port failed",
         "reading or writing the serial port failed",
         "the adapter or its driver failed",

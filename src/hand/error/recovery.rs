@@ -23,8 +23,9 @@ pub enum RecoveryError {
     ServoEnded(FingerNumber),
     /// The port has failed, and the configuration does not permit opening it again.
     #[error(
-        "the port of finger {0} has failed, and `finger.reconnect` is false: close the hand and open it again, or set \
-         `finger.reconnect = true` so that recovering a finger reopens a real port"
+        "the port of finger {0} has failed and is not opened again, because the finger is simulated or \
+         `finger.reconnect` is false: close the hand and open it again. With `finger.reconnect = true`, recovering a \
+         finger reopens a real port"
     )]
     NotReconnected(FingerNumber),
 }

@@ -92,8 +92,8 @@ int32_t encoder(const struct plant *plant, int i)
     return (int32_t)floor(angle * COUNTS_A_REVOLUTION / (2 * pi));
 }
 
-/* Includes converter noise, one count up or down, like a real gauge. The library can report a gauge without noise as
-   stuck while the other gauges fluctuate. */
+/* Includes converter noise of at most one count up or down, like a real gauge. The library can report a gauge without
+   noise as stuck while the other gauges fluctuate. */
 unsigned gauge(const struct plant *plant, int i)
 {
     static uint32_t random = 1;

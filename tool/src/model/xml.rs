@@ -25,7 +25,7 @@ impl Xml {
 
     /// Writes the end of the newest open element.
     pub fn close(&mut self) {
-        let name = self.open.pop().expect("as many elements are closed as opened");
+        let name = self.open.pop().expect("no more elements are closed than were opened");
         self.indent();
         self.put(format_args!("</{name}>\n"));
     }

@@ -149,8 +149,8 @@ fn values_with_which_no_controller_can_be_constructed_are_refused_with_the_key_t
         (
             "[finger.2.friction]\njoint_coulomb = [20, 20, 20]\n",
             2,
-            "finger.2.friction.joint_coulomb: has a value that causes an error of another key. Correct this value \
-             first. motor.continuous_torque: lets",
+            "finger.2.friction.joint_coulomb: this value causes an error of the key motor.continuous_torque. \
+             Correct this value first. The error is: motor.continuous_torque: lets",
             "lower tendon.minimum",
         ),
         (

@@ -58,8 +58,9 @@ fn three_fingers_on_one_thread() {
     hand.fingers.iter_mut().for_each(|finger| finger.thread = 1);
     let [thread] = &off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[..] else { panic!("one thread") };
     assert_eq!(thread.response, Some((680.0, 740.0)));
-    // On one port the replies follow each other, so the exchange takes 170 + 100 + 3 * 280 = 1110 us. This is more than
-    // 80 % of the period of 1000 us.
+    // On one port the replies follow each other. The second and the third command are sent while replies arrive, so
+    // they add no time. The exchange takes 170 + 100 + 3 * 280 = 1110 us. This is more than 80 % of the period of
+    // 1000 us.
     hand.fingers.iter_mut().for_each(|finger| finger.port = "/dev/ttyUSB0".into());
     assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[0].violation, Some(Violation::Line));
     hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
