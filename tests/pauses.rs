@@ -11,6 +11,7 @@ use pauses::{CarriedByte, Part, PauseWatch};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use serialport::TTYPort;
+use std::fs::File;
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
@@ -94,6 +95,13 @@ fn a_byte_that_the_kernel_does_not_carry_counts_as_a_pause() {
     assert!(lost > Duration::from_millis(250), "{lost:?}");
     let carried = carrier(None);
     assert!(carried < Duration::from_millis(250), "{carried:?}");
+}
+
+#[test]
+fn nobody_else_can_open_the_terminal_of_the_watch() {
+    let byte = CarriedByte::open().expect("a pseudo-terminal");
+    let refused = File::open(byte.path().expect("a path")).expect_err("locked");
+    assert_eq!(refused.raw_os_error(), Some(libc::EIO), "{refused}");
 }
 
 #[test]

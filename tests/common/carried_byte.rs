@@ -2,6 +2,7 @@
 
 use serialport::{SerialPort, TTYPort};
 use std::io::{ErrorKind, Read, Write};
+use std::os::fd::AsRawFd;
 use std::time::{Duration, Instant};
 
 /// A pseudo-terminal that carries one byte at a time.
@@ -21,8 +22,27 @@ impl CarriedByte {
     }
 
     /// Opens a pseudo-terminal, or returns `None` if the process can open no more descriptors.
+    ///
+    /// Nobody else can open this terminal. A new pseudo-terminal gets the number of one that was closed before, so a
+    /// hand that waits for its unplugged board would find this terminal in its place, and would read the byte.
     pub fn open() -> Option<Self> {
-        TTYPort::pair().ok().map(|(near, far)| Self::new(near, far))
+        let (near, far) = TTYPort::pair().ok()?;
+        let locked: libc::c_int = 1;
+        // SAFETY: both descriptors are open. TIOCSPTLCK reads an integer, which outlives the call.
+        let results = unsafe {
+            [
+                libc::ioctl(near.as_raw_fd(), libc::TIOCSPTLCK, &raw const locked),
+                // Somebody may have opened the terminal before it was locked. A byte that was read elsewhere must not
+                // block the watch.
+                libc::fcntl(far.as_raw_fd(), libc::F_SETFL, libc::O_NONBLOCK),
+            ]
+        };
+        (results == [0, 0]).then(|| Self::new(near, far))
+    }
+
+    /// Path of the terminal's file.
+    pub fn path(&self) -> Option<String> {
+        self.far.name()
     }
 
     /// Sends a byte unless one is underway, and waits for it for at most `longest`. Returns for how long it was
