@@ -145,7 +145,10 @@ fn turn(kind: Kind, seconds: u64) -> Result<Turn, Failure> {
             drop(uncollected);
         })?);
     }
-    thread::sleep(START + Duration::from_secs(seconds));
+    thread::sleep(START);
+    let before = taken.load(Relaxed);
+    thread::sleep(Duration::from_secs(seconds));
+    let taken = taken.load(Relaxed) - before;
     let stages: Vec<_> = mailboxes.iter().map(|mailbox| mailbox.report().stage).collect();
     ended.store(true, Relaxed);
     servos
@@ -161,7 +164,7 @@ fn turn(kind: Kind, seconds: u64) -> Result<Turn, Failure> {
     }
     // The servo of a finger that has stopped does less work, so its wake-ups do not count.
     (1..).zip(&stages).try_for_each(|(finger, stage)| under_control(finger, stage))?;
-    Ok((measured, taken.load(Relaxed), lost))
+    Ok((measured, taken, lost))
 }
 
 /// Writes events in a servo thread after each cycle, as the servo itself does. Two of the three threads write three

@@ -56,8 +56,7 @@ pub struct Recording {
 
 impl Recording {
     pub fn new(finger: ConfiguredFinger) -> Result<Self, Box<dyn Error>> {
-        let controller = Controller::new(&finger, RATE)
-            .map_err(|unusable| format!("finger.{}: {}", unusable.key, unusable.reason))?;
+        let controller = Controller::new(&finger, RATE).map_err(|unusable| format!("finger.{unusable}"))?;
         let mut plant = Plant::new(&finger, Vector3::zeros())?;
         let mut sensors = Sensors::new(&finger);
         plant.release_brake();

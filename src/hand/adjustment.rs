@@ -9,7 +9,7 @@ use crate::hand::configuration_file::{Wrong, deserialize, line_of_key, overlay, 
 use crate::hand::dispatcher::Member;
 use crate::hand::opening::admission;
 use crate::hand::{ConfigurationError, Hand, HandError, SetPointError};
-use crate::model::configuration::{ConfiguredFinger, ConfiguredStiffness, OutOfRange, Unusable};
+use crate::model::configuration::{ConfiguredFinger, ConfiguredStiffness, OutOfRange};
 use crate::model::{Contact, FingerNumber, Section, UnusableConfiguration};
 use nalgebra::{Matrix6, Vector3};
 use toml_edit::{Document, Item, Table};
@@ -203,10 +203,9 @@ fn adjusted(
 /// Returns the error for a configuration that cannot be used with `keys`. If `keys` contains the refused key, the error
 /// names its line.
 fn unusable(finger: FingerNumber, keys: &str, refusal: UnusableConfiguration) -> ConfigurationError {
-    let Unusable { key, reason } = &refusal.unusable;
-    match line_of_key(keys, key) {
+    match line_of_key(keys, refusal.unusable.key) {
         Some(line) if refusal.section == Section::Finger(finger) => {
-            ConfigurationError::Adjustment { finger, line, reason: format!("{key}: {reason}") }
+            ConfigurationError::Adjustment { finger, line, reason: refusal.unusable.to_string() }
         }
         _ => refusal.into(),
     }

@@ -69,7 +69,7 @@ impl PauseWatch {
         self.shared.processes().push((process, part));
     }
 
-    /// Sends this byte instead of the watch's own one.
+    /// Measures this pseudo-terminal instead of the watch's own one.
     pub fn carry(&self, byte: CarriedByte) {
         self.shared.threads().carried = Some(byte);
     }

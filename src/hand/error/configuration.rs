@@ -57,7 +57,7 @@ pub enum ConfigurationError {
     },
     /// A configuration cannot be used: a program has made or changed it with an error, or it does not fit the hardware
     /// or the folders of this machine.
-    #[error("{section}.{}: {}", unusable.key, unusable.reason)]
+    #[error("{section}.{unusable}")]
     Unusable {
         /// `hand`, `telemetry`, or `finger.1` to `finger.3`.
         section: String,

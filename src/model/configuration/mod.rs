@@ -27,6 +27,7 @@ mod stiffness;
 mod telemetry;
 mod tendon;
 mod touch;
+mod unusable;
 mod zeroing;
 
 pub use board_number::BoardNumber;
@@ -50,6 +51,7 @@ pub use stiffness::ConfiguredStiffness;
 pub use telemetry::ConfiguredTelemetry;
 pub use tendon::ConfiguredTendon;
 pub use touch::{ConfiguredTouch, MOST_ELEMENTS, TouchElement};
+pub use unusable::Unusable;
 pub use zeroing::{ConfiguredZeroing, ZeroingMethod};
 
 pub use crate::model::finger_number::FINGERS;
@@ -62,16 +64,6 @@ use serde::{Deserialize, Serialize};
 
 /// Distance of a mechanical stop beyond the soft limit if no stop is configured, degrees.
 const STOP_MARGIN: f64 = 3.0;
-
-/// A key whose value cannot be used, and the reason. The key is relative to its section, with dots: `tendon.maximum` in
-/// `[finger]`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Unusable {
-    /// Dotted path of the key.
-    pub key: &'static str,
-    /// The reason, with the numbers and with usable values.
-    pub reason: String,
-}
 
 /// `[finger]`, overridden by `[finger.1]` to `[finger.3]`: one finger, its port, thread and controller.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]

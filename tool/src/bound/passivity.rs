@@ -44,8 +44,7 @@ struct Pose {
 /// Computes the passivity of the tip. Returns the stiffness at which it was computed, N/cm, and the passivity.
 pub fn compute(arguments: &Arguments, searched: &Searched, progress: &Progress) -> Result<(f64, Passivity), Failure> {
     let Searched { number, finger, rate } = *searched;
-    let map = OneCycleMap::new(finger, rate)
-        .map_err(|unusable| format!("finger {number}: {}: {}", unusable.key, unusable.reason))?;
+    let map = OneCycleMap::new(finger, rate).map_err(|unusable| format!("finger {number}: {unusable}"))?;
     let stiffness = finger.stiffness_bound(rate);
     let ratio = (HIGHEST / LOWEST).powf(1.0 / f64::from(STEPS));
     let frequencies: Vec<f64> = (0..=STEPS).map(|step| LOWEST * ratio.powi(step)).collect();

@@ -97,9 +97,8 @@ pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -
         for &walls in places(arguments) {
             progress.now(format!("finger {number}, {}, {}", variant.name, place(walls)));
             let search = Search { samples, seed: arguments.seed, walls };
-            let bound = search
-                .bound(finger, rate, variant)
-                .map_err(|unusable| format!("finger {number}: {}: {}", unusable.key, unusable.reason))?;
+            let bound =
+                search.bound(finger, rate, variant).map_err(|unusable| format!("finger {number}: {unusable}"))?;
             plants.push(Member::new(variant, walls, &bound));
             progress.step();
         }
@@ -122,7 +121,7 @@ pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -
     let stiffness = least.bound;
     let near = Search { samples, seed: arguments.seed, walls: least.walls }
         .near_axis(finger, rate, &Variant::NOMINAL, stiffness)
-        .map_err(|unusable| format!("finger {number}: {}: {}", unusable.key, unusable.reason))?;
+        .map_err(|unusable| format!("finger {number}: {unusable}"))?;
     progress.step();
     let near_axis = NearAxis { samples: near.samples, unstable: near.unstable, distance: near.distance };
     Ok((stiffness, SetBound { plants, limited_by, near_axis }))

@@ -5,7 +5,7 @@ use std::path::Path;
 use sun2xp::control::Controller;
 use sun2xp::files::{UpdateError, update_file, with_line_ends_of};
 use sun2xp::hand::parse_configuration;
-use sun2xp::model::configuration::{ConfiguredFinger, Unusable};
+use sun2xp::model::configuration::ConfiguredFinger;
 use toml_edit::{Array, DocumentMut, Formatted, Item, Table, Value};
 
 /// Largest configuration file, bytes.
@@ -104,9 +104,8 @@ fn with(text: &str, finger: i32, changed: &[Changed], comment: &dyn Fn(&str) -> 
         .fingers
         .get(finger as usize - 1)
         .ok_or_else(|| format!("the results have no finger {finger}. This is a defect of sun2xp: please report it"))?;
-    Controller::new(found, configuration.hand.rate).map_err(|Unusable { key, reason }| {
-        format!("a hand would not open with the results: finger.{finger}.{key}: {reason}")
-    })?;
+    Controller::new(found, configuration.hand.rate)
+        .map_err(|unusable| format!("a hand would not open with the results: finger.{finger}.{unusable}"))?;
     Ok(text)
 }
 

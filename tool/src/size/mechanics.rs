@@ -49,8 +49,7 @@ impl Mechanics {
 
     /// Returns the largest tension of each tendon for a force of the tip in any pose and direction, N.
     pub fn tensions(&self, force: f64) -> Result<Vector4<f64>, Failure> {
-        let distribution = TensionDistribution::new(&self.tendons, self.minimum, Vector4::repeat(TOO_MUCH))
-            .map_err(|unusable| format!("{}: {}", unusable.key, unusable.reason))?;
+        let distribution = TensionDistribution::new(&self.tendons, self.minimum, Vector4::repeat(TOO_MUCH))?;
         let tensions = self.torques(force).map(|torque| distribution.distribute(&torque).tensions);
         Ok(tensions.fold(Vector4::zeros(), |most, tensions| most.sup(&tensions)))
     }

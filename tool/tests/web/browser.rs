@@ -8,6 +8,7 @@ use std::fs;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
+use sun2xp::hand::Hand;
 
 /// Returns the 64 x 48 pixels of the 3-D view, each as the sum of its three colours, 0 to 765.
 const PIXELS: &str = r"
@@ -71,6 +72,21 @@ fn difference(one: &[i64], other: &[i64]) -> usize {
     one.iter().zip(other).filter(|(one, other)| one.abs_diff(**other) > 60).count()
 }
 
+/// Opens the page of a hand in a window of this size, and waits until the hand is drawn. Returns the lock of the
+/// browser, the hand and its name, the program and the browser; none if there is no browser.
+fn drawn(width: u32, height: u32) -> Option<(MutexGuard<'static, ()>, Hand, String, Program, Browser)> {
+    if !available("chromium", "the page in a browser") {
+        return None;
+    }
+    let alone = alone();
+    let (hand, name) = hand(|_| {});
+    let program = Program::monitor(&name);
+    let browser = Browser::start(width, height);
+    browser.open(&program.url);
+    browser.wait_for(DRAWN);
+    Some((alone, hand, name, program, browser))
+}
+
 /// Checks that the console has no error, and that the page has asked only its own server.
 fn check_logs(browser: &Browser, program: &Program) {
     let errors: Vec<Value> = browser.log("browser").into_iter().filter(|entry| entry["level"] == "SEVERE").collect();
@@ -93,15 +109,7 @@ fn check_logs(browser: &Browser, program: &Program) {
 
 #[test]
 fn the_page_draws_the_hand_and_the_picture_moves_with_it() {
-    if !available("chromium", "the page in a browser") {
-        return;
-    }
-    let _alone = alone();
-    let (hand, name) = hand(|_| {});
-    let program = Program::monitor(&name);
-    let browser = Browser::start(1280, 800);
-    browser.open(&program.url);
-    browser.wait_for(DRAWN);
+    let Some((_alone, hand, _name, program, browser)) = drawn(1280, 800) else { return };
     // The picture may still change after it is first drawn, for example when a font arrives.
     let mut pictures = std::iter::repeat_with(|| picture(&browser)).take(50);
     let mut rest = pictures.next().expect("a picture");
@@ -126,30 +134,14 @@ fn the_page_draws_the_hand_and_the_picture_moves_with_it() {
 
 #[test]
 fn the_picture_is_not_empty_while_its_size_changes() {
-    if !available("chromium", "the page in a browser") {
-        return;
-    }
-    let _alone = alone();
-    let (_hand, name) = hand(|_| {});
-    let program = Program::monitor(&name);
-    let browser = Browser::start(1280, 800);
-    browser.open(&program.url);
-    browser.wait_for(DRAWN);
+    let Some((_alone, _hand, _name, _program, browser)) = drawn(1280, 800) else { return };
     let narrower = picture_after(&browser, NARROWER);
     assert!(narrower.iter().any(|&pixel| pixel != narrower[0]), "all pixels are {}", narrower[0]);
 }
 
 #[test]
 fn the_page_shows_faults_with_remedies_and_events_and_waits_for_the_hand_to_return() {
-    if !available("chromium", "the page in a browser") {
-        return;
-    }
-    let _alone = alone();
-    let (first, name) = hand(|_| {});
-    let program = Program::monitor(&name);
-    let browser = Browser::start(1280, 800);
-    browser.open(&program.url);
-    browser.wait_for(DRAWN);
+    let Some((_alone, first, name, program, browser)) = drawn(1280, 800) else { return };
     first.stop(2).expect("the finger stops");
     let text = browser.wait_for("return document.querySelector('#faults .fault')?.textContent");
     assert!(
@@ -217,15 +209,7 @@ fn idle_share() -> f64 {
 
 #[test]
 fn the_page_fits_a_telephone() {
-    if !available("chromium", "the page in a browser") {
-        return;
-    }
-    let _alone = alone();
-    let (_hand, name) = hand(|_| {});
-    let program = Program::monitor(&name);
-    let browser = Browser::start(500, 900);
-    browser.open(&program.url);
-    browser.wait_for(DRAWN);
+    let Some((_alone, _hand, _name, program, browser)) = drawn(500, 900) else { return };
     let beyond = browser.run("return document.documentElement.scrollWidth - innerWidth");
     assert!(beyond.as_i64().is_some_and(|beyond| beyond <= 0), "something is wider than the window: {beyond}");
     let view = browser.run("return document.getElementById('view').getBoundingClientRect().height");
