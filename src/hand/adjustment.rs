@@ -7,7 +7,6 @@ use crate::finger::{Adjustable, Replaced};
 use crate::hand::admission::{Admission, PATH_ROUNDING, Ranges};
 use crate::hand::configuration_file::{Wrong, deserialize, line_of_key, overlay, to_document};
 use crate::hand::dispatcher::Member;
-use crate::hand::opening::admission;
 use crate::hand::{ConfigurationError, Hand, HandError, SetPointError};
 use crate::model::configuration::{ConfiguredFinger, ConfiguredStiffness, OutOfRange};
 use crate::model::{Contact, FingerNumber, Section, UnusableConfiguration};
@@ -68,7 +67,7 @@ impl Hand {
         let of_finger = |unusable| refused(UnusableConfiguration { section: Section::Finger(finger), unusable });
         let adjustable = Adjustable::new(&changed, finger).map_err(of_finger)?;
         self.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
-            adjust_member(member, admission(&changed, finger), adjustable)
+            adjust_member(member, Admission::new(&changed, finger), adjustable)
         })?;
         *configuration = changed;
         Ok(())

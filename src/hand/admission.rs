@@ -3,11 +3,11 @@
 mod joint_springs;
 mod ranges;
 
-use crate::control::{AdmissibleDamping, JointSprings, SetPoint, TensionDistribution, spatial};
+use crate::control::{AdmissibleDamping, Controller, JointSprings, SetPoint, TensionDistribution, spatial};
 use crate::hand::{MotionLimits, SetPointError};
 use crate::model::FingerNumber;
 use crate::model::InverseKinematics;
-use crate::model::configuration::{Law, OutOfRange};
+use crate::model::configuration::{Configuration, Law, OutOfRange};
 use crate::model::{Contact, Links};
 use nalgebra::{Matrix3, Matrix3x4, Matrix6, Vector3};
 pub use ranges::Ranges;
@@ -45,6 +45,31 @@ pub(super) struct Admission {
 }
 
 impl Admission {
+    pub fn new(configuration: &Configuration, number: FingerNumber) -> Self {
+        let finger = &configuration.fingers[number.index()];
+        let joint_limits = finger.joint_limits();
+        let (rate, out_of_range) = (configuration.hand.rate, configuration.hand.out_of_range);
+        Self {
+            finger: number,
+            joint_limits,
+            inverse_kinematics: InverseKinematics::new(finger.links(), joint_limits),
+            links: finger.links(),
+            r: finger.r(),
+            springs: JointSprings::new(finger, rate),
+            distribution: Controller::new(finger, rate).ok().map(|controller| controller.distribution().clone()),
+            stiffness_bound: finger.stiffness_bound(rate),
+            damping: DampingAdmission {
+                finger: number,
+                admissible: AdmissibleDamping::new(finger, rate),
+                lever: finger.links().0[2],
+                out_of_range,
+            },
+            law: finger.controller.law,
+            motion_limits: MotionLimits([finger.motion.speed, finger.motion.acceleration, finger.motion.jerk]),
+            out_of_range,
+        }
+    }
+
     // Without `inline`, the ranges are copied for every set point.
     #[inline]
     pub(super) fn ranges(&self) -> Ranges {

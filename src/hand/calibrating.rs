@@ -3,7 +3,7 @@
 
 use crate::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
 use crate::finger::{Adjustable, CalibrationRun, Fault, Order, Stage};
-use crate::hand::opening::admission;
+use crate::hand::admission::Admission;
 use crate::hand::{Found, Hand, HandError};
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredFinger};
@@ -173,7 +173,7 @@ impl Calibrating {
             // Moment arms and tendon stiffness determine the ranges of torque and damping, and the force of the tip.
             let mut checks = member.admission.write();
             let order = Self::ordered(finger, member.mailbox.restart(adjustable, limp))?;
-            *checks = admission(&changed, finger);
+            *checks = Admission::new(&changed, finger);
             Ok(order)
         })?;
         (self.found, self.asked) = (Some(found), Instant::now());

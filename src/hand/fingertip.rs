@@ -79,13 +79,12 @@ impl FingerTip {
 mod tests {
     use super::*;
     use crate::control::SetPoint;
-    use crate::hand::opening::admission;
     use crate::model::configuration::Configuration;
     use nalgebra::{Matrix3, Vector3};
 
     #[test]
     fn only_a_running_finger_reports_a_contact() {
-        let admission = admission(&Configuration::default(), FingerNumber::ONE);
+        let admission = Admission::new(&Configuration::default(), FingerNumber::ONE);
         let joints = Vector3::new(0.2, 0.6, 1.1);
         let mut report = FingerReport::opening(SetPoint::hard_finger(joints, Matrix3::identity()));
         report.cycle.joints = joints;

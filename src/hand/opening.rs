@@ -3,21 +3,20 @@
 
 use crate::board::protocol::Status;
 use crate::board::{Connection, Link, Terms, capacity, tactile_requests};
-use crate::control::{AdmissibleDamping, Controller, JointSprings};
+use crate::control::Controller;
 use crate::finger::events::EventLog;
 use crate::finger::{
     BlackBox, Bulletin, Elements, FingerServo, GroupGate, Mailbox, Reflexes, ServedPort, StopSignal, link_handover,
     stop_calls,
 };
-use crate::hand::admission::{Admission, DampingAdmission};
+use crate::hand::admission::Admission;
 use crate::hand::events::EventSource;
 use crate::hand::hardware::{Hardware, warn_of_lost_zero};
 use crate::hand::identities::Identities;
 use crate::hand::notice::print_notice;
 use crate::hand::port_repair::{KnownBoard, PortRepair};
 use crate::hand::simulated_hand::SimulatedHand;
-use crate::hand::{ConfigurationError, HandError, MotionLimits, SetPointError};
-use crate::model::InverseKinematics;
+use crate::hand::{ConfigurationError, HandError, SetPointError};
 use crate::model::configuration::{Configuration, OnFault, Unusable};
 use crate::model::{FingerNumber, Fingers};
 use crate::model::{Section, Shown, UnusableConfiguration};
@@ -219,40 +218,22 @@ fn shake_hands(
     warn_of_lost_zero(number, finger, zero_valid);
     let has_io = finger.has_io();
     let board = KnownBoard { finger: number, address, terms, identity, zero_valid, has_io, restarts: 0 };
-    let (admission, events) = (admission(configuration, number), servo.event_log().clone());
+    let (admission, events) = (Admission::new(configuration, number), servo.event_log().clone());
     let touch = servo.touch().clone();
     let (servo, reflexes) = servo.with_reflexes(number, bulletin);
     Ok((servo, Reached { number, mailbox, admission, timings, black_box, events, touch, reflexes }, board))
 }
 
-pub(super) fn admission(configuration: &Configuration, number: FingerNumber) -> Admission {
-    let finger = &configuration.fingers[number.index()];
-    let joint_limits = finger.joint_limits();
-    let (rate, out_of_range) = (configuration.hand.rate, configuration.hand.out_of_range);
-    Admission {
-        finger: number,
-        joint_limits,
-        inverse_kinematics: InverseKinematics::new(finger.links(), joint_limits),
-        links: finger.links(),
-        r: finger.r(),
-        springs: JointSprings::new(finger, rate),
-        distribution: Controller::new(finger, rate).ok().map(|controller| controller.distribution().clone()),
-        stiffness_bound: finger.stiffness_bound(rate),
-        damping: DampingAdmission {
-            finger: number,
-            admissible: AdmissibleDamping::new(finger, rate),
-            lever: finger.links().0[2],
-            out_of_range,
-        },
-        law: finger.controller.law,
-        motion_limits: MotionLimits([finger.motion.speed, finger.motion.acceleration, finger.motion.jerk]),
-        out_of_range,
-    }
-}
-
 fn initial_stiffness(configuration: &Configuration, number: FingerNumber) -> Result<Matrix3<f64>, Unusable> {
-    let refused = |error: SetPointError| Unusable { key: "stiffness.initial", reason: error.to_string() };
-    admission(configuration, number).kx(configuration.fingers[number.index()].stiffness.initial).map_err(refused)
+    // The error says what to send, but the hand is not open. Its cause is the part before the first colon.
+    let refused = |error: SetPointError| {
+        let text = error.to_string();
+        let cause = text.split(": ").next().unwrap_or(&text);
+        let reason = format!("{cause}: set a symmetric stiffness with eigenvalues from zero to the bound");
+        Unusable { key: "stiffness.initial", reason }
+    };
+    let admission = Admission::new(configuration, number);
+    admission.kx(configuration.fingers[number.index()].stiffness.initial).map_err(refused)
 }
 
 /// Checks that the line of a finger can carry all of its traffic at the configured rate.

@@ -189,6 +189,7 @@ fn an_initial_stiffness_above_the_bound_is_clamped_like_a_command_and_its_commen
     let stiff = "[finger.stiffness]\ninitial = [[9, 0, 0], [0, 9, 0], [0, 0, 9]]\n";
     let (line, reason) = read(stiff).expect_err("above the bound");
     assert!(line == Some(2) && reason.contains("stiffness.initial"), "{reason}");
+    assert!(reason.contains("above the bound") && !reason.contains("send"), "a remedy for the file: {reason}");
     usable(&format!("[hand]\nout_of_range = \"clamp\"\n{stiff}"));
     let all = keys(REFERENCE);
     let key = all.iter().find(|key| key.table == "finger.stiffness" && key.name == "initial").expect("the key");

@@ -6,7 +6,6 @@ use crate::control::motion::{PathExtent, PathTable, TimedStiffness};
 use crate::control::{Law, SetPoint, spatial};
 use crate::finger::{MOST_PIECES, MOST_POSES, Reference};
 use crate::hand::admission::{Admission, DampingAdmission};
-use crate::hand::opening::admission;
 use crate::hand::{PathError, Pose, SetPointError};
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, OutOfRange};
@@ -43,7 +42,7 @@ pub fn plan_path(
     reference: &Reference,
     poses: &[PathPose],
 ) -> Result<Plan, PathError> {
-    admission(configuration, number).path(reference, poses)
+    Admission::new(configuration, number).path(reference, poses)
 }
 
 /// A path that has been computed and checked.
