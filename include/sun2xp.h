@@ -507,7 +507,7 @@ int sun2xp_open_named(const char *name, sun2xp_hand **hand);
 
  Returns 0, or a negative number with
    EPERM    forked child
-   ENODEV   no such hand
+   ENODEV   no such hand, or another thread has begun to close it (the call does not wait for the end)
    EBUSY    the call was made in a callback of sun2xp_on_event, of this hand or of another one, while
             another thread was closing this hand
 
@@ -1810,7 +1810,7 @@ int sun2xp_reset_timing(sun2xp_hand *hand, int finger);
 #define SUN2XP_FAULT_EMERGENCY_STOP_CALL    19 /* emergency stop, call */
 #define SUN2XP_FAULT_SUPPLY_FAULT           20 /* motor supply */
 #define SUN2XP_FAULT_DRIVER_FAULT           21 /* motor driver */
-#define SUN2XP_FAULT_SENSOR_FAULT           22 /* sensor, reported by the board */
+#define SUN2XP_FAULT_SENSOR_FAULT           22 /* sensor fault, reported by the board */
 #define SUN2XP_FAULT_BOARD_RESET            23 /* board reset */
 #define SUN2XP_FAULT_COMMAND_REFUSED        24 /* command refused */
 #define SUN2XP_FAULT_PORT_VANISHED          25 /* port vanished */

@@ -4,11 +4,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the pages: README, CHANGELOG and SECURITY, and the pages of docs/, of the firmware, of protocol/, of models/
+/// Returns the pages: README, CHANGELOG and SECURITY, and the pages of docs/, of the firmware, of protocol/, of remote/
 /// and of the Python package.
 fn pages() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folders = [".", "docs", "firmware", "firmware/stm32f405", "protocol", "models", "python"];
+    let folders = [".", "docs", "firmware", "firmware/stm32f405", "protocol", "remote", "python"];
     let files = folders.iter().flat_map(|folder| fs::read_dir(root.join(folder)).expect("a folder"));
     files
         .map(|file| file.expect("a file").path())

@@ -133,7 +133,7 @@ fn closing_the_hand_ends_every_wait() {
         assert!(began.elapsed() < PATIENCE);
     });
     drop(listener);
-    assert_eq!(calls.load(Ordering::Relaxed), 0, "nothing happened");
+    assert_eq!(calls.load(Ordering::Relaxed), 0, "called without an event");
 }
 
 #[test]

@@ -53,7 +53,7 @@ fn a_panic_in_a_cycle_stops_the_board_and_faults_the_finger() {
         assert!(finger.mailbox.send(|_| {}).is_err(), "calls are refused");
         assert!(
             finger.repair_end.released.is_abandoned() && finger.repair_end.released.pop().is_none(),
-            "the thread that repairs ports receives the link"
+            "the thread that repairs ports must not receive the link"
         );
         let mut place = world.place();
         let finger = &mut place.cable.board().fingers()[0];

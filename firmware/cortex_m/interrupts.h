@@ -1,4 +1,4 @@
-/* Masks all interrupts of a Cortex-M, except the fault handlers. Keep the masked time below 2 us: a UART without a FIFO
+/* Masks all interrupts of a Cortex-M, except NMI and HardFault. Keep the masked time below 2 us: a UART without a FIFO
    loses a byte after 5 us at 2 Mbaud. */
 
 #ifndef FIRMWARE_INTERRUPTS_H

@@ -109,7 +109,9 @@ impl Refusal {
                              method \"spawn\""
                 .into(),
             Self::Argument(text) | Self::Recording(text) => text.clone(),
-            Self::Defect => "the library failed: please report this defect of the library".into(),
+            Self::Defect => {
+                "the library failed: please report this defect, with the message of the panic on standard error".into()
+            }
             Self::Hand(error) => error.to_string(),
         }
     }

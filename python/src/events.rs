@@ -78,7 +78,7 @@ impl Queue {
     }
 
     /// A descriptor for select, poll and event loops. It is readable while there is an event, and when the hand is
-    /// closed. Do not read, write or close it. It is closed with the queue.
+    /// closed. Do not read, write or close it. It stays open until the queue is freed.
     fn fileno(&self, py: Python<'_>) -> PyResult<i32> {
         self.check(py)?;
         let doing = "create the descriptor of events";
@@ -105,7 +105,7 @@ fn record<'py>(py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyAny>> {
     records::record(py, "Event", &fields)
 }
 
-/// Returns the member of `EventKind`.
+/// Returns the member of the Python class `EventKind`.
 fn kind<'py>(py: Python<'py>, kind: EventKind) -> PyResult<Bound<'py, PyAny>> {
     py.import("sun2xp._types")?.getattr("EventKind")?.call1((kind.number(),))
 }
@@ -122,7 +122,8 @@ fn text(event: &Event) -> String {
     if part == Part::Finger { name.into() } else { format!("{name}, {part}") }
 }
 
-/// The numbers and constants of all kinds of events, for the comparison with `EventKind`.
+/// The numbers and constants of all kinds of events, for the comparison with the Python class
+/// `sun2xp.EventKind`.
 #[pyfunction]
 pub fn event_kinds() -> Vec<(u8, &'static str)> {
     EventKind::ALL.iter().map(|kind| (kind.number(), kind.description().constant)).collect()

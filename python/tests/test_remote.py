@@ -229,7 +229,7 @@ def test_the_module_says_that_no_hand_answers(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["sun2xp.remote", "tcp/127.0.0.1:1"])
     assert sun2xp.remote.__main__.main() == 1
     output, error = capsys.readouterr()
-    assert output == "" and error.startswith("no hand answers at tcp/127.0.0.1:1: start `sun2xp serve` there"), error
+    assert output == "" and error.startswith("no hand answers at tcp/127.0.0.1:1: start `sun2xp serve`"), error
 
 
 def test_two_hands_get_one_time_stamp():

@@ -51,8 +51,8 @@ class FingerDiagnostics:
             ("lost replies", losses.lost_replies),
             ("late replies", losses.late_replies),
             ("damaged replies", losses.damaged_replies),
-            ("part of the torque that the tensions permit", f"{status.torque_scale:.3f}"),
-            ("part of the stiffness in force", f"{status.stiffness_scale:.3f}"),
+            ("applied part of the desired joint torque", f"{status.torque_scale:.3f}"),
+            ("applied part of Kx", f"{status.stiffness_scale:.3f}"),
             *self._tensions(),
         ]
         return DiagnosticStatus(

@@ -80,4 +80,4 @@ class Services:
     def _stop(self, finger: int) -> str:
         self._hand.stop(finger)
         self._stopped(finger)
-        return "is stopped: the service recover makes it a spring again"
+        return "is stopped: call the service `recover` to make it a spring again"

@@ -25,7 +25,7 @@ impl Endpoint {
                  --make-certificates FOLDER --server NAME --client NAME`, and name them in [serve.tls]"
             ))),
             (false, true) => Err(Some(format!(
-                "{self} would let in programs without a certificate, and [serve.tls] is set: use tls/{}",
+                "{self} is without TLS, and [serve.tls] is set, so every connection needs certificates: use tls/{}",
                 self.address
             ))),
             (false, false) if self.is_loopback() => Ok(()),

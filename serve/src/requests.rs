@@ -22,7 +22,7 @@ use sun2xp::{Hand, HandError};
 use sun2xp_remote_protocol::{Action, Answer, ClientName, Code, DecodeError, Finger, Request};
 
 /// The text of an Answer to a client that does not own the hand.
-const NOT_OWNED: &str = "you do not own the hand, or the epoch of the request is old: acquire the hand first";
+const NOT_OWNED: &str = "you do not own the hand, or have lost it since you acquired it: acquire the hand first";
 
 /// The remedy for a Request that the protocol does not allow. Only a defective client sends such a Request.
 const DEFECTIVE: &str = "Correct the client that sent the Request (docs/remote-protocol.md)";
@@ -56,7 +56,7 @@ pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload:
         _ => {
             let text = format!(
                 "the client {client} may not make the request `{}`: list the client in [serve.clients] of the server \
-                 as `\"{client}\" = \"command\"`",
+                 as `\"{client}\" = \"command\"`, and start the server again",
                 action.name()
             );
             return reply.send(&refuse(Code::NotOwner, text));
@@ -196,7 +196,9 @@ fn take(shared: &Shared, request: &Request, client: &ClientName, epoch: u64) -> 
     match desk.acquire(client, request.take_over, epoch, time) {
         Ok(number) => Ok((number, desk.stops())),
         Err(other) => {
-            let text = format!("{other} owns the hand: wait until it releases the hand, or take the hand over");
+            let text = format!(
+                "{other} owns the hand: wait until it releases the hand, or take the hand over (remote.take_over)"
+            );
             Err(desk.answer(Code::Owned, text, 0, time))
         }
     }

@@ -7,6 +7,7 @@ use crate::endpoint::Endpoint;
 use crate::json::{string, strings};
 use crate::settings::{Settings, TlsFiles};
 use std::fs::File;
+use std::io::ErrorKind;
 use std::path::Path;
 use sun2xp::realtime::{Priority, spawn, with_remedy};
 use zenoh::{Config, Session, Wait};
@@ -39,9 +40,9 @@ pub fn open(settings: &Settings, access: &str, largest: u16) -> Result<Session, 
     let failed = |reason: String| ServeError::Network { doing: doing.clone(), reason };
     let opening = spawn("sun2xp network", Priority::default(), move |_| zenoh::open(config).wait());
     let opening = opening.map_err(|error| failed(with_remedy(&error)))?;
-    let opened = opening
-        .join()
-        .map_err(|_| failed("Zenoh, the network library, has failed: please report this defect".into()))?;
+    let opened = opening.join().map_err(|_| {
+        failed("Zenoh, the network library, has failed: please report this defect, with the message above".into())
+    })?;
     opened.map_err(|error| {
         let text = error.to_string();
         // zenoh appends ` at `, and the file and line of its own source code that made the error.
@@ -113,9 +114,12 @@ fn config(settings: &Settings, access: &str, largest: u16) -> Result<Config, Ser
 
 fn tls(files: &TlsFiles) -> Result<String, ServeError> {
     let path = |path: &Path| {
-        File::open(path).map_err(|error| ServeError::Certificate {
-            path: path.into(),
-            reason: format!("{error}. `sun2xp serve --make-certificates` makes such files"),
+        File::open(path).map_err(|error| {
+            let remedy = match error.kind() {
+                ErrorKind::PermissionDenied => "This user needs permission to read the file and to enter its folder",
+                _ => "`sun2xp serve --make-certificates` makes such files",
+            };
+            ServeError::Certificate { path: path.into(), reason: format!("{error}. {remedy}") }
         })?;
         Ok::<_, ServeError>(string(&path.to_string_lossy()))
     };

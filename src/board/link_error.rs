@@ -100,7 +100,7 @@ impl LinkError {
                 "no valid frame: check the bit rate, and that the device is a board".into()
             }
             LinkError::WrongVersion { lowest, highest } => {
-                format!("protocol versions {lowest} to {highest}, not {VERSION}: update board or library")
+                format!("the board has protocol {lowest} to {highest}, the library {VERSION}: update the older one")
             }
             // A search for boards sends only Hello, which every board must answer.
             _ => "faulty firmware, or several boards: update firmware, or connect only one board".into(),
@@ -157,7 +157,7 @@ mod tests {
             (PortError::Vanished.into(), "disappeared"),
             (LinkError::Silent { milliseconds: 160 }, "nothing answers"),
             (LinkError::Unintelligible { bytes: 9, damaged: 1 }, "no valid frame"),
-            (LinkError::WrongVersion { lowest: 2, highest: 3 }, "protocol versions 2 to 3"),
+            (LinkError::WrongVersion { lowest: 2, highest: 3 }, "the board has protocol 2 to 3"),
             (LinkError::Unanswered { address: 1, request: Kind::Hello }, "faulty firmware"),
         ];
         for (error, cause) in errors {

@@ -40,9 +40,9 @@ pub struct Terms {
 pub enum TermsError {
     /// The board's shortest watchdog time exceeds both the configured time and the protocol's limit.
     #[error(
-        "its shortest watchdog time is {shortest} ms, but hand.watchdog_ms is {wanted}, and the protocol limits the \
-         shortest time of a board to {LONGEST_NEEDED_MS} ms: update its firmware, or raise hand.watchdog_ms to \
-         {shortest}; its motors then continue for that time when commands stop"
+        "its shortest watchdog time is {shortest} ms, which is longer than hand.watchdog_ms ({wanted} ms), and the \
+         protocol requires a board to offer {LONGEST_NEEDED_MS} ms or less: update its firmware, or raise \
+         hand.watchdog_ms to {shortest}; its motors then continue for that time when commands stop"
     )]
     Watchdog {
         /// The board's shortest time, ms.

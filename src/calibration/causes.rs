@@ -1,5 +1,13 @@
 //! Causes and remedies of a refusal. They depend on what the finger did.
 
+/// What an identification without a plausible value has found.
+pub(super) fn outcome(what: &str, value: f64) -> String {
+    if value.is_nan() {
+        return format!("the measurements do not determine {}", what.trim_end_matches(','));
+    }
+    format!("the identification of {what} gave {value:.4}, which is not plausible")
+}
+
 /// A joint does not follow when it is moved back and forth. The largest torque of this motion is fixed, so
 /// `zeroing.torque` does not affect it.
 pub(super) const STAYS_BEHIND: &str = "it has far too much friction, or it meets a stop because its zeros or the \

@@ -1,6 +1,6 @@
 //! Why a routine gave up.
 
-use super::causes::{DOES_NOT_RETURN, NARROW, STAYS_BEHIND, WIDE};
+use super::causes::{DOES_NOT_RETURN, NARROW, STAYS_BEHIND, WIDE, outcome};
 use crate::model::Part;
 use thiserror::Error;
 
@@ -130,15 +130,16 @@ pub enum Obstacle {
     },
     /// The measurements do not determine a value, or the value is impossible.
     #[error(
-        "{part}: the identification of {what} gave {value:.4}, which is impossible: the finger was touched, or two \
-         gauges or motors are swapped. Let nothing touch the finger, and check their cables"
+        "{part}: {}: the finger was touched, two gauges or motors are swapped, or a value in [finger.geometry], \
+         [finger.motor] or [finger.gauge] is wrong. Let nothing touch the finger, and check the cables and the values",
+        outcome(what, *value)
     )]
     Implausible {
         /// The part of the finger.
         part: Part,
         /// The quantity.
         what: &'static str,
-        /// Its value.
+        /// Its value; NaN if the measurements do not determine it.
         value: f64,
     },
     /// A motor turns in both directions, but changes no tension.

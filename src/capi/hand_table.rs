@@ -45,7 +45,7 @@ static EXITING: AtomicBool = AtomicBool::new(false);
 /// that call may be in the exiting thread itself, interrupted by a signal handler that calls exit.
 const LONGEST_WAIT_AT_EXIT: Duration = Duration::from_millis(100);
 
-/// Interval at which a call that closes a hand checks whether another thread, which is closing this hand, is done.
+/// Interval at which a call that closes a hand tries again if another thread has locked the lifecycle of the hand.
 const CLOSING_PERIOD: Duration = Duration::from_millis(1);
 
 /// The handle of the hand of OpenHand; null if it is not open. Inlined for the same reason as [`Handle::of`].
@@ -169,7 +169,7 @@ impl Place {
         // Dropping the hand takes a long time. `hand` is already unlocked, so other calls are refused instead of
         // waiting.
         drop(opened);
-        // The callback comes last, because waiting for it may take longer than closing the hand.
+        // The events are closed last. Their callback may be running, and may take longer than closing the hand.
         self.events.close(in_callback);
     }
 }

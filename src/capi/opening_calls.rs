@@ -129,7 +129,7 @@ pub unsafe extern "C" fn sun2xp_open_named(name: *const c_char, hand: *mut *mut 
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
-///   ENODEV   no such hand
+///   ENODEV   no such hand, or another thread has begun to close it (the call does not wait for the end)
 ///   EBUSY    the call was made in a callback of sun2xp_on_event, of this hand or of another one, while
 ///            another thread was closing this hand
 ///

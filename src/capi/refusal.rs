@@ -65,7 +65,7 @@ pub(super) enum Refusal {
     NotRemote,
     #[error(
         "this is libsun2xp_remote, which opens only hands on other machines, and the configuration has no table \
-         [remote]: add the table with the key `endpoint`, or use libsun2xp"
+         [remote]: add the table (its keys, such as `endpoint`, are in docs/remote.md), or use libsun2xp"
     )]
     OnlyRemote,
     #[error("{text}")]

@@ -88,7 +88,7 @@ impl Locked {
                 Err(TryLockError::WouldBlock) => {
                     let seconds = PATIENCE.as_secs();
                     return Err(busy(&format!(
-                        "another process, which fuser shows, has kept the file locked for {seconds} s: end that process"
+                        "another process has kept the file locked for {seconds} s: end that process (fuser shows it)"
                     )));
                 }
                 Err(TryLockError::Error(error)) => return Err(unlockable(error)),

@@ -121,7 +121,8 @@ impl Dispatcher {
         // them.
         //
         // For each cycle, a servo publishes first the report and then the timing. A caller that reads the timings
-        // before the losses therefore never gets a timing whose cycle is not counted.
+        // before the losses therefore never gets a timing whose cycle is not counted. There is one exception: after
+        // `reset_timing`, the timing of one cycle that is no longer counted may still arrive (see there).
         let collected = self.collected(finger)?;
         Ok(self.members[place].mailbox.report().losses.since(&collected.losses_before))
     }

@@ -183,8 +183,8 @@ pub enum HandError {
     /// A calibration was interrupted. Its results are in force if they had been found before.
     #[error(
         "the calibration of finger {0} was interrupted, because the finger faulted and recovered, or because the hand \
-         is being closed. If its results had been found before, they are in force. Otherwise the previous calibration \
-         is in force. Calibrate the finger again"
+         is being closed. If the calibration had found its results before, they are in force. Otherwise the previous \
+         calibration is in force. Calibrate the finger again"
     )]
     Interrupted(FingerNumber),
     /// The finger is busy.

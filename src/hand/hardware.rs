@@ -42,7 +42,10 @@ impl Hardware {
     /// Returns an error if such a finger is not opened, or if its configured gauges cannot belong to its hardware.
     pub fn prepare(&self, configuration: &mut Configuration, opened: Fingers) -> Result<(), HandError> {
         for number in self.members() {
-            if !opened.contains(number) || !configuration.hand.fingers.contains(number) {
+            if !configuration.hand.fingers.contains(number) {
+                return Err(HandError::NotInHand { finger: number, fingers: configuration.hand.fingers });
+            }
+            if !opened.contains(number) {
                 return Err(HandError::NotOpened(number));
             }
             let Some(provided) = &self.0[number.index()] else { continue };

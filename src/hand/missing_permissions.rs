@@ -17,7 +17,7 @@ pub enum MissingPermission {
     Memory(io::Error),
     /// The permission to run on the configured core.
     #[error(
-        "the servo cannot run on its core ({0}): set `finger.core` to a core that this process may use (taskset -p $$)"
+        "the servo cannot run on its core ({0}): set `finger.core` to a core that this process may use (taskset -cp $$)"
     )]
     Core(io::Error),
 }

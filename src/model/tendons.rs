@@ -10,14 +10,15 @@ pub enum TendonsError {
     /// R with its ghost row has no inverse.
     #[error(
         "the tendon matrix R with its ghost row is singular (its smallest singular value is {0:.1e}) and has no \
-         inverse Q (eq. 17). Check its signs: the report misprints row 2, column 4, where -1.09 is right"
+         inverse Q (eq. 17). Check its signs (the report misprints row 2, column 4, where -1.09 is right), and \
+         remove geometry.ghost_row if it is set"
     )]
     Singular(f64),
     /// An entry of the fourth column of Q is not positive, so tendons, which can only pull, cannot hold the finger.
     #[error(
-        "every entry of the ghost column of Q must be positive (eq. 20), but the column is {0:.3?}: the tendons \
-         cannot all pull while the joints are at rest. Check the signs of R: the report misprints row 2, column 4, \
-         where -1.09 is right"
+        "every entry of the ghost column of Q must be positive (eq. 20), but the column is {0:.3?}: with these \
+         matrices the tendons cannot all pull while the joints are at rest. Check the signs of R (the report misprints \
+         row 2, column 4, where -1.09 is right), and remove geometry.ghost_row if it is set"
     )]
     GhostColumn([f64; 4]),
 }

@@ -31,9 +31,9 @@ fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
             Some("the system has reached its limit of open files: end other programs, or raise fs.file-max (sysctl)")
         }
         libc::EAGAIN => Some(
-            "a limit of threads or memory has been reached: end other programs, or raise the thread limit of the user \
-             (ulimit -u), of the service or container (TasksMax, pids.max) or of the system (kernel.threads-max), and \
-             the memory limits (ulimit -v, and ulimit -l after mlockall)",
+            "a limit of threads or memory has been reached: end other programs; raise the thread limit of the user \
+             (ulimit -u), of the service or container (TasksMax, pids.max) or of the system (kernel.threads-max); or \
+             raise the memory limits (ulimit -v; ulimit -l too if the program has called mlockall)",
         ),
         // Sandboxes refuse a system call with one of these two errors. The device rules of a container refuse it with
         // EPERM.

@@ -34,7 +34,7 @@ impl Variant {
         Self::new("tendon stiffness x1.3", |plant, _| scale(&mut plant.tendon_stiffness, 1.3)),
         Self::new("motor constants x0.8", |plant, _| scale(&mut plant.motor_constant_ratio, 0.8)),
         Self::new("motor constants x1.2", |plant, _| scale(&mut plant.motor_constant_ratio, 1.2)),
-        Self::new("motor constants x1.2 and x0.8 in turn", |plant, _| {
+        Self::new("motor constants alternately x1.2 and x0.8", |plant, _| {
             plant.motor_constant_ratio = [1.2, 0.8, 1.2, 0.8];
         }),
         Self::new("amplifier lag 1 ms", |plant, _| plant.amplifier_lag_ms = 1.0),

@@ -1,5 +1,5 @@
-/* A library with the function call(), which holds a lock while it calls work(). If work() unwinds the stack, call()
-   releases the lock. So the frame of call() has a landing pad if this file is compiled with -fexceptions. */
+/* A library with the function call(), which holds a lock while it calls work(). If this file is compiled with
+   -fexceptions, call() also releases the lock when work() unwinds the stack. Its frame then has a landing pad. */
 void work(void);
 void call(void);
 

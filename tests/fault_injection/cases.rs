@@ -164,7 +164,7 @@ fn of_the_board() -> Vec<Case> {
         case("zero lost", ZeroLost, |bench| inject(bench, Defect::ZeroLost)),
         case("emergency stop, input", EmergencyStopInput, |bench| inject(bench, Defect::EmergencyStop)),
         case("motor supply", SupplyFault, |bench| inject(bench, Defect::Supply)),
-        case("sensor, reported by the board", SensorFault, |bench| inject(bench, Defect::Sensor)),
+        case("sensor fault, reported by the board", SensorFault, |bench| inject(bench, Defect::Sensor)),
         case("board reset", BoardReset, |bench| inject(bench, Defect::Reset)),
     ]
 }

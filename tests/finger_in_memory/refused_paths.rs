@@ -24,8 +24,8 @@ fn refused_paths_name_the_pose_and_the_remedy() {
     for (poses, words, errno) in [
         (vec![], "0 poses", libc::EINVAL),
         (vec![joints(0.5, [0.2, 0.6, 1.1]); 2], "time of pose 1", libc::EINVAL),
-        (vec![joints(0.5, [0.2, 0.6, 1.1]); 2], "0.001 s later than 0.5 s, the time of the pose before", libc::EINVAL),
-        (vec![joints(0.0, [0.2, 0.6, 1.1])], "0.001 s later than 0 s, the beginning of the path", libc::EINVAL),
+        (vec![joints(0.5, [0.2, 0.6, 1.1]); 2], "0.001 s later than the pose before it (0.5 s)", libc::EINVAL),
+        (vec![joints(0.0, [0.2, 0.6, 1.1])], "0.001 s later than the beginning of the path (0 s)", libc::EINVAL),
         (vec![joints(f64::NAN, [0.2, 0.6, 1.1])], "time of pose 0", libc::EINVAL),
         (vec![joints(0.5, [0.2, 0.6, 1.1]), tip(1.0, [0.0, 0.0, 9.0])], "another kind", libc::EINVAL),
         (vec![joints(0.5, [0.2, f64::NAN, 1.1])], "NaN", libc::EINVAL),

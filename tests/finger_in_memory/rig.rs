@@ -165,7 +165,7 @@ impl Bench {
         self.world.place().hooks.instead = Some(Err(failure));
     }
 
-    /// Replaces the board's next answer.
+    /// Makes the next read of the port return this frame. The board's own answer comes after it.
     pub fn answer_with(&self, frame: Frame) {
         let wire = WireFrame::new(&Message { address: 1, sequence: 200, frame });
         self.world.place().hooks.instead = Some(Ok(wire.as_bytes().to_vec()));

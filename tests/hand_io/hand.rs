@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use sun2xp::finger::{FaultKind, Stage};
 use sun2xp::hand::HandError;
 use sun2xp::io::FingerIo;
-use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
+use sun2xp::model::{FingerNumber, Fingers};
 use sun2xp::nalgebra::Vector3;
 use sun2xp::realtime::CycleStage;
 use sun2xp::{Hand, io};
@@ -238,6 +238,14 @@ fn if_one_finger_cannot_start_the_others_are_stopped_again() {
     for (switches, started) in switches.iter().zip([1, 1, 0]) {
         assert_eq!(starts_and_stops(switches), (started, started));
     }
+}
+
+#[test]
+fn hardware_of_a_finger_that_the_hand_does_not_have_is_refused_with_this_reason() {
+    let mut configuration = patient();
+    configuration.hand.fingers = Fingers::one(FingerNumber::ONE);
+    let refused = open(&configuration, &[1, 2], false).err().expect("no finger 2");
+    assert!(matches!(refused, HandError::NotInHand { finger: FingerNumber::TWO, .. }), "{refused}");
 }
 
 #[test]

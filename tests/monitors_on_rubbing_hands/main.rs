@@ -23,7 +23,7 @@ use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use sun2xp::simulated::Defect;
 use truths::{RUBBING, Truth, truths};
 
-/// A finger of this hand. Every other seed has the stiffness of 6 N/cm instead of 3 N/cm.
+/// Opens a finger whose true properties are those of `truth`. Odd seeds have the stiffness of 6 N/cm instead of 3 N/cm.
 fn bench(truth: &Truth, seed: u64) -> Bench {
     let mut configuration = Configuration::default();
     let finger = &mut configuration.fingers[0];
@@ -94,7 +94,8 @@ fn a_hand_that_only_rubs_or_was_measured_badly_has_no_fault() {
     }
 }
 
-/// An identified finger of this hand: the simulated finger, and the configuration with the findings.
+/// Identifies a finger whose true properties are those of `truth`. Returns the simulated finger, and the configuration
+/// with the findings.
 fn identified(truth: &Truth, seed: u64) -> (Configuration, Configuration) {
     let (mut simulated, mut configuration) = (Configuration::default(), Configuration::default());
     let finger = &mut simulated.fingers[0];
@@ -157,13 +158,14 @@ fn dither_period(configuration: &Configuration) -> u64 {
     (1000.0 / numbers.dither_frequency).ceil() as u64 * MILLISECOND
 }
 
-/// Returns the direction in which a defect of a part shows after a cycle, or 0.
+/// Checks after a cycle whether the true state of the finger shows the defect of a part: returns the sign of the
+/// deviation, or 0 if the defect does not show.
 type Shows = fn(&Bench, u8) -> f64;
 
 /// Injects a defect into a part of the rubbing hand, which continues to move. Returns the part, the fault, and the time
 /// to the fault, ms. Without `shows`, the time counts from the injection. Otherwise it counts from the end of the first
-/// cycle after which the defect shows. It counts again from the next such cycle if the defect then shows in the other
-/// direction, or has not shown for a period of the dither.
+/// cycle after which the defect shows. The count starts again whenever the defect changes its direction. It also starts
+/// again if the defect was absent for more than one period of the dither and then shows again.
 fn report(seed: u64, defect: impl Fn(u8) -> Defect, shows: Option<Shows>) -> (u8, Option<Fault>, f64) {
     let mut bench = bench(&RUBBING, seed);
     let dither_period = dither_period(&bench.configuration);

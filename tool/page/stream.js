@@ -23,14 +23,16 @@ export class Stream {
     this.socket.onclose = () => {
       this.receivers.link(
         false,
-        "sun2xp does not answer. Check that the command still runs, and that this is the whole printed address.",
+        "sun2xp does not answer. Check that the command still runs, that the browser has the whole printed address, " +
+          "and that few other pages of this command are open.",
       );
       setTimeout(() => this.connect(), RETRY_MS);
     };
   }
 
   receive(message) {
-    // The server sends at most a second of batches that are not acknowledged, so that a slow page never shows old ones.
+    // The server stops sending batches to a page that has not acknowledged 20 of them, the batches of one second. A
+    // slow page therefore misses batches instead of showing them late.
     if (message.type === "batch") this.send({ received: message.number });
     this.receivers[message.type]?.(message);
   }

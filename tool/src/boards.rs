@@ -137,7 +137,7 @@ mod tests {
                 LinkError::from(PortError::Forbidden(path.clone())),
                 "no permission: join the port's group (usually dialout)",
             ),
-            (LinkError::WrongVersion { lowest: 2, highest: 3 }, "protocol versions 2 to 3, not 1: update board"),
+            (LinkError::WrongVersion { lowest: 2, highest: 3 }, "the board has protocol 2 to 3, the library 1: update"),
             (LinkError::Unintelligible { bytes: 9, damaged: 1 }, "no valid frame: check the bit rate"),
         ] {
             let mut table = Table::new(["port", "unique number", "address", "firmware", "kind"]);

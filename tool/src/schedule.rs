@@ -31,7 +31,8 @@ const LARGEST_COSTS: u64 = 1 << 16;
 /// includes 16 reflexes of each finger, of which one reacts in every cycle. Lines are as configured; a simulated port
 /// counts as a serial line of its baud rate. The results hold for any phases of the threads.
 ///
-/// Exit status: 0 if every deadline is met at the configured rate, 1 if one may be missed, 2 for wrong usage.
+/// Exit status: 0 if every deadline is met at the configured rate, 1 if one may be missed or the
+/// computation fails, 2 for wrong usage.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file. The default is the file that OpenHand would use.
@@ -92,10 +93,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     if report.pass {
         return Ok(ExitStatus::SUCCESS);
     }
-    let rate = configuration.hand.rate;
-    complain(&format!(
-        "at {rate:.0} Hz a deadline may be missed: lower hand.rate, raise finger.baud or spread the fingers over cores"
-    ));
+    complain(&report.complaint());
     Ok(ExitStatus::FAILURE)
 }
 

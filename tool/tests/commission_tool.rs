@@ -70,7 +70,7 @@ fn an_open_fault_blocks_the_steps_that_move_the_finger() {
     contains(&output.stdout, &["failed motors, today: motors 1 and 2 are swapped"]);
     contains(
         &output.stderr,
-        &["the step \"motors\" of today has not passed: motors 1 and 2 are swapped. Swap their cables. Remove"],
+        &["the step \"motors\" failed on today: motors 1 and 2 are swapped. Swap their cables. Remove"],
     );
 }
 
@@ -90,7 +90,7 @@ fn health_does_not_move_a_finger_with_an_open_fault() {
     };
     let motors = r#""motors": { "when": "today", "found": ["tendons 1 and 2 are swapped"] }"#;
     let both = r#""zeros": { "when": "", "found": [] }, "tendons": { "when": "", "found": [] }"#;
-    contains(&health(motors, both), &["the step \"motors\" of today has not passed: tendons 1 and 2 are swapped"]);
+    contains(&health(motors, both), &["the step \"motors\" failed on today: tendons 1 and 2 are swapped"]);
     contains(
         &health("", ""),
         &["the steps \"zeros\" and \"tendons\" of finger 1 do not both count as passed", "sun2xp commission --config"],

@@ -58,6 +58,8 @@ fn a_rate_below_the_lowest_that_can_be_configured_is_not_proposed() {
         "\nWith the sensor, no rate that can be configured meets every deadline: at 500 Hz, ",
     ];
     assert!(parts.iter().all(|part| text.contains(part)), "{text}");
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(error.contains("raise finger.baud") && !error.contains("lower hand.rate"), "{error}");
 }
 
 /// At 1000 Hz, thread 1 fetches a tactile event. Its cycle takes 100 + 10 + 550 + 200 + 5 + 150 + 5 = 1020 us, which is
@@ -80,6 +82,8 @@ fn a_deadline_that_only_a_higher_rate_meets_is_explained() {
     ] {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");
     }
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(error.contains("raise hand.rate to 1226"), "{error}");
 }
 
 #[test]

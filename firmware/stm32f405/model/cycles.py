@@ -17,7 +17,8 @@ def registers(operands):
 
 
 def cost(name, operands):
-    """Cycles of an instruction that does not branch. The refill is added where the next instruction is elsewhere."""
+    """Cycles of an instruction that does not branch. The caller adds the refill of the pipeline after a
+    jump."""
     if name in ("push", "pop") or name.startswith(("ldm", "stm")):
         return 1 + registers(operands)
     if name in ("ldrd", "strd"):

@@ -58,7 +58,7 @@ class Bench:
 
 
 def at_any_phase(cached, followers):
-    """The longest time over phases of the main loop, and torques and constants of all kinds."""
+    """The longest time that is found over all phases of the main loop and all torques and constants of VALUES."""
     longest = (0, 0)
     for torques, constants in VALUES:
         bench = Bench(cached, constants)
@@ -150,7 +150,7 @@ def main():
         row = f"| {what} | {count or ''} | {cached} | {times[0]:.1f} | {bound} | {times[1]:.1f} |"
         print(row, flush=True)
         if any(time > limit for time, limit in zip(times, limits)):
-            late.append(f"{what} (at most {limits[0]:.1f} us, upper bound {limits[1]:.1f} us)")
+            late.append(f"{what} (permitted: {limits[0]:.1f} us, for the upper bound {limits[1]:.1f} us)")
     if late:
         sys.exit(f"too long: {', '.join(late)}")
 

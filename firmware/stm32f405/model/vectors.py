@@ -50,8 +50,7 @@ def check(board, step):
 
 
 def possible(step):
-    """Whether the model can run this step. Steps without a wait follow each other within 1 ms, which is too short to
-    inject a sensor fault."""
+    """Whether the model can run this step. It cannot run a long wait or inject a sensor fault."""
     return step.get("wait_ms", 0) <= LONGEST and step.get("faults", 0) & ~(STOP | SUPPLY | DRIVER) == 0
 
 

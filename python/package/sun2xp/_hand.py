@@ -25,7 +25,8 @@ class Hand(_sun2xp.Hand):
 
     All methods except `close` raise Closed if the hand is closed, Refused if there is no such finger or if an argument
     is wrong, and Fault if the method needs a running finger and the finger is faulted. They raise TypeError if an
-    argument has a wrong type. But if the argument should be an array, they raise Refused.
+    argument has a wrong type. But if the argument should be an array, they raise Refused. `adjust` raises
+    ConfigurationError if the keys are wrong.
     """
 
     def events(self) -> Events:
@@ -86,7 +87,8 @@ class Hand(_sun2xp.Hand):
         Raises:
             ConfigurationError: the zeros could not be stored. They are in force until the hand is closed, and
                 `store_calibration` can store them later. This error is also raised if the configuration does not permit
-                zeroing, or cannot be used with the new zeros. In these two cases nothing has changed.
+                zeroing (nothing has changed), or cannot be used with the new zeros (the finger is limp and has its
+                previous zeros).
             Error: the calibration failed, and the previous one is in force. If the finger faulted after its zeros had
                 been found, the new zeros are in force.
         """

@@ -80,7 +80,7 @@ fn unreachable(configuration: &RemoteConfiguration, error: &str) -> String {
             Ok(_) if configuration.tls.is_some() => {
                 "a program answers there, but the TLS handshake fails: check that it is `sun2xp serve` with TLS, that \
                  remote.tls.authority has signed the certificates of both ends, that the server's certificate names \
-                 the host of remote.endpoint, and that no certificate has expired (the server prints the reason)"
+                 the host of remote.endpoint, and that no certificate has expired"
                     .into()
             }
             Ok(_) => {

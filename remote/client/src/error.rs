@@ -73,11 +73,10 @@ pub enum RemoteError {
         /// The configured endpoint.
         endpoint: String,
     },
-    /// The client has heard nothing of the hand for so long that it does not send the set point.
+    /// The client has received nothing from the hand for so long that it sends no set points.
     #[error(
-        "for {age_ms} ms, nothing was received from the hand \"{hand}\", and remote.stale_ms is {stale_ms}, so the set \
-         point is not sent: check the line to {endpoint} and the server, and send a new set point when the position \
-         can be read"
+        "for {age_ms} ms, nothing was received from the hand \"{hand}\", and remote.stale_ms is {stale_ms}, so no set \
+         point is sent: check the line to {endpoint} and the server, and repeat the call when the position can be read"
     )]
     Silent {
         /// The name of the hand.

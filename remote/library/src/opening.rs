@@ -19,9 +19,9 @@ pub(crate) fn open(source: RemoteSource, configuration: &Configuration) -> Resul
         RemoteSource::Text(text) => client::RemoteConfiguration::from_text(text, Path::new(".")),
     };
     // The caller has found the table already. The file may have been replaced since then.
-    let remote = read
-        .map_err(refusal)?
-        .ok_or_else(|| system("the table [remote] was removed from the file during this call: open the hand again"))?;
+    let remote = read.map_err(refusal)?.ok_or_else(|| {
+        system("the table [remote] was removed from the file during this call: put it back, and open the hand again")
+    })?;
     let hand = client::RemoteHand::open(&remote).map_err(|error| match error.kind() {
         // To a client that opens the hand, the server answers *not owner* only if the client does not have the
         // permission "command". If another client owns the hand, the answer is *owned*.

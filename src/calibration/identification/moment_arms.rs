@@ -93,7 +93,7 @@ impl MomentArms {
             let found = moved / if known { expected } else { range };
             let difference = (found - row).amax() / row.amax();
             if difference > LARGEST {
-                let what = "the largest error of its moment arms, as a fraction,";
+                let what = "the difference of its moment arms from geometry.r, relative to the largest arm,";
                 return Err(Obstacle::Implausible { part: Part::joint(joint), what, value: difference });
             }
             significant |= difference > SIGNIFICANT;

@@ -103,7 +103,7 @@ impl TendonStiffness {
         let what = "the stiffness, N/cm,";
         let (found, residual) = self.fit.solve().ok_or(Obstacle::Implausible {
             part: Part::Finger,
-            what: "the stiffness of the tendons, N/cm,",
+            what: "the stiffness of the tendons",
             value: f64::NAN,
         })?;
         let linear = found.fixed_rows::<4>(0) / SCALE;

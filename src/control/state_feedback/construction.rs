@@ -90,8 +90,9 @@ impl Drives {
         let too_far = || Unusable {
             key: "tendon.stiffness",
             reason: format!(
-                "{} N/cm does not suit a motor mass (motor.inertia / geometry.motor_radius^2) of {} kg, because state \
-                 feedback then has no observer at {rate} Hz: check these values, and geometry.motor_radius",
+                "{} N/cm does not suit a motor mass (motor.inertia / geometry.motor_radius^2) of {} kg, because no \
+                 observer for state feedback can be computed for them at {rate} Hz: check these values, and \
+                 geometry.motor_radius",
                 tendon.stiffness / 100.0,
                 tendon.mass
             ),

@@ -41,7 +41,7 @@ pub enum ValueKind {
     Pressure,
     /// The number of the rule.
     Rule,
-    /// The time since the last command of the planner or the last renewal of its validity, ms.
+    /// The time since the planner last sent a command or renewed the validity of one, ms.
     Age,
 }
 
@@ -61,7 +61,7 @@ impl ValueKind {
             ValueKind::Element => "number of the element",
             ValueKind::Pressure => "force on the element, N",
             ValueKind::Rule => "number of the rule",
-            ValueKind::Age => "time since the last command of the planner or the last renewal of its validity, ms",
+            ValueKind::Age => "time since the planner last sent a command or renewed the validity of one, ms",
         }
     }
 

@@ -65,8 +65,8 @@ kinds! {
         "every joint is within finger.events.arrived_degrees of the set point for the first time after a change of the \
          set point";
     12 Settled "SETTLED" None, [Joints], "settled",
-        "no joint has moved by more than finger.events.settled_degrees for finger.events.settled_ms, for the first \
-         time after a change of the set point";
+        "for the first time after a change of the set point, no joint has moved by more than \
+         finger.events.settled_degrees during finger.events.settled_ms";
     13 Fault "FAULT" Some("part of the fault"), [FaultNumber, FaultValue], "fault",
         "a fault has stopped the finger";
     14 Warning "WARNING" Some("part of the warning"), [FaultNumber, FaultValue], "warning",

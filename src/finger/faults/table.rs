@@ -108,7 +108,7 @@ faults! {
         "a motor driver reports over-current, over-temperature or a short circuit",
         "a motor is hot, jammed or short-circuited",
         "Let the motors cool, check the motors and their wires, then recover the finger", [Recover];
-    22 SensorFault "SENSOR_FAULT" Fault Finger Status "sensor, reported by the board",
+    22 SensorFault "SENSOR_FAULT" Fault Finger Status "sensor fault, reported by the board",
         "the board cannot read an encoder or a gauge",
         "the cable of a sensor is unplugged or broken",
         "Check the cables of the sensors, then recover and zero the finger", [Recover, Zero];
@@ -224,8 +224,8 @@ faults! {
         "not all tendons were under tension at the end of hand.open_timeout_ms, because the servo ran too few of its \
          cycles",
         "the machine is overloaded, or the board's replies are lost",
-        "Reduce the load of the machine, permit real-time scheduling (run sun2xp doctor) or raise \
-         hand.open_timeout_ms; then recover the finger", [Recover];
+        "Reduce the load of the machine or permit real-time scheduling (sun2xp doctor), then recover the finger; or \
+         raise hand.open_timeout_ms, which needs the hand to be closed and opened again", [Recover];
     49 SameNumber "SAME_NUMBER" Refusal Finger Nothing "same number",
         "the boards at two ports report the same unique number, so they cannot be distinguished",
         "their firmware gives every board the same number",
@@ -235,20 +235,20 @@ faults! {
         "the program or its user wants this finger to be at rest, or detected a danger",
         "Make sure that the finger can move safely, then recover it", [Recover];
     51 SetPointExpired "SET_POINT_EXPIRED" Fault Finger Time "set point expired",
-        "the planner has sent nothing for longer than its last set point was valid; if finger.motion.on_expiry is \
-         \"end state\", the finger then stops at once; otherwise it stops finger.motion.end_state_ms later if this \
-         key is set (with sun2xp serve: serve.end_ms after the newest target)",
+        "the planner has sent nothing for longer than its last set point was valid; with finger.motion.on_expiry = \
+         \"end state\" the finger stops at once, and otherwise after finger.motion.end_state_ms, if this key is set; \
+         with sun2xp serve it stops serve.end_ms after the newest target",
         "the planner hangs, is stopped in a debugger, or plans for longer than its set points are valid; with sun2xp \
          serve also: the planner was killed, or the network is cut or loses packets",
         "Recover the finger and send set points in time, or raise finger.motion.valid_ms, finger.motion.end_state_ms \
          or serve.end_ms", [Recover];
     52 ReflexStop "REFLEX_STOP" Fault Finger Nothing "stopped by a reflex",
         "the condition of a reflex was true, and its reaction stops the finger",
-        "the planner installed the reflex for this case; the last event \"reflex fired\" has the number of the rule",
+        "the planner installed the reflex for this case; the last event \"reflex fired\" has the number of the reflex",
         "Remove the cause, or remove the reflex, then recover the finger", [Recover];
     53 HardwareFailed "HARDWARE_FAILED" Refusal Finger Errno "hardware failed",
         "the hardware that the program provides for this finger does not start or stop",
-        "the program's own function \"start\" or \"stop\" for this hardware has returned the errno in the value",
+        "the program's own function \"start\" or \"stop\" for this hardware has failed with the errno in the value",
         "Check the power and the cables of the hardware, end other programs that use it, and look up the errno in the \
          documentation of the program or of its hardware", [];
     54 WrongWiring "WRONG_WIRING" Refusal Finger Nothing "wrong wiring",

@@ -54,7 +54,7 @@ impl Warnings {
     }
 
     /// Returns the newest warning. Returns `None` after the warning has been absent for more than the number of cycles
-    /// that [`Warnings::note`] was given.
+    /// that `Warnings::note` was given.
     pub fn newest(&self) -> Option<Fault> {
         self.newest
     }

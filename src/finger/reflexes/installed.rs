@@ -29,7 +29,7 @@ pub fn reflexes(finger: FingerNumber, bulletin: &Bulletin) -> (Reflexes, ReflexS
 }
 
 impl Reflexes {
-    /// Installs a rule, and returns its number. Returns none if the finger already has [`MOST_RULES`].
+    /// Installs a rule, and returns its number. Returns none if the finger already has `MOST_RULES`.
     pub fn install(&self, reflex: Reflex) -> Option<u32> {
         let installed = &mut *self.0.lock();
         let place = installed.rules.0.iter_mut().find(|place| place.is_none())?;

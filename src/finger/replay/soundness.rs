@@ -62,7 +62,10 @@ impl Recording {
             limits.check(&control.input).map_err(wrong)?;
             computed = computed.saturating_add(control.input.skipped + 1);
             if computed > MOST_COMPUTED {
-                let reason = format!("leads to more than {MOST_COMPUTED} cycles to compute, which a replay refuses");
+                let reason = format!(
+                    "up to this cycle, the file has more than {MOST_COMPUTED} cycles and skipped periods, and a replay \
+                     computes no more"
+                );
                 return Err(wrong(("skipped".into(), reason)));
             }
         }

@@ -93,7 +93,7 @@ fn finger_of(common: &Table, own: &Table, name: Option<&str>) -> Result<(Configu
     overlay(&mut merged, own);
     let (port, board) = (merged.contains_key("port"), merged.contains_key("board"));
     if port && board {
-        let reason = "the table has `port` too, and the board is at one port only: keep one of the two keys";
+        let reason = "the table has `port` too, and each of the two keys says where the board is: remove one of them";
         return Err(Wrong::at(span_of_key(&merged, "board"), reason.into()).in_key("board"));
     }
     if let Some(name) = name {
@@ -117,7 +117,8 @@ fn refuse_simulated_beside_real(
     let (Some(real), Some(missing)) = (real, unnamed.first()) else { return Ok(()) };
     let own = root.get("finger").and_then(|all| all.get(real.to_string()));
     let span = span_of(own, "port").or_else(|| span_of(own, "board"));
-    let fingers: Vec<String> = named.iter().map(FingerNumber::to_string).collect();
+    let others = configuration.hand.fingers.members().filter(|number| number != missing);
+    let fingers: Vec<String> = others.map(|number| number.to_string()).collect();
     let reason = format!(
         "is missing, and finger {real} has a real port: a finger is not simulated beside real ones unless the file \
          says so. If the hand does not have finger {missing}, set hand.fingers = [{}]. Otherwise name its port or its \

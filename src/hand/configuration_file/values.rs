@@ -82,7 +82,10 @@ impl<'a> Node<'a> {
             more if more > high.into() => "large",
             _ => return visitor.visit_i64(number),
         };
-        Err(Wrong::at(self.span, format!("{number} is too {misfit}: docs/sun2xp.toml gives the range of this key")))
+        Err(Wrong::at(
+            self.span,
+            format!("{number} is too {misfit} for this key: docs/sun2xp.toml describes its values"),
+        ))
     }
 }
 

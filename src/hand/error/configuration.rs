@@ -47,8 +47,9 @@ pub enum ConfigurationError {
     },
     /// The configuration names a hand on another machine, and the call opens only hands of this machine.
     #[error(
-        "{} has a table [remote], which names a hand on another machine, and this call opens only hands of this \
-         machine: open the hand with sun2xp.remote.open in Python or with RemoteHand in Rust, or remove the table",
+        "{} has a table [remote], which names a hand on another machine, and only hands of this machine can be opened \
+         here: run the command on the machine of the hand, open the hand with sun2xp.remote.open in Python or with \
+         RemoteHand in Rust, or remove the table",
         ShownPath(file)
     )]
     Remote {
@@ -91,10 +92,10 @@ pub enum ConfigurationError {
         /// The error that the system reported.
         source: std::io::Error,
     },
-    /// A calibration does not match the configuration file, because the file has changed since the calibration.
+    /// A calibration does not match the configuration file: a key on which it depends had another value in the hand.
     #[error(
         "the calibration does not match {}: {key} is {} there, and was {} during the calibration. Nothing was written: \
-         correct the file and calibrate again",
+         correct the file, or close the hand and open it again if the file is right, and calibrate again",
         ShownPath(path),
         Shown(is),
         Shown(was)

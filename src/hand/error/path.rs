@@ -23,8 +23,8 @@ pub enum PathError {
     /// the first pose.
     #[error(
         "the time of pose {pose} of the path of finger {finger} is {time} s after the beginning of the path: send a \
-         time that is at least {least} s later than {before} s, {}, and at most {most} s",
-        if *pose == 0 { "the beginning of the path" } else { "the time of the pose before it" }
+         time of at most {most} s, at least {least} s later than {} ({before} s)",
+        if *pose == 0 { "the beginning of the path" } else { "the pose before it" }
     )]
     Time {
         /// The finger.
@@ -83,9 +83,9 @@ pub enum PathError {
     },
     /// The path is too fast.
     #[error(
-        "on the way to pose {pose}, the {quantity} of joint {joint} of finger {finger} would reach {value:.1} {unit}, \
-         above `finger.motion.{quantity}` = {limit}: multiply all times by {factor:.2}, begin and end more gently, or \
-         set `hand.out_of_range = \"clamp\"`, which multiplies the times"
+        "on the way to pose {pose}, the {quantity} of joint {joint} of finger {finger} would reach {value:.3} {unit}, \
+         above `finger.motion.{quantity}` = {limit}: multiply all times by {factor:.2}, give \
+         this part of the path more time, or set `hand.out_of_range = \"clamp\"`, which multiplies the times"
     )]
     TooFast {
         /// The finger.

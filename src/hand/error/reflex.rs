@@ -46,8 +46,8 @@ pub enum ReflexError {
     TooMany(FingerNumber),
     /// There is no rule with this number.
     #[error(
-        "finger {finger} has no reflex {rule}, because it was removed or never installed: use the number that \
-         installing the reflex has returned"
+        "finger {finger} has no reflex {rule}, because it was removed or never installed: use the number that was \
+         returned when the reflex was installed, or install it again"
     )]
     NoSuchRule {
         /// The finger.

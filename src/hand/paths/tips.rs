@@ -13,7 +13,7 @@ const ACCURATE: f64 = 0.001;
 /// Largest distance of the tip from its path that is accepted, cm.
 const ACCEPTED: f64 = 0.01;
 
-/// Numbers of pieces for each pose, from few to many.
+/// Numbers of pieces per pose that are tried one after the other.
 const PIECES_PER_POSE: [usize; 7] = [4, 8, 16, 32, 64, 128, 256];
 
 /// Time step for the derivatives of the tip's motion at the beginning of a path, s.

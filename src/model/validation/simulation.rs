@@ -48,8 +48,8 @@ impl ConfiguredFinger {
         // geometry.r itself has passed its check. So the remedy in the text of the error, to check the signs of R, does
         // not apply here.
         self.true_tendons().map(|_| ()).or_else(|_| {
-            let reason = "gives the simulated finger moment arms with which its tendons cannot all pull while the \
-                          joints are at rest: set ratios that are nearer to 1";
+            let reason = "with these moment arms, the tendons of the simulated finger cannot all pull while the joints \
+                          are at rest: set ratios that are nearer to 1";
             unusable("simulation.moment_arm_ratio", reason.into())
         })
     }

@@ -15,7 +15,8 @@ struct frame {
     uint8_t bytes[FRAME_MAXIMUM];
 };
 
-/* Returns the total length of a frame of this type, or 0 for a type of another version. */
+/* Returns the total length of a frame of this type, or 0 for a type that this version of the protocol
+   does not have. */
 unsigned frame_length(unsigned type);
 
 uint32_t crc32_of(const uint8_t *bytes, unsigned length);

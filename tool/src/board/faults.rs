@@ -67,7 +67,11 @@ impl Trouble {
             },
             "commands" => match Self::read(if rest.first() == Some(&"commands") { &[] } else { rest })? {
                 Some(Trouble::Line(fault, probability, time)) => Trouble::LineToBoard(fault, probability, time),
-                _ => return Err("usage: commands drop, corrupt, delay, duplicate, reorder or stall ...".into()),
+                _ => {
+                    return Err("usage: commands FAULT, such as commands drop 0.01; FAULT is drop, corrupt, delay, \
+                                duplicate, reorder or stall with its numbers"
+                        .into());
+                }
             },
             "mend" => match numbers()?[..] {
                 [finger] => Trouble::Mend(whole(finger)?),
@@ -277,8 +281,8 @@ mod tests {
             ("drop", "PROBABILITY [MS]"),
             ("stall -1", "not a time"),
             ("commands corrupt 2", "not a probability"),
-            ("commands mend 1", "commands drop, corrupt"),
-            ("commands", "commands drop, corrupt"),
+            ("commands mend 1", "FAULT is drop, corrupt"),
+            ("commands", "FAULT is drop, corrupt"),
             ("slack 1 2 -3", "does not take these numbers"),
         ] {
             let error = read(line).unwrap_err();

@@ -24,26 +24,31 @@ const ACTIONS: [Entry; 10] = [
     (
         "state FINGER",
         "answer with the true joint angles (rad), tip (cm), tensions (N), motor torques (N cm), three instants on the \
-         board's clock (ms), and the status bits of a Reply. The instants are: now, the last obeyed Command, and the \
-         beginning of the end state that silence or a Stop caused. An instant is NaN if the event has not occurred \
-         since the last Configure",
+         board's clock (ms), and the status bits of a Reply. The instants are: now, the last Command that was obeyed, \
+         and the moment at which the finger went to its end state, after a Stop or when the watchdog tripped. An \
+         instant is NaN if the event has not occurred since the last Configure",
     ),
     ("quit", "end the program"),
 ];
 
-const DEFECTS: [Entry; 19] = [
+const DEFECTS: [Entry; 24] = [
     ("cut FINGER TENDON", "tear a tendon"),
-    ("slack FINGER TENDON GRIP", "let a tendon slip at tensions above GRIP, N"),
+    ("slack FINGER TENDON GRIP", "let a tendon slip at tensions above GRIP (N, 0 or more)"),
     ("jam FINGER MOTOR", "block a motor"),
     ("hot FINGER MOTOR", "switch a motor driver off, as at over-temperature"),
     ("dead-element FINGER ELEMENT", "make a tactile element, counted from 0, unreadable"),
-    ("dead-gauge FINGER GAUGE [COUNT]", "freeze a gauge at COUNT, or at its current count"),
+    ("dead-gauge FINGER GAUGE [COUNT]", "freeze a gauge at COUNT, 0 to 65535, or at its current count"),
     ("drift-gauge FINGER GAUGE SPEED", "let a gauge drift, N/s"),
-    ("swap-motors FINGER A B", "swap the cables of two motors; also swap-encoders and swap-gauges"),
+    ("swap-motors FINGER A B", "swap the cables of two motors"),
+    ("swap-encoders FINGER A B", "swap the cables of two encoders"),
+    ("swap-gauges FINGER A B", "swap the cables of two gauges"),
     ("swap-tendons FINGER A B", "route two tendons to each other's motor"),
-    ("reverse-motor FINGER MOTOR", "connect a motor backwards; also reverse-encoder and reverse-gauge"),
-    ("gauge-gain FINGER GAUGE RATIO", "set the gain of a gauge to RATIO times its original value"),
-    ("dead-motor FINGER MOTOR", "disconnect a motor; also dead-encoder"),
+    ("reverse-motor FINGER MOTOR", "connect a motor backwards"),
+    ("reverse-encoder FINGER ENCODER", "let an encoder count backwards"),
+    ("reverse-gauge FINGER GAUGE", "connect a gauge backwards"),
+    ("gauge-gain FINGER GAUGE RATIO", "set the gain of a gauge to RATIO, 0 to 10, times its original value"),
+    ("dead-motor FINGER MOTOR", "disconnect a motor"),
+    ("dead-encoder FINGER ENCODER", "disconnect an encoder"),
     ("jump FINGER ENCODER COUNTS", "add COUNTS to the count of an encoder"),
     ("zero-lost FINGER", "declare the encoder counts invalid"),
     ("emergency FINGER", "activate the emergency stop input"),
@@ -60,14 +65,13 @@ const LINE_FAULTS: [Entry; 10] = [
     ("duplicate PROBABILITY [MS]", "send frames twice"),
     ("reorder PROBABILITY [MS]", "send frames in the wrong order"),
     ("stall MS", "send nothing for MS, then everything at once"),
-    ("commands drop 0.01, and so on", "the same for frames to the board"),
+    ("commands FAULT", "one of the faults above, for frames to the board: commands drop 0.01"),
     ("good", "end all line faults, in both directions"),
     ("unplug", "remove the port"),
     ("replug", "create a new port and answer with its path"),
 ];
 
-/// Returns the first word of each entry. Orders that only a description names, such as `swap-encoders`, are not
-/// included.
+/// Returns the first word of each entry.
 pub fn names() -> impl Iterator<Item = &'static str> {
     let entries = ACTIONS.iter().chain(&DEFECTS).chain(&LINE_FAULTS);
     entries.filter_map(|(usage, _)| usage.split_whitespace().next())

@@ -258,8 +258,8 @@ impl SetBound {
         };
         writeln!(
             out,
-            "    not searched, but checked at the bound: {samples} samples with the tip within 3 cm of the axis of \
-             joint 0, {found}"
+            "    not counted for the bound: {samples} samples with the tip within 3 cm of the axis of joint 0; at the \
+             bound, {found}"
         )
     }
 }

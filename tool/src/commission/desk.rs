@@ -74,7 +74,7 @@ impl Desk<'_> {
             self.machine.off();
             if attempt % READINGS == 0 {
                 let remedy = "Check the cable and the power of the board, and what else this computer runs. Then \
-                              read again";
+                              press Enter to repeat the reading";
                 if !self.person.again(&format!("{failure}. {remedy}."))? {
                     return Err(NoAnswer::GivenUp(failure.to_string()).into());
                 }
@@ -93,7 +93,7 @@ impl Desk<'_> {
         step: Step,
         mut failed: impl FnMut(&Outcome) -> Result<(), Failure>,
     ) -> Result<Outcome, Failure> {
-        let question = format!("Remove the cause, then do the step \"{step}\" again.");
+        let question = format!("Remove the cause. Then press Enter to repeat the step \"{step}\".");
         loop {
             let done = self.carry_out(step);
             match &done {

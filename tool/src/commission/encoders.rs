@@ -75,7 +75,7 @@ fn report(desk: &Desk, outcome: &mut Outcome) {
     outcome.about("encoder.sign", "motors turned by hand so that their tendons came loose");
     outcome.about(
         "encoder.counts_per_revolution",
-        "after one turn by hand, each value is the old one, or 1/4, 1/2, 2 or 4 times the old one",
+        "checked with one turn by hand, and multiplied by 1/4, 1/2, 2 or 4 where the old value was wrong",
     );
 }
 

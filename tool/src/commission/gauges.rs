@@ -63,7 +63,7 @@ pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
             }
         };
         desk.person.show(&format!(
-            "gauge {}: {:.5} N per count, {:.3} N rms from a straight line over the weights",
+            "gauge {}: {:.5} N per count; its readings deviate by {:.3} N rms from a straight line over the weights",
             weighed.gauge + 1,
             weighed.line.slope,
             weighed.line.residual

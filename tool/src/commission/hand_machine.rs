@@ -21,6 +21,7 @@ const RESTING: Duration = Duration::from_millis(600);
 const SAMPLING: Duration = Duration::from_millis(5);
 /// Settling time before the measurements of a finger at rest.
 const SETTLING: Duration = Duration::from_millis(1500);
+const NO_MEASUREMENT: &str = "the board has sent no measurement: check its power and its cable";
 /// Duration of the examination of the computer.
 const EXAMINATION: Duration = Duration::from_secs(3);
 
@@ -138,7 +139,7 @@ impl Machine for HandMachine {
         }
         let kept = hand.record(finger, None)?;
         if kept.newest <= first {
-            return Err("the board has sent no measurement".into());
+            return Err(NO_MEASUREMENT.into());
         }
         let first = first.max(kept.oldest);
         // The black box may overwrite the oldest cycles meanwhile.
@@ -146,7 +147,7 @@ impl Machine for HandMachine {
             (first..=kept.newest).filter_map(|cycle| hand.record(finger, Some(cycle)).ok()?.record.feedback).collect();
         let count = cycles.len() as f64;
         if cycles.is_empty() {
-            return Err("the board has sent no measurement".into());
+            return Err(NO_MEASUREMENT.into());
         }
         let mean = |of: &dyn Fn(usize) -> f64| (0..cycles.len()).map(of).sum::<f64>() / count;
         let encoders = std::array::from_fn(|part| mean(&|cycle| f64::from(cycles[cycle].motor_counts[part])));

@@ -41,8 +41,9 @@ fn adopt(desk: &mut Desk, outcome: &mut Outcome, found: &Findings) {
         }
         if signs.encoder[motor] != desk.finger.encoder.sign[motor] {
             outcome.wrong(Wrong::Refused(format!(
-                "motor {0} was turned by hand in the direction that winds its tendon in, or tendon {0} is wound on its \
-                 drum the other way round now. Do the step \"encoders\" again",
+                "the sign of encoder {0} is now opposite to the sign that the step \"encoders\" found: its channels or \
+                 encoder.sign were changed since then, tendon {0} is wound on its drum the other way round now, or \
+                 motor {0} was turned the wrong way in that step. Do that step again",
                 motor + 1
             )));
         }

@@ -83,7 +83,7 @@ fn choose(answers: Vec<Answer>, finger: FingerNumber, taken: &[Taken]) -> Result
         _ => {
             let all = free.iter().map(Answer::text).collect::<Vec<_>>().join("; ");
             return Err(format!(
-                "{} fingers answer, and not exactly one of them has the address {finger}: {all}. Connect only the \
+                "{} fingers answer, and none or several of them have the address {finger}: {all}. Connect only the \
                  board of the finger, or name its port with --port. If they are on one board, write \
                  finger.{finger}.board, finger.{finger}.address and hand.fingers into the file",
                 free.len()
@@ -140,7 +140,7 @@ mod tests {
         for (answers, taken, reason) in [
             (&[][..], &[][..], "no board answers"),
             (&[(5, 1)], &[(5, 1)], "only boards of other fingers answer"),
-            (&[(5, 1), (6, 1)], &[], "2 fingers answer, and not exactly one of them has the address 2: "),
+            (&[(5, 1), (6, 1)], &[], "2 fingers answer, and none or several of them have the address 2: "),
             (&[(5, 2), (6, 2)], &[], "Connect only the board of the finger"),
             (&[(5, 1), (5, 3)], &[], "write finger.2.board, finger.2.address and hand.fingers into the file"),
         ] {

@@ -137,8 +137,8 @@ impl CommissionedFinger {
     pub fn open_fault(&self, step: Step) -> Option<String> {
         let (open, fault) = self.failed.iter().find(|&(&open, _)| step.moves() && open < step)?;
         Some(format!(
-            "the step \"{step}\" moves the finger, and the step \"{open}\" of {} has not passed: {}. Remove the cause \
-             and do the step \"{open}\" again",
+            "the step \"{step}\" is not done, because it moves the finger and the step \"{open}\" failed on {}: {}. \
+             Remove the cause and do the step \"{open}\" again",
             fault.when,
             fault.found.join("; ")
         ))
@@ -185,7 +185,7 @@ mod tests {
         assert!(!finger.steps.contains_key(&Step::Motors));
         for step in [Step::Zeros, Step::Tendons, Step::Spring] {
             let fault = finger.open_fault(step).expect("refused");
-            let named = fault.contains("the step \"motors\" of today has not passed: motors 1 and 2 are swapped. Swap");
+            let named = fault.contains("the step \"motors\" failed on today: motors 1 and 2 are swapped. Swap");
             assert!(named && !fault.contains("backwards"), "{fault}");
         }
         for step in [Step::Board, Step::Encoders, Step::Gauges, Step::Motors, Step::Bound] {

@@ -63,8 +63,7 @@ impl Session<'_> {
     pub fn closing(&self) -> Result<String, Failure> {
         let left = ProgressFile::read(&self.file)?.left(self.finger.get());
         if left.is_empty() {
-            let later =
-                "At any later time, sun2xp health compares the finger's state at that time with its state today.";
+            let later = "To compare the finger later with its state of today, run sun2xp health.";
             return Ok(format!("The finger is commissioned. {later}"));
         }
         let names = left.iter().map(|step| step.name()).collect::<Vec<_>>().join(", ");

@@ -85,7 +85,7 @@ impl Step {
     /// What the person should see.
     pub fn expect(self) -> &'static str {
         match self {
-            Self::Board => "The number of the board, and a fault while the emergency stop is pressed.",
+            Self::Board => "The number of the board, and that the board sees the emergency stop.",
             Self::Encoders => "The encoder of the motor counts one turn, and no other encoder counts.",
             Self::Gauges => "The gauge of the tendon shows the weight, and no other gauge changes.",
             Self::Motors => "Each motor turns back and forth by less than 10 mm of tendon. The finger hardly moves.",

@@ -65,7 +65,7 @@ fn report(outcome: &mut Outcome, found: &Identified) {
     outcome.about("tendon.stiffness", format!("by identification, residual of the motor travel {residual:.1} um rms"));
     outcome.about(
         "gauge.newton_per_count",
-        format!("gains relative to those found with weights: {}", list(found.gauge_gain.as_slice(), 3)),
+        format!("by identification, scales relative to those before: {}", list(found.gauge_gain.as_slice(), 3)),
     );
     for key in ["friction.motor_coulomb", "friction.conduit", "friction.pulley", "friction.joint_coulomb"] {
         outcome.about(key, "by identification, in both directions of motion");
@@ -77,7 +77,7 @@ fn report(outcome: &mut Outcome, found: &Identified) {
         list(found.pulley.as_slice(), 3),
         list(found.joint_coulomb.as_slice(), 3)
     ));
-    outcome.found(format!("gauge gains, new / by weights: {}", list(found.gauge_gain.as_slice(), 3)));
+    outcome.found(format!("gauge gains, new / before: {}", list(found.gauge_gain.as_slice(), 3)));
     outcome.found(format!("torque of the motors, true / commanded: {}", list(found.motor_ratio.as_slice(), 2)));
     for motor in 0..4 {
         if (found.motor_ratio[motor] - 1.0).abs() > TORQUE {
@@ -89,7 +89,9 @@ fn report(outcome: &mut Outcome, found: &Identified) {
     }
     if let Some(inertia) = found.rotor_inertia {
         let inertia = list((inertia * 1e7).as_slice(), 2);
-        outcome.found(format!("the inertia of the rotors differs from motor.inertia: {inertia} 1e-7 kg m^2 is stored"));
+        outcome.found(format!(
+            "the inertia of the rotors differs from motor.inertia: the measured one is stored, {inertia} in 1e-7 kg m^2"
+        ));
     }
     if found.moment_arms.is_some() {
         outcome.found("the moment arms differ from geometry.r: the measured ones are stored");

@@ -109,7 +109,7 @@ impl Terminal {
                 "" | "y" | "yes" => return Ok(Reply::Enter),
                 "n" | "no" => return Ok(Reply::No),
                 "q" | "quit" => return Err(NoAnswer::Left.into()),
-                _ => self.line(Look::Dim, "    not understood: press Enter alone, or type n or q before it"),
+                _ => self.line(Look::Dim, "    not understood: press Enter, or type n or q and then press Enter"),
             }
         }
     }
@@ -168,7 +168,7 @@ impl Person for Terminal {
             self.retries = retries.saturating_sub(1);
             return Ok(retries > 0);
         }
-        Ok(matches!(self.reply(question, "done", "do not try again")?, Reply::Enter))
+        Ok(matches!(self.reply(question, "try again", "do not try again")?, Reply::Enter))
     }
 }
 

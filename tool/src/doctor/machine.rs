@@ -60,21 +60,21 @@ fn throttling(runtime: &str, period: &str) -> Finding {
             subject,
             "off",
             format!(
-                "A real-time thread that never sleeps would block its core permanently, and the ports with it. Switch \
-                 the throttling on: {remedy}"
+                "A real-time thread that never sleeps would block its core permanently, also for the threads of the \
+                 kernel that serve the ports. Switch the throttling on: {remedy}"
             ),
         ),
         (Ok(runtime), Ok(period)) if period > 0 => {
             let share = 100 * runtime / period;
             let found = format!("real-time threads get {share} % of the time, {runtime} of {period} us");
             match share {
-                0 => Finding::new(
+                _ if runtime == 0 => Finding::new(
                     Rating::Failure,
                     subject,
                     found,
                     format!("Real-time threads get no time at all. Change that: {remedy}"),
                 ),
-                1..50 => Finding::new(
+                ..50 => Finding::new(
                     Rating::Warning,
                     subject,
                     found,
@@ -147,8 +147,10 @@ fn cores(configuration: &Configuration, allowed: &[usize], isolated: &[usize]) -
         return lacking(configuration, subject, found, advice);
     }
     if let Some(core) = wanted.iter().find(|core| !isolated.contains(core)) {
+        let cores: Vec<_> = wanted.iter().map(usize::to_string).collect();
         let advice = format!(
-            "Other programs run on core {core} too and delay the servo: boot with isolcpus={core} nohz_full={core}"
+            "Other programs run on core {core} too and delay the servo: boot with isolcpus={0} nohz_full={0}",
+            cores.join(",")
         );
         return Finding::new(Rating::Warning, subject, found, advice);
     }

@@ -64,7 +64,7 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
     let watchdog = f64::from(configuration.hand.watchdog_ms) * 1e3;
     let (verdict, consequence) = match late.p99 / period {
         share if share > TOO_LATE => (Rating::Failure, "Periods are lost again and again."),
-        _ if late.maximum > watchdog => (Rating::Failure, "The board's watchdog trips and switches the motors off."),
+        _ if late.maximum > watchdog => (Rating::Failure, "The board's watchdog trips, and the finger faults."),
         share if share > LATE => (Rating::Warning, "The time left for the replies becomes short."),
         _ if periods > TOO_LATE => (Rating::Warning, "The worst wake-up is so late that its period is lost."),
         _ => (Rating::Good, ""),

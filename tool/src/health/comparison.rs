@@ -182,8 +182,8 @@ fn zeros(all: &mut Vec<Complaint>, before: &Vitals, configured: &ConfiguredFinge
         for gauge in 0..4 {
             let newton = (today[gauge] - before[gauge]) * configured.gauge.newton_per_count[gauge];
             if newton.abs() > ZERO {
-                let advice =
-                    "The gauge was overloaded, is loose or drifts: zero it again, and replace it if it keeps drifting";
+                let advice = "The gauge was overloaded, is loose or drifts: zero it again (sun2xp commission \
+                              --config FILE --finger N --step zeros), and replace it if it keeps drifting";
                 let part = format!("zero of gauge {}", gauge + 1);
                 let (before, today) = ("0 N".into(), format!("{newton:+.1} N"));
                 all.push(Complaint { kind: "gauge_zero", part, before, today, advice });
@@ -204,12 +204,14 @@ fn zeros(all: &mut Vec<Complaint>, before: &Vitals, configured: &ConfiguredFinge
             true => (
                 "longer_tendon",
                 "The tendon has become longer, because its knot or clamp slips or because it creeps, or the encoder \
-                 slipped: tighten the knot or clamp, check the coupling of the encoder, and zero again",
+                 slipped: tighten the knot or clamp, check the coupling of the encoder, and zero again (sun2xp \
+                 commission --config FILE --finger N --step zeros)",
             ),
             false => (
                 "encoder_slip",
                 "The encoder slipped or lost counts, or the tendon was replaced or shortened: check the coupling and \
-                 cable of the encoder, and zero again; after work on the tendon, commission the finger again",
+                 cable of the encoder, and zero again (sun2xp commission --config FILE --finger N --step zeros); \
+                 after work on the tendon, commission the finger again",
             ),
         };
         let part = format!("zero of encoder {}", motor + 1);

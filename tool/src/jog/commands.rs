@@ -90,9 +90,9 @@ impl Display for Refused {
             ),
             Self::BeyondLimits { finger, joint, angle } => write!(
                 formatter,
-                "the set point of joint {joint} of finger {finger} is {angle:.1} degrees, too far beyond the limits of \
-                 the joint for one step of a real finger: stop the hand, move the finger into its limits by hand, and \
-                 recover it"
+                "the set point of joint {joint} of finger {finger} is {angle:.1} degrees, so far beyond the limits of \
+                 the joint that one step of a real finger does not bring it back: stop the hand, move the finger into \
+                 its limits by hand, and recover it"
             ),
             Self::NoneRuns => formatter.write_str("no finger runs: recover the fingers first"),
             Self::Stopped { finger } => {
@@ -199,7 +199,7 @@ fn send_joints(hand: &Hand, configuration: &Configuration, finger: i32, joints: 
         within(finger, degrees, most, "degrees")?;
     }
     hand.send_position(finger, joints)?;
-    let [j0, j1, j2] = joints.map(f64::to_degrees);
+    let [j0, j1, j2] = admitted(configuration, finger, joints).map(f64::to_degrees);
     Ok(format!("finger {finger}: joints to {j0:.1}, {j1:.1}, {j2:.1} degrees"))
 }
 

@@ -117,7 +117,9 @@ pub fn lines(view: &View, palette: &Palette, width: usize) -> Vec<Line<'static>>
     let mut lines = vec![Line::from(spans)];
     let pushed = panel.pushes.iter().map(Push::acting).zip(1..).filter(|(force, _)| *force != [0.0; 3]);
     for ([x, y, z], finger) in pushed {
-        let text = format!(" pushes finger {finger} with {x:.2} {y:.2} {z:.2} N in the palm's frame; key 0 ends it");
+        let text = format!(
+            " push on finger {finger}: {x:.2} {y:.2} {z:.2} N in the palm's frame. To end it, press {finger}, then 0"
+        );
         lines.push(Line::styled(text, palette.warning));
     }
     let (text, style) = match &panel.result {
@@ -160,9 +162,9 @@ mod tests {
         let mut panel = JogPanel::new(false);
         press(&mut panel, 0.2, true);
         press(&mut panel, 0.4, true);
-        assert!(!shown(&panel).contains("pushes"), "nothing acts yet");
+        assert!(!shown(&panel).contains("push on"), "nothing acts yet");
         conclude(&mut panel, 0.2, Some(Ok("pushed")));
-        assert!(shown(&panel).contains("pushes finger 2 with 0.00 0.00 0.20 N"), "{}", shown(&panel));
+        assert!(shown(&panel).contains("push on finger 2: 0.00 0.00 0.20 N"), "{}", shown(&panel));
         conclude(&mut panel, 0.4, Some(Err("too strong")));
         assert!(shown(&panel).contains("0.20 N") && shown(&panel).contains("too strong"), "{}", shown(&panel));
         assert_eq!(panel.result, Some(("too strong".into(), true)));
@@ -175,6 +177,6 @@ mod tests {
         press(&mut panel, 0.0, true);
         assert!(shown(&panel).contains("0.20 N"), "it acts until the hand has ended it");
         conclude(&mut panel, 0.0, Some(Ok("no push")));
-        assert!(!shown(&panel).contains("pushes"));
+        assert!(!shown(&panel).contains("push on"));
     }
 }

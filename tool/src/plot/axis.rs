@@ -12,7 +12,7 @@ pub struct Axis {
 /// Largest number of ticks of a logarithmic axis.
 const MOST_POWERS: usize = 40;
 
-/// Smallest range of a linear axis, as a fraction of its largest value.
+/// Smallest range of an axis around values, as a fraction of their largest magnitude.
 const NARROWEST: f64 = 1e-6;
 
 impl Axis {

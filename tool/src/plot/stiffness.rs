@@ -91,9 +91,9 @@ impl Plot for Stiffness {
         };
         let legend = [
             (Sign::Line(SENT), "stiffness as it was sent".into()),
-            (Sign::Line(IN_FORCE), format!("stiffness in the pose, scale {scale:.2}")),
+            (Sign::Line(IN_FORCE), format!("stiffness that takes effect in this pose ({scale:.2} of Kx)")),
             (Sign::Line(FORCE), "force of the tip at the end".into()),
-            (Sign::Line(FORCES), "before".into()),
+            (Sign::Line(FORCES), "force of the tip before".into()),
         ];
         let more = format!("after {time:.3} s  \u{b7}  each ellipse: the forces for all deflections of 1 cm");
         let subtitle = subtitle(selection, self.rate, &more);

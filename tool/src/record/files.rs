@@ -278,7 +278,9 @@ fn undeleted(path: &Path, error: &io::Error) -> String {
 }
 
 fn uncreated(path: &Path, error: &io::Error) -> Failure {
-    format!("cannot create {}: {error}: name another file with --output", ShownPath(path)).into()
+    let remedy = write_remedy(error);
+    let or = if remedy.is_empty() { ":" } else { ", or" };
+    format!("cannot create {}: {error}{remedy}{or} name another file with --output", ShownPath(path)).into()
 }
 
 /// Returns the name of a further file: `hand.mcap` becomes `hand-2.mcap`.

@@ -8,6 +8,9 @@ use crate::recording::or_by;
 use std::path::Path;
 use sun2xp::finger::{Difference, Recording};
 
+const NOTHING_TO_REPLAY: &str = "it contains no cycles in which a controller has run, so none can be replayed: name \
+                                 the black box of a finger that has run";
+
 /// Replays a black box file.
 pub fn replay(file: &Path) -> Result<Report, Failure> {
     let recording = Recording::open(file)?;
@@ -16,7 +19,7 @@ pub fn replay(file: &Path) -> Result<Report, Failure> {
     drop(progress);
     let replayed = replayed.map_err(|error| in_file(file, format_args!("{error}{}", or_by(&recording.library))))?;
     if replayed.cycles == 0 {
-        return Err(in_file(file, "it contains no cycles in which a controller has run, so none can be replayed"));
+        return Err(in_file(file, NOTHING_TO_REPLAY));
     }
     let mut finger = FingerReport::new(recording.origin.finger, recording.origin.hand.rate);
     recording.cycles.iter().for_each(|cycle| finger.contents.add(cycle));

@@ -199,7 +199,11 @@ impl FingerReport {
         }
         let more = self.gaps - self.first_gaps.len() as u64;
         if more > 0 {
-            row(format!("{}, {} missing cycles in all", Counted(more, "more gap", "more gaps"), self.missing_cycles));
+            row(format!(
+                "{}; all gaps together: {} missing cycles",
+                Counted(more, "more gap", "more gaps"),
+                self.missing_cycles
+            ));
         }
         if self.without_state > 0 {
             let text = format!(

@@ -139,6 +139,19 @@ impl Report {
         }
     }
 
+    /// Returns that a deadline may be missed at the configured rate, and what to do.
+    pub fn complaint(&self) -> String {
+        let change = match self.configured.fastest.rate {
+            Some(fastest) if f64::from(fastest) > self.rate => format!("raise hand.rate to {fastest}"),
+            Some(_) => "lower hand.rate".into(),
+            None => "let wake-ups and computations take less time (sun2xp doctor)".into(),
+        };
+        format!(
+            "at {:.0} Hz a deadline may be missed: {change}, raise finger.baud or spread the fingers over cores",
+            self.rate
+        )
+    }
+
     pub fn write(&self, out: &mut impl Write, screen: &Screen) -> io::Result<()> {
         let title = |text: &str| painted(screen, Look::Title, text);
         let Costs { wake_up, write, read, compute } = self.costs;

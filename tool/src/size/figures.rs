@@ -206,7 +206,7 @@ impl Finger<'_> {
                 "E A of a tendon",
                 stiffness.max() * wanted.tendon_length,
                 "N",
-                "a tendon with this product of modulus and cross-section, for finger.tendon.stiffness",
+                "a tendon with this product of modulus and cross-section, so that it is as stiff as configured",
             ),
             Figure::least(
                 "rate of the servo",

@@ -117,6 +117,10 @@ impl Drop for Control {
     }
 }
 
+/// The answer to a command that is not carried out.
+const DROPPED: &str = "the command was dropped by an emergency stop, or because sun2xp ends: recover the fingers or \
+                       start sun2xp again, and send it again";
+
 /// What the thread needs to carry commands out.
 struct Executor {
     hand: Weak<Hand>,
@@ -129,7 +133,7 @@ impl Executor {
     fn run(&self, orders: &Receiver<Order>) {
         for Order { command, stops, answers } in orders {
             self.waiting.fetch_sub(1, Ordering::Relaxed);
-            let dropped = || (false, "the command was dropped by the emergency stop: send it again".into());
+            let dropped = || (false, DROPPED.into());
             let result = self.stopper.carry_out(&command, stops, |stopped| self.execute(&command, stopped));
             let (done, text) = result.unwrap_or_else(dropped);
             // The page may have left.

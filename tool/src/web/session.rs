@@ -139,7 +139,9 @@ impl Reader {
             };
             match serde_json::from_str(&text) {
                 Ok(Request::Received(Received { received: 1.. })) => self.batches.acknowledge(),
-                Ok(Request::Received(_)) => return Some("an acknowledgement of no batch"),
+                Ok(Request::Received(_)) => {
+                    return Some("an acknowledgement of batch 0, but the first batch has the number 1");
+                }
                 Ok(Request::Command(command)) if self.control.is_some() => self.order(command),
                 Ok(Request::Command(_)) => return Some("a command, but sun2xp runs without --control"),
                 Err(_) => return Some("a message that is neither a command nor an acknowledgement"),

@@ -116,7 +116,7 @@ fn jog_moves_and_pushes_the_simulated_hand() {
     terminal.keys(&["2", "t", "Up"]);
     terminal.until(&["finger 2: tip to"]);
     terminal.keys(&["f", "Down"]);
-    terminal.until(&["pushes finger 2 with 0.00 0.00 -2.00 N", "touching"]);
+    terminal.until(&["push on finger 2: 0.00 0.00 -2.00 N", "touching"]);
     terminal.keys(&["0", "+"]);
     terminal.until(&["finger 2: Kx 3.75, 3.75, 3.75"]);
     terminal.keys(&["Space"]);

@@ -66,7 +66,7 @@ def open(
         stale: largest age of the state that `position`, `tip` and `state` return, s.
 
     Raises:
-        ConfigurationError: no hand or client can have this name, or a certificate cannot be read.
+        ConfigurationError: `hand` or `client` is not a permitted name, or a certificate cannot be read.
         NoAnswer: there is no connection or no such hand, or, with TLS, this client may not use the hand.
         NotOwner: another client commands the hand, or, without TLS, this client may not command it ([serve.clients] of
             the server).
@@ -102,11 +102,13 @@ def send_together(set_points: Dict[RemoteHand, Sequence[SetPoint]]) -> None:
     this refusal yet, or if this client does not own one of the hands.
 
     Raises:
-        ValueError: the hands do not have the same connection (`connect`).
+        ValueError: there is no hand, or the hands do not have the same connection (`connect`).
         NotOwner, Refused: for the same reasons as in `RemoteHand.send_group`.
     """
     networks = {id(hand._network): hand._network for hand in set_points}
-    if len(networks) != 1:
+    if not networks:
+        raise ValueError("the call has no hand: give at least one hand with its set points")
+    if len(networks) > 1:
         raise ValueError("the hands need one connection: open them with the same sun2xp.remote.connect()")
     commands = [(hand.owner, hand.parts(points)) for hand, points in set_points.items()]
     next(iter(networks.values())).sender.send(commands)

@@ -18,7 +18,7 @@ def main() -> int:
         print(error, file=sys.stderr)
         return 1
     if not hands:
-        remedy = "start `sun2xp serve` there, or connect it to the router there"
+        remedy = f"start `sun2xp serve` on the machine of the hand (with serve.connect if {endpoint} is a router)"
         print(f"no hand answers at {endpoint}: {remedy}", file=sys.stderr)
         return 1
     for name, status in sorted(hands.items()):

@@ -30,7 +30,7 @@ def common_name(path: Union[str, os.PathLike[str]]) -> str:
     except OSError as error:
         reason = str(error)
     except (ValueError, IndexError, StopIteration):
-        reason = "its certificate has no common name"
+        reason = "its certificate is damaged or has no common name"
     text = f"{path} is not the certificate of a client ({reason}): name this client's .pem file in the argument `tls`"
     raise ConfigurationError(text, number=ErrorNumber.CONFIGURATION)
 

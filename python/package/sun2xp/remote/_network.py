@@ -90,6 +90,8 @@ def check_files(tls: Tls) -> None:
                 pass
         except OSError as error:
             remedy = "name the files of this client in the argument `tls`"
+            if isinstance(error, PermissionError):
+                remedy = "this user needs permission to read the file and to enter its folder"
             text = f"{os.fspath(path)} cannot be read ({error.strerror}): {remedy}"
             raise ConfigurationError(text, number=ErrorNumber.CONFIGURATION) from error
 
@@ -117,7 +119,7 @@ def configuration(endpoint: str, tls: Optional[Tls]) -> Dict[str, Any]:
 class Network:
     """A connection to a server or to a router, from `sun2xp.remote.connect`.
 
-    Several hands can be used over one connection. The targets of all of them are sent by one thread, with one time
+    Several hands can be used over one connection. One thread repeats the targets of all of them, with one time
     stamp. Leaving a `with` block closes the hands and the connection.
 
     Args:

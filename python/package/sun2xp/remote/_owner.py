@@ -64,8 +64,8 @@ class Owner:
         self._epoch = 0
 
     def _notice_silence(self) -> None:
-        """Ends the epoch if this client has heard nothing of the server for so long that the server must count all
-        Targets of this client as too old."""
+        """Ends the epoch if this client has heard nothing of the server for so long that the server regards all Targets
+        of this client as too old. A Target contains the newest time of the server that this client has received."""
         if self._receiver.silence() > self._end:
             self._epoch = 0
 
@@ -113,7 +113,7 @@ class Owner:
             Refused: the server has refused what was sent before. Each refusal is raised once.
         """
         if self.epoch == 0:
-            remedy = "hand.acquire() gets the hand, if no other client owns it"
+            remedy = "hand.acquire() gets the hand, with take_over=True also if another client owns it"
             raise NotOwner(f"this client does not command the hand: {remedy}", number=ErrorNumber.BUSY)
         refusals = [self._refusals.pop(finger) for finger in fingers if finger in self._refusals]
         texts = sorted({refusal.text for refusal in refusals})

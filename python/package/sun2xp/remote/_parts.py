@@ -29,8 +29,11 @@ def group(set_points: Sequence[SetPoint], fingers: Dict[int, FingerStatus]) -> L
             finger, or two set points for one finger.
     """
     numbers = [set_point.finger for set_point in set_points]
-    if not numbers or len(set(numbers)) < len(numbers):
-        raise _refused(f"the set points are for the fingers {numbers}: send one set point for each finger of a group")
+    if not numbers:
+        raise _refused("the group has no set point: give one for each finger that gets a new set point")
+    for finger in numbers:
+        if numbers.count(finger) > 1:
+            raise _refused(f"the group has {numbers.count(finger)} set points for finger {finger}: give only one")
     return [_part(set_point, fingers[set_point.finger]) for set_point in set_points]
 
 

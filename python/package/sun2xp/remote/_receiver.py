@@ -210,8 +210,8 @@ class Receiver:
         return (time.monotonic_ns() - self._heard) * 1e-9
 
     def age(self) -> float:
-        """Returns the smallest age that the newest State can have, s: the time since its publication, less the shortest
-        time that any State has needed to arrive."""
+        """Returns a lower bound of the age of the newest State, s. The clock of the server has an unknown offset, so
+        the State that arrived fastest counts as having arrived without delay."""
         with self.changed:
             if self._offset is None:
                 return float("inf")

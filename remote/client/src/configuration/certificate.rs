@@ -61,7 +61,12 @@ fn common_name(certificate: &X509Certificate<'_>) -> Result<ClientName, String> 
         "the certificate of remote.tls.certificate has no common name, and the client needs one as its name: make a \
          certificate with `sun2xp serve --make-certificates`",
     )?;
-    name.parse().map_err(|error| format!("the common name of remote.tls.certificate cannot be used: {error}"))
+    name.parse().map_err(|error| {
+        format!(
+            "the common name of remote.tls.certificate cannot be used: {error}. Use `sun2xp serve \
+             --make-certificates` to make a certificate whose name a client can have"
+        )
+    })
 }
 
 fn read(path: &Path, key: &str) -> Result<Vec<u8>, RemoteError> {

@@ -22,7 +22,7 @@ pub enum Loss {
 impl fmt::Display for Loss {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
-            Self::Never => "it only watches. Open the hand instead",
+            Self::Never => "it only watches the hand. To command the hand, open it instead of watching it",
             Self::Ended => {
                 "the server has ended the ownership of this client, because no Target (the message with the set \
                  points) arrived for the time `serve.end_ms`, or because the hand was released. Check the line, then \

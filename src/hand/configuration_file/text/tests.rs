@@ -76,7 +76,7 @@ fn a_port_of_a_finger_replaces_the_board_of_all_and_the_reverse() {
     let (hand, _) = parse(&format!("{of_all}[finger.2]\nport = 'simulated'\n")).expect("usable");
     assert_eq!(hand.fingers.each_ref().map(ConfiguredFinger::simulated), [false, true, false]);
     let (line, reason) = refusal(&format!("[finger.1]\nport = '/dev/a'\n{board}"));
-    assert!(line == Some(3) && reason.contains("keep one of the two keys"), "{reason}");
+    assert!(line == Some(3) && reason.contains("remove one of them"), "{reason}");
 }
 
 #[test]
@@ -144,8 +144,8 @@ fn impossible_values_are_named_with_line_and_reason() {
 #[test]
 fn values_with_which_no_controller_can_be_constructed_are_refused_with_the_key_to_correct() {
     for (text, line, beginning, words) in [
-        ("[finger.tendon]\nmaximum = 10\n", 2, "finger.1.tendon.maximum: allows", "lower tendon.minimum"),
-        ("[hand]\nrate = 1000\n[finger.3.tendon]\nmaximum = 10\n", 4, "finger.3.tendon.maximum: allows", "raise"),
+        ("[finger.tendon]\nmaximum = 10\n", 2, "finger.1.tendon.maximum: leaves", "lower tendon.minimum"),
+        ("[hand]\nrate = 1000\n[finger.3.tendon]\nmaximum = 10\n", 4, "finger.3.tendon.maximum: leaves", "raise"),
         (
             "[finger.2.friction]\njoint_coulomb = [20, 20, 20]\n",
             2,

@@ -78,7 +78,7 @@ fn a_step_whose_routine_has_failed_is_offered_again() {
     let mut person = Helper::new(&world);
     (world.borrow_mut().lost.1, person.patience) = (1, 1);
     assert!(step(Step::Motors, &world, &mut person, &belief).0.passed());
-    assert_eq!(person.questions, ["Remove the cause, then do the step \"motors\" again."]);
+    assert_eq!(person.questions, ["Remove the cause. Then press Enter to repeat the step \"motors\"."]);
 }
 
 /// The step is noted as failed, so that it does not count as passed any more.
@@ -247,7 +247,7 @@ fn a_refused_pose_says_how_to_zero_at_the_stops() {
     person.holds = false;
     let (outcome, _) = step(Step::Zeros, &world, &mut person, &belief);
     let [wrong @ Wrong::PoseRefused(_)] = &outcome.wrong[..] else { panic!("{outcome:?}") };
-    for part in ["gauges probably lag", "leave with q", "start the tool again"] {
+    for part in ["because its gauges lag", "leave with q", "start the tool again"] {
         assert!(wrong.remedy().contains(part), "{}", wrong.remedy());
     }
 }

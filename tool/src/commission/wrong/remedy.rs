@@ -32,12 +32,15 @@ impl Wrong {
                 format!("Nothing to do: encoder.sign compensates it. Or swap the channels A and B of encoder {encoder}")
             }
             Self::EncoderDead(encoder) => format!(
-                "Check the cable and the supply of encoder {encoder}, and that its disc turns with the shaft. If one \
-                 of its two channels is missing, the encoder does not count either"
+                "Check the cable and the supply of encoder {encoder}, and that its disc turns with the shaft. An \
+                 encoder also does not count if one of its two channels is missing"
             ),
             Self::EncoderScale(..) => "Nothing to do: encoder.counts_per_revolution is corrected".into(),
             Self::EncoderUnclear(motor, _) => {
-                format!("Turn motor {motor} by exactly one turn; a mark on its shaft helps")
+                format!(
+                    "Turn motor {motor} by exactly one turn; a mark on its shaft helps. If the number stays the same, \
+                     correct encoder.counts_per_revolution"
+                )
             }
             Self::MotorReversed(motor) => {
                 format!("Nothing to do: motor.sign compensates it. Or, if motor {motor} is brushed, swap its two wires")
@@ -125,8 +128,8 @@ impl Wrong {
                     .into()
             }
             Self::PoseRefused(_) => {
-                "If a jig held the finger, its gauges probably lag, and the finger trembled in spite of the jig: zero \
-                 the finger at its stops. For that, leave with q, set zeroing.method = \"stops\" for this finger \
+                "If a jig held the finger, the finger probably trembled in the jig because its gauges lag: zero it at \
+                 its stops instead. For that, leave with q, set zeroing.method = \"stops\" for this finger \
                  in the configuration file, and start the tool again. The tool reads the file only when it starts"
                     .into()
             }
@@ -137,8 +140,8 @@ impl Wrong {
             Self::NotWeighed(tendon) => format!("Hang at least one weight on tendon {tendon}"),
             Self::NotPrepared => "Make it possible, or leave with q and do the step later".into(),
             Self::Refused(_) => {
-                "If this requires a change of the configuration file, leave with q, change the file, and start the \
-                 tool again. The tool reads the file only when it starts"
+                "If the configuration file must be changed, leave with q, change the file, and start the tool again. \
+                 The tool reads the file only when it starts"
                     .into()
             }
             _ => String::new(),

@@ -67,6 +67,7 @@ fn every_fault_is_found_alone_with_its_remedy() {
             Warning,
             "cpupower",
         ),
+        ("proc/sys/kernel/sched_rt_runtime_us", "5000".into(), "real-time throttling", Warning, "950000"),
     ] {
         let findings = found(path, &text, |_| {});
         let bad: Vec<_> = findings.iter().filter(|finding| finding.verdict != Rating::Good).collect();

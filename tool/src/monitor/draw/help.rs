@@ -8,7 +8,7 @@ use ratatui::widgets::{Block, BorderType, Paragraph};
 
 const KEYS: &[(&str, &str)] = &[
     ("q, Esc", "quit (Esc first closes help and detail)"),
-    ("space", "freeze the picture, and let it continue"),
+    ("space", "freeze the picture; pressed again, let it continue"),
     ("1 2 3, tab", "show a finger in detail"),
     ("s", "write the state (JSON) and the screen (text, SVG)"),
     ("up, down", "scroll long fault texts"),
@@ -17,13 +17,13 @@ const KEYS: &[(&str, &str)] = &[
 const JOG_KEYS: &[(&str, &str)] = &[
     ("SPACE", "EMERGENCY STOP of all fingers"),
     ("1 2 3, tab", "choose the finger"),
-    ("j t f", "arrow keys move joints, the tip, or push with a force"),
+    ("j t f", "the arrow keys move joints (j), move the tip (t) or push the tip (f)"),
     ("left right", "joint 0, or x of the palm"),
     ("up down", "joint 1, or z: away from the palm"),
     ("PgUp PgDn, < >", "joint 2, or y"),
     ("[ ]", "smaller or larger steps"),
     ("- +", "softer or stiffer: Kx times 0.8 or 1.25"),
-    ("0", "end the push"),
+    ("0", "end the push of the chosen finger"),
     ("o c", "open or close the grip"),
     ("r", "recover the finger"),
     ("d p s", "detail, freeze the picture, snapshot"),
@@ -32,7 +32,7 @@ const JOG_KEYS: &[(&str, &str)] = &[
 ];
 
 const SIGNS: &[(&str, &str)] = &[
-    ("├─━●─◆┤", "joint: thick from zero to measured ●, set point ◆"),
+    ("├─━●─◆┤", "joint: the thick line ends at the measured angle ●, ◆ is the set point"),
     ("│███·┃··│", "tension from t_min to t_max: measured █, wanted ┃"),
     ("‹", "the tendon is slack, below 0.8 t_min"),
     ("F, Fc", "tip force from the tensions, and contact estimate"),
