@@ -50,9 +50,9 @@ impl TensionDistribution {
         let too_low = |&tendon: &usize| !maximum[tendon].is_finite() || maximum[tendon] <= at_rest[tendon];
         if let Some(tendon) = (0..4).find(too_low) {
             let reason = format!(
-                "leaves tendon {} at most {:.2} N (less than the limit, because the controller keeps a reserve), but \
-                 at zero joint torque it needs {:.2} N, so that every tendon has at least {minimum:.2} N: raise \
-                 tendon.maximum or motor.torque_limit, or lower tendon.minimum",
+                "leaves tendon {} at most {:.2} N (state feedback keeps a reserve below the limit), but at zero joint \
+                 torque it needs {:.2} N, so that every tendon has at least {minimum:.2} N: raise tendon.maximum or \
+                 motor.torque_limit, or lower tendon.minimum",
                 tendon + 1,
                 maximum[tendon],
                 at_rest[tendon]
