@@ -1185,7 +1185,7 @@ struct sun2xp_path_pose {
    EIO      the finger is faulted
    EBUSY    the finger is being recovered or calibrated, or is limp
    EAGAIN   during the call the finger was recovered or calibrated, its set point expired, a reflex reacted,
-            or the inhibition after a reaction ended. Send the path again
+            or the inhibition of a reflex ended. Send the path again
    ERANGE   a Kx is too stiff for the ratio of sun2xp_send_damping ("clamp" clamps the ratio instead)
 
  Threads: any. Never waits for a servo. Takes about 1 ms, depending on the number of poses.

@@ -1,4 +1,4 @@
-//! Compares the motor torques of two steps.
+//! Compares the motor torques of the library's step with those of the handwritten step.
 
 /// The larger number. Returns NaN if one of the numbers is NaN, which `f64::max` ignores.
 pub fn larger(a: f64, b: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Replaces keys of a configuration, or numbers of state feedback, by those of a TOML text.
+//! Takes values of a configuration, or of the `Numbers` of state feedback, from a TOML text.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

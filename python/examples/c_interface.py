@@ -13,7 +13,7 @@ import cffi
 def declarations(header: str) -> str:
     """The declarations and constants of the header. Comments and all other preprocessor lines are left out."""
     text = re.sub(r"/\*.*?\*/", "", header, flags=re.DOTALL)
-    # cffi knows size_t, and computes the sizes of structs itself.
+    # The blocks that are left out here are for C++, and check the sizes of structs. cffi computes these sizes itself.
     text = re.sub(r"#ifdef __(cplusplus|LP64__)\n.*?#endif", "", text, flags=re.DOTALL)
     lines = (line.strip() for line in text.splitlines())
     constant = re.compile(r"#define \w+ +\d+$")
@@ -41,7 +41,7 @@ def main(header: str, library: str) -> None:
     check(sun2xp.sun2xp_tip(hand, 1, tip))
     print("tip", *(f"{place:.2f}" for place in tip.position), "cm")
     if sun2xp.sun2xp_send_position(hand, 7, [0, 0, 0]) != -sun2xp.SUN2XP_ERROR_ARGUMENT:
-        raise RuntimeError("the hand accepted a command for finger 7")
+        raise RuntimeError("a command for finger 7 was not refused as a wrong argument")
     print(ffi.string(sun2xp.sun2xp_error_text(hand)).decode())
     check(sun2xp.sun2xp_close(hand))
 

@@ -126,7 +126,7 @@ fn server_name(text: &str) -> Result<ClientName, String> {
                 NameError::Character { what: "server", character, allowed }
             }
         };
-        format!("{error}. Choose another name; host names and addresses with other characters belong into --address")
+        format!("{error}. Choose another name; host names and addresses with other characters are given with --address")
     })?;
     check_client(&name).map(|()| name)
 }

@@ -102,7 +102,8 @@ impl Cycles {
 
     fn record(&mut self, finger: Finger, record: &CycleRecord, goals: &Goals) -> Record {
         let number = i32::from(finger.number());
-        let known = sun2xp::FingerNumber::try_from(number).expect("the protocol and the hand number fingers alike");
+        let known = sun2xp::FingerNumber::try_from(number)
+            .expect("a finger has the same number in the protocol and in the hand");
         let sample = self.view.sample(known, record);
         // In the cycle of a fault, the sample has the set point and the force of the cycle before.
         let stopped = matches!(record.stage, Stage::Faulted(_) | Stage::Closed);

@@ -14,7 +14,7 @@ fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) if error.use_stderr() => {
-            // clap shows wrong arguments with their control characters.
+            // clap would print wrong arguments with their control characters. `complain_lines` escapes these.
             complain_lines(&error.render().to_string());
             return ExitCode::from(WRONG_USAGE);
         }

@@ -47,7 +47,8 @@ pub fn answer(shared: &Arc<Shared>, action: Action, client: ClientName, payload:
     if request.action != action {
         shared.desk.lock().count_malformed();
         let (key, named) = (action.name(), request.action.name());
-        let text = format!("the key is for {key}, but the Request is for {named}. {DEFECTIVE}");
+        let text =
+            format!("the Zenoh key of the Request names `{key}`, but its payload requests `{named}`. {DEFECTIVE}");
         return reply.send(&refuse(Code::Malformed, text));
     }
     match permission(&shared.settings.clients, &client) {

@@ -1,7 +1,7 @@
 //! The errors of a board, as text for the person at the bench.
 
 use super::port_error::PortError;
-use super::protocol::{HIGHEST_ADDRESS, Kind, Reason, Refused, VERSION};
+use super::protocol::{ANY_ADDRESS, HIGHEST_ADDRESS, Kind, Reason, Refused, VERSION};
 use super::terms::TermsError;
 use crate::model::Counted;
 use thiserror::Error;
@@ -36,12 +36,15 @@ pub enum LinkError {
     },
     /// Valid frames were received, but not the answer to the request.
     #[error(
-        "finger address {address} does not answer a {request:?} frame, although the board sends valid frames: its \
-         firmware is faulty, or several boards share the port. Update the firmware, and connect only one board to a \
-         port"
+        "{} a {request:?} frame, although the board sends valid frames: its firmware is faulty, or several boards \
+         share the port. Update the firmware, and connect only one board to a port",
+        match *address {
+            ANY_ADDRESS => "no finger answers".to_string(),
+            address => format!("finger address {address} does not answer"),
+        }
     )]
     Unanswered {
-        /// The finger's address.
+        /// The finger's address, or [`ANY_ADDRESS`] if the request was for any finger of the board.
         address: u8,
         /// The request.
         request: Kind,
@@ -146,7 +149,7 @@ mod tests {
     fn every_port_without_a_board_has_its_cause_and_a_remedy_in_short() {
         let path = || PathBuf::from("/dev/ttyUSB0");
         let broken = || io::Error::from_raw_os_error(libc::EPROTO);
-        let errors: [(LinkError, &str); 12] = [
+        let errors: [(LinkError, &str); 13] = [
             (PortError::Missing(path()).into(), "does not exist"),
             (PortError::Forbidden(path()).into(), "no permission"),
             (PortError::Busy(path()).into(), "in use by another program"),
@@ -155,6 +158,7 @@ mod tests {
             (PortError::Baud { path: path(), wanted: 2_000_000, offered: 9600 }.into(), "cannot run at 2000000 bit/s"),
             (PortError::Opening { path: path(), source: broken() }.into(), "Protocol error"),
             (PortError::Vanished.into(), "disappeared"),
+            (PortError::Closed.into(), "closed its descriptor: search again"),
             (LinkError::Silent { milliseconds: 160 }, "nothing answers"),
             (LinkError::Unintelligible { bytes: 9, damaged: 1 }, "no valid frame"),
             (LinkError::WrongVersion { lowest: 2, highest: 3 }, "the board has protocol 2 to 3"),

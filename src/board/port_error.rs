@@ -17,9 +17,12 @@ pub enum PortError {
     #[error("no permission to open {}: add the user to the port's group (usually dialout) and log in \
              again", ShownPath(.0))]
     Forbidden(PathBuf),
-    /// Another program uses the port (EBUSY).
-    #[error("{path} is in use by another program: end it (fuser -v {path} names it), or configure another \
-             port", path = ShownPath(.0))]
+    /// Another program, or another hand of this program, uses the port (EBUSY).
+    #[error(
+        "{path} is in use by another program or another hand of this program: end that program (fuser -v {path} names \
+         it), close that hand, or configure another port",
+        path = ShownPath(.0)
+    )]
     Busy(PathBuf),
     /// The driver does not open the port yet (EAGAIN). A UART takes up to 30 s to close if bytes cannot leave.
     #[error(
@@ -104,7 +107,8 @@ impl PortError {
             | PortError::SetUp { source, .. }
             | PortError::Hardware { source, .. }
             | PortError::Failed(source) => format!("{source}: {}", short_remedy(source)),
-            PortError::Vanished | PortError::Closed => "disappeared: check the cable".into(),
+            PortError::Vanished => "disappeared: check the cable".into(),
+            PortError::Closed => "this program has closed its descriptor: search again".into(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Causes and remedies of a refusal. They depend on what the finger did.
 
-/// What an identification without a plausible value has found.
+/// Says why the result of an identification cannot be used. NaN means that the measurements do not determine it.
 pub(super) fn outcome(what: &str, value: f64) -> String {
     if value.is_nan() {
         return format!("the measurements do not determine {}", what.trim_end_matches(','));
@@ -11,7 +11,8 @@ pub(super) fn outcome(what: &str, value: f64) -> String {
 /// A joint does not follow when it is moved back and forth. The largest torque of this motion is fixed, so
 /// `zeroing.torque` does not affect it.
 pub(super) const STAYS_BEHIND: &str = "it has far too much friction, or it meets a stop because its zeros or the \
-    configured stops are wrong. Clear its way, check the joint and its tendons, and zero the finger again";
+    configured stops are wrong. Clear its way, check the joint, its tendons, zeroing.lower_stop_degrees and \
+    zeroing.upper_stop_degrees, and zero the finger again";
 
 /// A joint does not return to its start.
 pub(super) const DOES_NOT_RETURN: &str = "or zeroing.torque is too small for its friction. Check both";

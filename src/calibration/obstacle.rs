@@ -11,7 +11,8 @@ pub enum Obstacle {
     /// A tendon does not become tight.
     #[error(
         "tendon {tendon} does not come under tension ({newton:.2} N): it is broken or off its pulley, its gauge is \
-         dead, or the sign of its motor is wrong. Check the tendon and its gauge; sun2xp calibrate identifies signs"
+         dead, or the sign of its motor is wrong. Check the tendon and its gauge. Run sun2xp calibrate --signs if the \
+         sign may be wrong"
     )]
     Slack {
         /// The tendon's number, 1 to 4.

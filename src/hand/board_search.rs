@@ -104,11 +104,11 @@ fn port_of(
         (None, _) => "not found at",
     };
     let patterns = configuration.hand.search_ports.join(", ");
-    Err(HandError::NoSuchBoard { finger, number, patterns, found: listed(searched), searched: result })
+    Err(HandError::NoSuchBoard { finger, number, patterns, found: found_at(searched), searched: result })
 }
 
-/// What the search has found at each port, in one line.
-fn listed(searched: &[SearchedPort]) -> String {
+/// Says in one line what a search has found at each port.
+pub fn found_at(searched: &[SearchedPort]) -> String {
     let at_port = |port: &SearchedPort| {
         let path = ShownPath(&port.path);
         match &port.answer {

@@ -54,7 +54,7 @@ pub enum HandError {
     /// The finger has no tactile element with this number.
     #[error(
         "finger {finger} has no tactile element with the number {element}, because its configuration lists {listed} \
-         and the numbers begin at 0: list its elements in [finger.{finger}.touch]",
+         and the numbers begin at 0: use the number of a listed element, or list it in [finger.{finger}.touch]",
         listed = Counted(*count as u64, "element", "elements")
     )]
     NoSuchElement {

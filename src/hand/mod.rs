@@ -50,7 +50,7 @@ pub use crate::finger::stop_all;
 pub use crate::model::Fingers;
 pub use admission::Ranges;
 pub use black_box_file::save_recording;
-pub use board_search::{FoundFinger, SearchedPort, find_boards, search_boards};
+pub use board_search::{FoundFinger, SearchedPort, find_boards, found_at, search_boards};
 pub use calibrating::{Calibrating, CalibrationState};
 pub use calibration_file::store_findings;
 pub(crate) use configuration_file::FingersWithIo;

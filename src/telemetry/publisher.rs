@@ -53,7 +53,7 @@ pub enum Serving {
     Nobody,
     /// There are readers.
     Readers {
-        /// Whether a reader is new, and needs the controllers.
+        /// Whether a reader is new. A new reader needs all messages about controllers again.
         new: bool,
     },
 }
@@ -151,7 +151,8 @@ impl Publisher {
             self.last[finger.index()] = Some(LastCycle { number: record.cycle, ends });
             if let Some(ring) = &mut self.ring {
                 if missing > 0 {
-                    // A reader takes the number of lost cycles from the beginning of a block. So a block ends here.
+                    // A reader knows lost cycles only from the counts at the beginning of a block. So a block ends
+                    // before the lost cycles, and the next one begins after them.
                     ring.batch.write(&mut ring.writer);
                     ring.batch.count(finger.index(), missing);
                     ring.batch.write(&mut ring.writer);

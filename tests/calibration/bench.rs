@@ -2,7 +2,7 @@
 //! parameters of the finger.
 
 use nalgebra::{Vector3, Vector4};
-use sun2xp::calibration::{Calibration, Findings, Obstacle, Sample, Task, Verdict};
+use sun2xp::calibration::{Calibration, Findings, Obstacle, Sample, Step, Task, Verdict};
 use sun2xp::control::{Activity, Controller, Feedback, MotorCommand, Report, SetPoint, State};
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
@@ -147,18 +147,11 @@ impl Bench {
             let report = self.report;
             let sample = Sample { feedback: &feedback, report: &report, zero_valid: self.zero_valid };
             let (activity, verdict) = calibration.cycle(&sample);
-            if std::env::var_os("TRACE").is_some() && cycle % 200 == 0 {
-                eprintln!(
-                    "{:.1} {:?} j {:.3?} t {:.2?} {verdict:?}",
-                    cycle as f64 / self.rate,
-                    task,
-                    self.plant.joints().as_slice(),
-                    self.plant.tensions().as_slice()
-                );
-            }
             match verdict {
                 Verdict::InProgress(progress) => {
                     assert!((0.0..=1.0).contains(&progress.part) && progress.part >= last - 0.3, "{progress:?}");
+                    let oscillating = progress.step == Step::OscillatingTensions;
+                    assert!(!oscillating || progress.part >= last, "{progress:?} after {last}");
                     last = progress.part;
                 }
                 Verdict::Found(findings) => {

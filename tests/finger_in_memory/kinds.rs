@@ -1,5 +1,5 @@
-//! Faults and warnings that the finger's servo detects itself, each provoked once. Those of tendons, gauges, encoders
-//! and motors are tested in tests/fault_injection, and those of opening a port in tests/hand_ports.
+//! Faults and warnings that the finger's servo detects itself. tests/fault_injection tests most of those of tendons,
+//! gauges, encoders and motors, and tests/hand_ports those of opening a port.
 
 use crate::rig::{Bench, MILLISECOND, TARGET};
 use nalgebra::Vector3;
@@ -16,7 +16,7 @@ use sun2xp::simulated::{Defect, LineFault};
 #[test]
 fn a_joint_that_is_pushed_beyond_its_limit_is_reported_at_its_stop() {
     let mut bench = Bench::with(|configuration| {
-        // The stop is close, at 12 degrees.
+        // The stop is close: 3 degrees beyond the limit.
         (configuration.fingers[0].joints.minimum_degrees[0], configuration.fingers[0].joints.maximum_degrees[0]) =
             (-60.0, 5.0);
     });

@@ -52,9 +52,9 @@ fn a_slow_path_begins_smoothly_while_the_finger_settles() {
     }
 }
 
-/// The acceleration and the jerk of an interpolated set point are fed forward. Each step of the motion to a set point
-/// lasts three times `interpolate_ms`. With the default largest tension of 60 N, steps of 3 or 6 ms would cause the
-/// fault OVER_TENSION. An `interpolate_ms` below 10 ms therefore acts as 10 ms.
+/// The acceleration and the jerk of an interpolated set point are fed forward. The motion to the set point has several
+/// steps, each of which lasts three times `interpolate_ms`. With the default largest tension of 60 N, steps of 3 ms or
+/// 6 ms would cause the fault OVER_TENSION. An `interpolate_ms` below 10 ms therefore acts as 10 ms.
 #[test]
 fn a_far_set_point_with_a_short_interpolation_does_not_overload_the_tendons() {
     for interpolate_ms in [1.0, 2.0] {

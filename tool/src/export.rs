@@ -221,7 +221,9 @@ impl Arguments {
 
     /// The name of a CSV file: the name of the recording without its extension, and the part.
     fn name(&self, part: &str) -> Result<String, Failure> {
-        let recording = self.file.file_stem().ok_or_else(|| wrong_usage("FILE has no name"))?;
+        let recording = self.file.file_stem().ok_or_else(|| {
+            wrong_usage(format!("{} has no file name: name a recording or a black box", ShownPath(&self.file)))
+        })?;
         Ok(format!("{}-{part}.csv", recording.to_string_lossy()))
     }
 }

@@ -165,7 +165,9 @@ impl Arguments {
         if let Some(output) = &self.output {
             return Ok(output.clone());
         }
-        let stem = self.file.file_stem().ok_or_else(|| wrong_usage("FILE has no name"))?;
+        let stem = self.file.file_stem().ok_or_else(|| {
+            wrong_usage(format!("{} has no file name: name a recording or a black box", ShownPath(&self.file)))
+        })?;
         let kind = self.kind.to_possible_value().map_or_else(String::new, |kind| kind.get_name().to_owned());
         Ok(PathBuf::from(format!("{}-{kind}.png", stem.to_string_lossy())))
     }

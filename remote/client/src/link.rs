@@ -89,7 +89,7 @@ impl Link {
 
     fn not_connected(&self, reason: &str) -> RemoteError {
         let (hand, endpoint) = (&self.configuration.hand, &self.configuration.endpoint);
-        RemoteError::NotConnected(format!("no connection to the hand \"{hand}\" at {endpoint}: {reason}"))
+        RemoteError::NotConnected(format!("cannot reach the hand \"{hand}\" at {endpoint}: {reason}"))
     }
 
     fn subscribe(&self) -> zenoh::Result<()> {

@@ -1,4 +1,4 @@
-//! The keys of a hand. Only this file and the access control of the server (`serve/src/access.rs`) build them.
+//! The keys of a hand. In Rust, only this file and the access control of the server (`serve/src/access.rs`) build them.
 
 use crate::{Action, ClientName, HandName};
 
@@ -68,13 +68,13 @@ impl HandKeys {
         self.key(&format!("{}/*", action.name()))
     }
 
-    /// Returns the client whose Targets have this key; none if the key is not one of Targets.
+    /// Returns the client whose Targets have this key; none if it is not a key of Targets.
     #[must_use]
     pub fn client_of_target(&self, key: &str) -> Option<ClientName> {
         self.client(key, "target")
     }
 
-    /// Returns the client whose Requests for this action have this key; none if the key is not one of such Requests.
+    /// Returns the client whose Requests for this action have this key; none if it is not a key of such Requests.
     #[must_use]
     pub fn client_of_request(&self, action: Action, key: &str) -> Option<ClientName> {
         self.client(key, action.name())

@@ -71,7 +71,8 @@ impl Port {
         };
         if modes(&found) != modes(&settings) || found.c_ispeed != found.c_ospeed {
             return Err(io::Error::other(
-                "the driver does not support 8 data bits, no parity, 1 stop bit and no flow control",
+                "the driver does not keep the settings (8 data bits, no parity, 1 stop bit, no flow control, raw mode, \
+                 the same rate in both directions)",
             ));
         }
         Ok(found.c_ospeed)

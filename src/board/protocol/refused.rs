@@ -93,7 +93,7 @@ impl fmt::Display for Refused {
             Reason::Value => write!(
                 f,
                 "it does not accept the value at byte {detail} of frame type {request} (docs/board-protocol.md). \
-                 Update its firmware"
+                 Change the key that this value comes from, or update its firmware"
             ),
             Reason::NotConfigured => write!(f, "it is not configured, because it has restarted. Check its power"),
             Reason::Running => write!(f, "its motors follow the commands of another program. End that program"),

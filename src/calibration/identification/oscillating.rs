@@ -58,7 +58,7 @@ pub(super) struct Oscillating {
     /// Number of the cycle in the period.
     cycle: usize,
     amplitude: f64,
-    /// Common tension without the oscillation, N in the tendon with the smallest pretension.
+    /// What the common tension adds to the smallest pretension of the tendons, without the oscillation, N.
     level: f64,
     /// Pose to which the joints move, rad, and their speed, rad/s.
     target: Vector3<f64>,
@@ -95,7 +95,8 @@ impl Oscillating {
 
     /// Returns the part that is done, 0 to 1.
     pub fn part(&self) -> f64 {
-        if self.stage == Stage::Fall { 1.0 } else { 0.5 * self.tone as f64 }
+        let measured = self.tone + usize::from(matches!(self.stage, Stage::Fade | Stage::Fall));
+        measured as f64 / FREQUENCIES.len() as f64
     }
 
     /// Runs one cycle of the motion. Returns whether it is complete.

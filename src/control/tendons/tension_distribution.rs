@@ -50,9 +50,9 @@ impl TensionDistribution {
         let too_low = |&tendon: &usize| !maximum[tendon].is_finite() || maximum[tendon] <= at_rest[tendon];
         if let Some(tendon) = (0..4).find(too_low) {
             let reason = format!(
-                "leaves tendon {} at most {:.2} N (state feedback keeps a reserve below the limit), but at zero joint \
-                 torque it needs {:.2} N, so that every tendon has at least {minimum:.2} N: raise tendon.maximum or \
-                 motor.torque_limit, or lower tendon.minimum",
+                "is too low: tendon {} may have at most {:.2} N, and already has {:.2} N at zero joint torque (with \
+                 state feedback, both numbers contain a reserve). Raise tendon.maximum or motor.torque_limit, or lower \
+                 tendon.minimum",
                 tendon + 1,
                 maximum[tendon],
                 at_rest[tendon]

@@ -90,7 +90,7 @@ faults! {
          finger; or raise hand.watchdog_ms", [Recover];
     17 BoardStopped "BOARD_STOPPED" Fault Finger Status "board stopped",
         "the board stopped the motors and reports no fault",
-        "another program sent the board a Stop frame, or the firmware of the board stopped by itself",
+        "another program sent the board a Stop frame, or the firmware stopped the motors without a command",
         "End other programs that use the board, or correct its firmware, then recover the finger", [Recover];
     18 EmergencyStopInput "EMERGENCY_STOP_INPUT" Fault Finger Status "emergency stop, input",
         "the emergency stop input of the board is active, or was active",
@@ -136,9 +136,9 @@ faults! {
         "the cable is unplugged, the board is off, or finger.port is wrong",
         "Check the cable, the power and finger.port (ls -l /dev/serial/by-id)", [];
     28 PortBusy "PORT_BUSY" Refusal Finger Nothing "port busy",
-        "another program uses the serial port",
-        "a planner or a terminal program is still running",
-        "End that program (fuser -v PORT names it), or configure another port", [];
+        "another program, or another hand of this program, uses the serial port",
+        "a planner or a terminal program is still running, or two hands have the same port",
+        "End that program (fuser -v PORT names it), close that hand, or configure another port", [];
     29 PortPermission "PORT_PERMISSION" Refusal Finger Nothing "no permission for the port",
         "this user has no permission to use the serial port",
         "the user is not in the group of the port",
@@ -237,7 +237,7 @@ faults! {
     51 SetPointExpired "SET_POINT_EXPIRED" Fault Finger Time "set point expired",
         "the planner has sent nothing for longer than its last set point was valid; with finger.motion.on_expiry = \
          \"end state\" the finger stops at once, and otherwise after finger.motion.end_state_ms, if this key is set; \
-         with sun2xp serve it stops serve.end_ms after the newest target",
+         with sun2xp serve, it stops when no target has arrived for the time serve.end_ms",
         "the planner hangs, is stopped in a debugger, or plans for longer than its set points are valid; with sun2xp \
          serve also: the planner was killed, or the network is cut or loses packets",
         "Recover the finger and send set points in time, or raise finger.motion.valid_ms, finger.motion.end_state_ms \
@@ -248,7 +248,7 @@ faults! {
         "Remove the cause, or remove the reflex, then recover the finger", [Recover];
     53 HardwareFailed "HARDWARE_FAILED" Refusal Finger Errno "hardware failed",
         "the hardware that the program provides for this finger does not start or stop",
-        "the program's own function \"start\" or \"stop\" for this hardware has failed with the errno in the value",
+        "the program's own function \"start\" or \"stop\" for this hardware has failed; the value is its errno",
         "Check the power and the cables of the hardware, end other programs that use it, and look up the errno in the \
          documentation of the program or of its hardware", [];
     54 WrongWiring "WRONG_WIRING" Refusal Finger Nothing "wrong wiring",

@@ -63,8 +63,8 @@ impl Recording {
             computed = computed.saturating_add(control.input.skipped + 1);
             if computed > MOST_COMPUTED {
                 let reason = format!(
-                    "up to this cycle, the file has more than {MOST_COMPUTED} cycles and skipped periods, and a replay \
-                     computes no more"
+                    "up to this cycle, the cycles and the skipped periods together are more than {MOST_COMPUTED}, the \
+                     most that a replay can compute"
                 );
                 return Err(wrong(("skipped".into(), reason)));
             }

@@ -121,10 +121,10 @@ pub enum PathError {
         pieces: usize,
     },
     /// While the path was computed, the finger was recovered or calibrated, its set point expired, a reflex reacted, or
-    /// the inhibition after a reaction ended.
+    /// the inhibition of a reflex ended.
     #[error(
         "the path of finger {0} was not sent, because while it was computed, the finger was recovered or calibrated, \
-         its set point expired, a reflex reacted, or the inhibition after a reaction ended: send the path again"
+         its set point expired, a reflex reacted, or the inhibition of a reflex ended: send the path again"
     )]
     Moved(FingerNumber),
 }

@@ -204,7 +204,7 @@ pub enum SetPointError {
     /// The damping ratio is outside its range.
     #[error(
         "the damping ratio {ratio} of finger {finger} is outside {least:.2} to {most:.2}, the stable range at a \
-         stiffness of {stiffness:.4} N/cm: send a ratio within the range, or a softer Kx, whose range is wider, or set \
+         stiffness of {stiffness:.4} N/cm: send a ratio within the range (a softer Kx has a wider range), or set \
          `hand.out_of_range = \"clamp\"`"
     )]
     Damping {

@@ -72,7 +72,7 @@ fn report(desk: &Desk, outcome: &mut Outcome) {
     let signs = desk.finger.encoder.sign.map(|sign| format!("{sign:+}")).join(" ");
     let counts = desk.finger.encoder.counts_per_revolution.map(|counts| counts.to_string()).join(" ");
     outcome.found(format!("each encoder counts with its motor; signs {signs}, counts per turn {counts}"));
-    outcome.about("encoder.sign", "motors turned by hand so that their tendons came loose");
+    outcome.about("encoder.sign", "direction in which each encoder counted while its motor was turned by hand");
     outcome.about(
         "encoder.counts_per_revolution",
         "checked with one turn by hand, and multiplied by 1/4, 1/2, 2 or 4 where the old value was wrong",

@@ -35,7 +35,7 @@ fn adopt(desk: &mut Desk, outcome: &mut Outcome, found: &Findings) {
             outcome.wrong(Wrong::Refused(format!(
                 "the sign of gauge {} is now opposite to the sign that the step \"gauges\" found: its wires, its \
                  amplifier or gauge.newton_per_count was changed since then, or the weights did not hang as that step \
-                 asked. Do that step again",
+                 asked. Leave with q, and start the tool again with --step gauges",
                 motor + 1
             )));
         }
@@ -43,7 +43,8 @@ fn adopt(desk: &mut Desk, outcome: &mut Outcome, found: &Findings) {
             outcome.wrong(Wrong::Refused(format!(
                 "the sign of encoder {0} is now opposite to the sign that the step \"encoders\" found: its channels or \
                  encoder.sign were changed since then, tendon {0} is wound on its drum the other way round now, or \
-                 motor {0} was turned the wrong way in that step. Do that step again",
+                 motor {0} was turned the wrong way in that step. Leave with q, and start the tool again with --step \
+                 encoders",
                 motor + 1
             )));
         }

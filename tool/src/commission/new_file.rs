@@ -12,8 +12,9 @@ use sun2xp::model::{FingerNumber, ShownPath};
 pub fn create(file: &Path, finger: FingerNumber, ports: &[String]) -> Result<(), Failure> {
     let defaults = Configuration::default();
     let patterns = if ports.is_empty() { &defaults.hand.search_ports } else { ports };
-    let chosen = search(patterns, defaults.fingers[finger.index()].baud, finger, &[])
-        .map_err(|reason| wrong_usage(format!("{} does not exist, and {reason}", ShownPath(file))))?;
+    let chosen = search(patterns, defaults.fingers[finger.index()].baud, finger, &[]).map_err(|reason| {
+        wrong_usage(format!("{} does not exist, and no board was chosen for a new file: {reason}", ShownPath(file)))
+    })?;
     let text = text(finger, &chosen.answer, ports);
     place(file, &text)?;
     writeln!(io::stdout(), "{} Created {}.", chosen.text(), ShownPath(file))?;

@@ -1,7 +1,7 @@
 //! Finds the board of a finger that has none in the configuration.
 
 use std::path::PathBuf;
-use sun2xp::hand::{FoundFinger, search_boards};
+use sun2xp::hand::{FoundFinger, found_at, search_boards};
 use sun2xp::model::configuration::BoardNumber;
 use sun2xp::model::{FingerNumber, Shown, ShownPath};
 
@@ -55,8 +55,9 @@ pub fn search(patterns: &[String], baud: u32, finger: FingerNumber, taken: &[Tak
         let found = port.answer.iter().flatten().cloned();
         found.map(|found| Answer { port: port.path.clone(), found })
     });
-    choose(answers.collect(), finger, taken)
-        .map_err(|reason| format!("{reason} (ports searched: {})", Shown(&patterns.join(", "))))
+    choose(answers.collect(), finger, taken).map_err(|reason| {
+        format!("{reason}. Ports searched: {}. Found: {}", Shown(&patterns.join(", ")), found_at(&searched))
+    })
 }
 
 fn choose(answers: Vec<Answer>, finger: FingerNumber, taken: &[Taken]) -> Result<Chosen, String> {
@@ -85,7 +86,7 @@ fn choose(answers: Vec<Answer>, finger: FingerNumber, taken: &[Taken]) -> Result
             return Err(format!(
                 "{} fingers answer, and none or several of them have the address {finger}: {all}. Connect only the \
                  board of the finger, or name its port with --port. If they are on one board, write \
-                 finger.{finger}.board, finger.{finger}.address and hand.fingers into the file",
+                 finger.{finger}.board, finger.{finger}.address and hand.fingers into the configuration file",
                 free.len()
             ));
         }
@@ -142,7 +143,11 @@ mod tests {
             (&[(5, 1)], &[(5, 1)], "only boards of other fingers answer"),
             (&[(5, 1), (6, 1)], &[], "2 fingers answer, and none or several of them have the address 2: "),
             (&[(5, 2), (6, 2)], &[], "Connect only the board of the finger"),
-            (&[(5, 1), (5, 3)], &[], "write finger.2.board, finger.2.address and hand.fingers into the file"),
+            (
+                &[(5, 1), (5, 3)],
+                &[],
+                "write finger.2.board, finger.2.address and hand.fingers into the configuration file",
+            ),
         ] {
             let refusal = chosen(answers, taken).expect_err("refused");
             assert!(refusal.contains(reason), "{answers:?}: {refusal}");

@@ -114,7 +114,8 @@ fn noise_and_heat(
     (before, configured): (&Vitals, &ConfiguredFinger),
     (today, found): (&Vitals, &ConfiguredFinger),
 ) {
-    let noisy = "Check the cable, the shield and the ground of the gauge, and what else is switched nearby";
+    let noisy =
+        "Check the cable, the shield and the ground of the gauge, and whether a large current is switched near it";
     each(
         all,
         ("gauge_noise", "noise of gauge", "N rms"),
@@ -125,7 +126,7 @@ fn noise_and_heat(
     let hot = "Look for friction, for a joint that something holds, and for a pretension that is too high";
     each(
         all,
-        ("motor_heat", "heat at rest of motor", "of the continuous heat"),
+        ("motor_heat", "heat at rest of motor", "of the heat at motor.continuous_torque"),
         (heat(before, configured), heat(today, found)),
         |before, today| today > before + HEAT,
         hot,

@@ -62,6 +62,8 @@ pub enum Refused {
     /// The command would move a real finger too far.
     TooFar {
         finger: i32,
+        /// "a joint" or "the tip".
+        part: &'static str,
         /// The motion that was asked for, and the largest one, with the unit.
         asked: String,
         most: String,
@@ -83,10 +85,10 @@ impl Display for Refused {
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
         match self {
             Self::Hand(error) => error.fmt(formatter),
-            Self::TooFar { finger, asked, most } => write!(
+            Self::TooFar { finger, part, asked, most } => write!(
                 formatter,
-                "finger {finger} is a real finger, and a command moves it by at most {most}, but {asked} were asked \
-                 for: send smaller steps"
+                "the command would move {part} of finger {finger} by {asked}, and one command may move it by at most \
+                 {most}, because the finger is real: send smaller steps"
             ),
             Self::BeyondLimits { finger, joint, angle } => write!(
                 formatter,
@@ -196,7 +198,7 @@ fn send_joints(hand: &Hand, configuration: &Configuration, finger: i32, joints: 
     if is_real(configuration, finger) {
         let degrees = largest_difference(admitted(configuration, finger, joints), desired).to_degrees();
         let most = REAL_JOINT_STEP.to_degrees();
-        within(finger, degrees, most, "degrees")?;
+        within(finger, ("a joint", degrees, "degrees"), most)?;
     }
     hand.send_position(finger, joints)?;
     let [j0, j1, j2] = admitted(configuration, finger, joints).map(f64::to_degrees);
@@ -207,11 +209,12 @@ fn send_tip(hand: &Hand, configuration: &Configuration, finger: i32, tip: [f64; 
     if is_real(configuration, finger) {
         let desired = desired_joints(hand, finger)?;
         let way = sum(tip, hand.tip_at(finger, desired)?.map(|entry| -entry));
-        within(finger, way.iter().map(|entry| entry * entry).sum::<f64>().sqrt(), REAL_TIP_STEP, "cm")?;
+        let distance = way.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+        within(finger, ("the tip", distance, "cm"), REAL_TIP_STEP)?;
         // Near a singular pose, or from one solution of the inverse kinematics to another, a small motion of the tip is
         // a large motion of the joints.
         let degrees = largest_difference(hand.joints_at(finger, tip)?, desired).to_degrees();
-        within(finger, degrees, 3.0 * REAL_JOINT_STEP.to_degrees(), "degrees of a joint")?;
+        within(finger, ("a joint", degrees, "degrees"), 3.0 * REAL_JOINT_STEP.to_degrees())?;
     }
     hand.send_tip(finger, tip)?;
     let [x, y, z] = tip;
@@ -275,10 +278,12 @@ fn towards(from: f64, target: f64, most: f64) -> f64 {
     if (target - from).abs() <= most { target } else { from + most.copysign(target - from) }
 }
 
-fn within(finger: i32, asked: f64, most: f64, unit: &str) -> Result<(), Refused> {
+/// Refuses a motion of the part if it is larger than `most`. Both are in `unit`.
+fn within(finger: i32, (part, asked, unit): (&'static str, f64, &str), most: f64) -> Result<(), Refused> {
     // The comparison is false for NaN, which the hand refuses with a better text.
     if asked > most * (1.0 + 1e-9) {
-        return Err(Refused::TooFar { finger, asked: format!("{asked:.2} {unit}"), most: format!("{most:.2} {unit}") });
+        let [asked, most] = [asked, most].map(|motion| format!("{motion:.2} {unit}"));
+        return Err(Refused::TooFar { finger, part, asked, most });
     }
     Ok(())
 }

@@ -61,7 +61,7 @@ impl Colour {
     pub const PALM: Self = Self([0x5a, 0x65, 0x78]);
     /// The wrist and the bases of the fingers.
     pub const BASE: Self = Self([0x3b, 0x42, 0x52]);
-    /// The pulleys of the joints.
+    /// The pulleys and shafts of the joints, and the flange of the wrist.
     pub const JOINT: Self = Self([0x8a, 0x93, 0xa3]);
     /// The rubber of the fingertips.
     pub const TIP: Self = Self([0x2e, 0x33, 0x3d]);

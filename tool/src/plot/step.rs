@@ -64,8 +64,8 @@ impl Plot for Step {
     fn draw(&self, selection: &Selection) -> Result<Figure, Failure> {
         let points = self.shown(selection);
         let (Some(first), Some(last)) = (points.first(), points.last()) else {
-            return Err("the recording has no cycle of this finger with a command between --from and --to: change \
-                        --from, --to or --finger"
+            return Err("between --from and --to, the recording has no cycle in which the controller of this finger \
+                        ran: change --from, --to or --finger"
                 .into());
         };
         let time = Axis::linear(first.time, last.time.max(first.time + 1e-3));

@@ -52,8 +52,8 @@ impl Plot for Tensions {
 
     fn draw(&self, selection: &Selection) -> Result<Figure, Failure> {
         let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else {
-            return Err("the recording has no cycle of this finger with a command between --from and --to: change \
-                        --from, --to or --finger"
+            return Err("between --from and --to, the recording has no cycle in which the controller of this finger \
+                        ran: change --from, --to or --finger"
                 .into());
         };
         let time = Axis::linear(first.time, last.time.max(first.time + 1e-3));

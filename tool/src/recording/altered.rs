@@ -22,7 +22,7 @@ pub fn named(wrong: &Unusable) -> String {
 pub fn or_by(library: &str) -> String {
     match env!("CARGO_PKG_VERSION") {
         own if own == library => String::new(),
-        _ => format!(", or use the program of library {library}, which wrote it"),
+        _ => format!(", or use the sun2xp program of version {library}, which wrote the file"),
     }
 }
 
@@ -34,6 +34,8 @@ mod tests {
     fn only_a_file_of_another_library_has_the_second_remedy() {
         let text = |library: &str| unusable(Path::new("hand.mcap"), library, "rate: 0 Hz is too low").to_string();
         assert!(text(env!("CARGO_PKG_VERSION")).ends_with("copy it again"));
-        assert!(text("0.0.9").ends_with("copy it again, or use the program of library 0.0.9, which wrote it"));
+        assert!(
+            text("0.0.9").ends_with("copy it again, or use the sun2xp program of version 0.0.9, which wrote the file")
+        );
     }
 }

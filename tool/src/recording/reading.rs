@@ -92,8 +92,8 @@ impl Recording {
                 Some(Found::Format { version, .. }) if version == VERSION => {}
                 Some(Found::Format { version, library }) => {
                     let text = format!(
-                        "{} has format version {version}, and this program reads version {VERSION}: use the program \
-                         of library {library}, which wrote it",
+                        "{} has format version {version}, and this program reads version {VERSION}: use the sun2xp \
+                         program of version {library}, which wrote the file",
                         ShownPath(path)
                     );
                     return Err(text.into());

@@ -100,7 +100,7 @@ fn a_recording_in_another_version_of_the_format_is_refused_with_the_library_to_u
     writer.write_metadata(&Metadata { name: FORMAT.into(), metadata: metadata.into() }).expect("written");
     writer.finish().expect("finished");
     let refusal = Recording::open(&path).err().expect("another version").to_string();
-    let remedy = "use the program of library 0.0.9, which wrote it";
+    let remedy = "use the sun2xp program of version 0.0.9, which wrote the file";
     assert!(refusal.contains("has format version 0,") && refusal.ends_with(remedy), "{refusal}");
 }
 

@@ -129,7 +129,7 @@ impl Finger<'_> {
                 "speed of a motor",
                 speed.max() * 60.0 / TAU,
                 "rpm",
-                "motors that reach this speed with the torque that finger.tendon.minimum needs",
+                "motors that reach this speed while they pull with finger.tendon.minimum",
             ),
             Figure::choose(
                 "voltage that turns a motor at that speed",

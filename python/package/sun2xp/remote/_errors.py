@@ -47,8 +47,8 @@ class Stale(TimedOut):
 
 
 class NoAnswer(TimedOut):
-    """The server has not answered: there is no such hand, there is no connection, or, with TLS, this client may not use
-    the hand."""
+    """The server has not answered: there is no such hand, there is no connection, the server is busy with other
+    requests of this client, or, with TLS, this client may not make the request."""
 
 
 def forked() -> Error:

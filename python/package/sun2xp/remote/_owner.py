@@ -113,7 +113,7 @@ class Owner:
             Refused: the server has refused what was sent before. Each refusal is raised once.
         """
         if self.epoch == 0:
-            remedy = "hand.acquire() gets the hand, with take_over=True also if another client owns it"
+            remedy = "call hand.acquire(), or hand.acquire(take_over=True) if another client owns the hand"
             raise NotOwner(f"this client does not command the hand: {remedy}", number=ErrorNumber.BUSY)
         refusals = [self._refusals.pop(finger) for finger in fingers if finger in self._refusals]
         texts = sorted({refusal.text for refusal in refusals})

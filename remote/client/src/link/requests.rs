@@ -89,7 +89,12 @@ impl Link {
     /// Sends a get. Returns the payload of the reply; none without a reply.
     fn get_once(&self, key: &str, payload: Option<Vec<u8>>, limit: Duration) -> Result<Option<Vec<u8>>, RemoteError> {
         let replies = connection::get(&self.session, key, payload, (limit, 1));
-        let replies = replies.map_err(|error| self.not_connected(&error))?;
+        let replies = replies.map_err(|error| {
+            self.not_connected(&format!(
+                "the request `{key}` has ended without an answer ({error}), and the server may have carried it out. \
+                 Check the line and the server"
+            ))
+        })?;
         Ok(replies.into_iter().next().map(|(_, payload)| payload))
     }
 }

@@ -237,9 +237,7 @@ fn an_open_that_fails_says_why() {
     let server = FakeServer::start(port, &["left"]);
     let error = RemoteHand::open(&configuration(port, "right", "planner")).map(drop).expect_err("another hand");
     assert_eq!(error.kind(), RemoteErrorKind::NotConnected);
-    assert!(
-        error.to_string().contains("no connection to the hand \"right\"") && error.to_string().contains("remote.hand")
-    );
+    assert!(error.to_string().contains("cannot reach the hand \"right\"") && error.to_string().contains("remote.hand"));
     server.hand().lock().version = 2;
     let error = RemoteHand::open(&configuration(port, "left", "planner")).map(drop).expect_err("another version");
     assert_eq!(error.kind(), RemoteErrorKind::Protocol);

@@ -9,7 +9,9 @@ impl Wrong {
     /// What to do, or what the tool has done.
     pub fn remedy(&self) -> String {
         match self {
-            Self::EmergencyStop => "Release it, and reset the safety relay".into(),
+            Self::EmergencyStop => {
+                "Release it, and reset the safety relay. If this does not help, check the wires of its contact".into()
+            }
             Self::EmergencyStopUnseen => {
                 "The contact of the stop is not wired to the board, or the input for it is inverted: check both. \
                  Without this signal the library does not know that the motors have no power"
@@ -39,7 +41,8 @@ impl Wrong {
             Self::EncoderUnclear(motor, _) => {
                 format!(
                     "Turn motor {motor} by exactly one turn; a mark on its shaft helps. If the number stays the same, \
-                     correct encoder.counts_per_revolution"
+                     leave with q, correct encoder.counts_per_revolution in the configuration file, and start the tool \
+                     again"
                 )
             }
             Self::MotorReversed(motor) => {
@@ -54,8 +57,9 @@ impl Wrong {
                  reference"
             ),
             Self::EncodersUnclear(_) => {
-                "Do the step again. Turn only the motor that the tool names, by one full turn. If the same encoder \
-                 counts for two motors again, check the cables of the encoders"
+                "Do the step again. Turn only the motor that the tool names, by one full turn, and hold the finger \
+                 still when the tool asks. If the result is the same, follow the cables of the encoders and of the \
+                 motors to the board, and put each plug into the socket of its number"
                     .into()
             }
             Self::TurnedWrongWay => {
@@ -78,8 +82,8 @@ impl Wrong {
             Self::GaugeScale(gauge, _) if self.suspect() => format!(
                 "gauge.newton_per_count is corrected. But the tolerances of sound parts do not explain so large an \
                  error, so the cause is probably the wiring of gauge {gauge} or a wrong mass: check the masses, the \
-                 supply of its bridge, the gain of its amplifier, and the wires of the bridge. After a repair, do the \
-                 step \"gauges\" again"
+                 supply of its bridge, the gain of its amplifier, and the wires of the bridge. After a repair, start \
+                 the tool with --step gauges"
             ),
             Self::GaugeScale(..) => "Nothing to do: gauge.newton_per_count is corrected".into(),
             Self::GaugeZero(..) => "Nothing to do: gauge.zero is corrected".into(),
@@ -118,13 +122,14 @@ impl Wrong {
             }
             Self::TendonTension(tendon, _) => format!("Look for friction in the path of tendon {tendon}"),
             Self::SpringStiffness(..) => {
-                "Do the step \"tendons\" again. Then do the step \"spring\" again, and push along one direction only"
+                "Leave with q, and start the tool with --step tendons --step spring. In the step \"spring\", push \
+                 along one direction only"
                     .into()
             }
             Self::SpringReturn(_) => "The cause is friction. docs/tuning.md says how to compensate for it".into(),
             Self::InitialLowered(..) => {
-                "stiffness.initial is lowered to the bound. sun2xp bound shows the bound of each plant, and what \
-                 limits it"
+                "stiffness.initial is lowered to the bound. sun2xp bound simulates variants of the finger, and shows \
+                 the bound of each variant, and what limits it"
                     .into()
             }
             Self::PoseRefused(_) => {
@@ -152,6 +157,6 @@ impl Wrong {
 /// Says which plug belongs where. `order[n]` is the number at which the plug of part n + 1 is found.
 fn moves(part: &str, order: &[usize; 4]) -> String {
     let wrong = order.iter().enumerate().filter(|&(place, &found)| place + 1 != found);
-    let text = |(place, found): (usize, &usize)| format!("the plug at {part} {found} belongs to {part} {}", place + 1);
+    let text = |(place, found): (usize, &usize)| format!("the plug in socket {found} belongs in socket {}", place + 1);
     wrong.map(text).collect::<Vec<_>>().join(", ")
 }
