@@ -75,7 +75,7 @@ fn one_of_three_fingers_on_a_port() {
         std::thread::yield_now();
     }
     assert!(obeyed(1).is_none() && obeyed(3).is_none());
-    // Nothing was found for finger 2, and nothing can be found for a finger that is not open.
+    // No calibration of finger 2 has a result to store. A finger that is not open has no results at all.
     assert!(!hand.store_calibration(2).expect("nothing to store"));
     assert!(matches!(hand.store_calibration(1), Err(HandError::NotOpened(FingerNumber::ONE))));
 }

@@ -41,8 +41,8 @@ pub struct Arguments {
     /// Run a router without a hand, to which hands and clients connect.
     #[arg(long, conflicts_with = "name")]
     router: bool,
-    /// Make certificates in this folder, and exit. An authority that the folder already contains signs them; otherwise
-    /// a new one does.
+    /// Make certificates in this folder, and exit. They are signed by the authority in the folder, or by a new one if
+    /// the folder has none.
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["config", "listen", "name", "router"])]
     make_certificates: Option<PathBuf>,
     /// Make the certificate of the server of a hand, or of a router. Clients reach the server or router by this name,

@@ -79,7 +79,7 @@ fn gauges_are_compared_with_each_other() {
     let (_, found) = with_gains(gauges, [1.0; 4], GaugeReference::Gauges);
     println!("{found:.4?}");
     for (tendon, gauge) in gauges.into_iter().enumerate() {
-        // The mean is kept, so every tension is off by the mean of the gauge errors.
+        // Identification keeps the mean of the four scales, so every tension is wrong by the factor 1 / `mean`.
         let expected = 1.0 / gauge / mean;
         assert!((found.gauge_gain[tendon] / expected - 1.0).abs() < 0.01, "gauge {tendon}: {found:?}");
         assert!((found.tendon_stiffness[tendon] * mean / 300.0 - 1.0).abs() < 0.01, "tendon {tendon}: {found:?}");

@@ -133,5 +133,5 @@ class Registers:
         self.values[TIM8 + 0x10] = self.values.get(TIM8 + 0x10, 0) | 1 << 7
 
     def enabled(self):
-        """Whether the drivers can carry current: enable pin and PWM."""
+        """The enable pin of the drivers, and whether the PWM outputs are on. Current flows only with both."""
         return bool(self.values.get(GPIOC + ODR, 0) & 1 << 4), bool(self.values.get(TIM8 + 0x44, 0) & MOE)

@@ -26,11 +26,11 @@ impl MeasuredRate {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use sun2xp_remote_client::{Finger, Stage};
 
-    fn record(cycle: u64, seconds: u64) -> Record {
+    pub(crate) fn record(cycle: u64, seconds: u64) -> Record {
         Record {
             finger: Finger::ALL[0],
             stage: Stage::Running,

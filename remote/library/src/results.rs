@@ -47,7 +47,8 @@ pub(crate) fn status(hand: &Status, finger: &FingerStatus, newest: &Record, meas
     }
 }
 
-/// The force is that of the tip on what it touches.
+/// A record has the force that follows from the tensions. It does not have the estimate of the force without friction,
+/// weight and inertia.
 pub(crate) fn tip(record: &Record) -> sun2xp_tip {
     sun2xp_tip {
         size: 0,
@@ -56,7 +57,7 @@ pub(crate) fn tip(record: &Record) -> sun2xp_tip {
         force: record.force,
         tensions: record.tensions,
         stiffness: [[f64::NAN; 3]; 3],
-        contact_force: record.force,
+        contact_force: [f64::NAN; 3],
         slide_speed: f64::NAN,
         touching: record.touching.into(),
     }
@@ -98,5 +99,19 @@ pub(crate) fn event(event: &Event, lost: u64) -> sun2xp_event {
         lost,
         time: event.begin as f64 * 1e-9,
         values: event.values,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measured_rate::tests::record;
+
+    #[test]
+    fn what_a_record_does_not_have_is_not_a_number() {
+        let found = tip(&Record { force: [1.0, 2.0, 3.0], touching: true, ..record(1, 1) });
+        assert_eq!((found.force, found.touching), ([1.0, 2.0, 3.0], 1));
+        let missing = found.contact_force.iter().chain(found.stiffness.iter().flatten()).chain([&found.slide_speed]);
+        assert!(missing.copied().all(f64::is_nan), "{:?}", found.contact_force);
     }
 }

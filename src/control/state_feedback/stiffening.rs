@@ -6,9 +6,9 @@
 //! joint 0, or the finger is nearly straight, K_theta is small in one direction. The lag is then larger than 5 % of a
 //! step of 5 mm.
 //!
-//! The additional stiffness is sigma R k R^T, a share of the stiffness that the tendons give the joints. It raises the
-//! share that K_theta uses by the same sigma in every direction. So it helps most in the directions in which K_theta is
-//! small, and changes little in the stiff directions, in which the loop has less margin.
+//! The additional stiffness is sigma R k R^T, a share of the stiffness that the tendons give the joints. In every
+//! direction, it adds the same sigma to the share of R k R^T that K_theta uses there. So it helps most in the
+//! directions in which K_theta is small, and changes little in the stiff directions, in which the loop has less margin.
 //!
 //! The additional stiffness decays soon after the motion. So a finger whose reference is at rest becomes the commanded
 //! spring again.

@@ -79,7 +79,7 @@ pub trait Machine {
     /// Shakes hands with the board. The motors are off afterwards.
     fn board(&mut self) -> Result<BoardSeen, Failure>;
 
-    /// Uses this configuration from now on. The motors are off afterwards.
+    /// Uses this configuration from now on. Switches the motors off if it differs from the present configuration.
     fn configure(&mut self, finger: &ConfiguredFinger) -> Result<(), Failure>;
 
     /// Averages the sensors over this time, s, with the motors off.

@@ -52,7 +52,8 @@ class FingerState:
     set_point: Optional[Array]
     #: Position of the tip in the finger's frame, cm: shape (3,).
     tip: Array
-    #: Force of the tip on what it touches, in the finger's frame, N: shape (3,).
+    #: Force of the tip on what it touches, with friction, weight and inertia of the finger, in the finger's frame, N:
+    #: shape (3,).
     force: Array
     #: Tensions of tendons 1 to 4, N: shape (4,).
     tensions: Array
