@@ -44,10 +44,6 @@ fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
         libc::ENOMEM => {
             Some("there is not enough free memory: end other programs, or raise the limit of this process (ulimit -v)")
         }
-        libc::ENOSPC => Some(
-            "no pseudo-terminal is free: end programs that hold one, such as terminal windows, or raise kernel.pty.max \
-             (sysctl)",
-        ),
         _ => None,
     }
 }
@@ -70,6 +66,10 @@ pub fn with_terminal_remedy(error: &io::Error) -> String {
             "{error}: pseudo-terminals are not available here. Mount them (mount -t devpts -o ptmxmode=666 devpts \
              /dev/pts) and make /dev/ptmx a link to /dev/pts/ptmx, or set `finger.port` to a real port"
         ),
+        Some(libc::ENOSPC) => format!(
+            "{error}: no pseudo-terminal is free: end programs that hold one, such as terminal windows, or raise \
+             kernel.pty.max (sysctl)"
+        ),
         _ => with_remedy(error),
     }
 }
@@ -86,7 +86,6 @@ mod tests {
             (libc::ENFILE, "fs.file-max"),
             (libc::EAGAIN, "ulimit -u"),
             (libc::ENOMEM, "ulimit -v"),
-            (libc::ENOSPC, "kernel.pty.max"),
             (libc::EPERM, "sandbox"),
             (libc::ENOSYS, "sandbox"),
         ] {
@@ -98,5 +97,9 @@ mod tests {
         }
         assert_eq!(text(libc::EACCES), "Permission denied (os error 13)");
         assert_eq!(with_remedy(&io::Error::other("no number")), "no number");
+        // Other files and shared memory can cause this error too, so only the text about pseudo-terminals names them.
+        let no_space = io::Error::from_raw_os_error(libc::ENOSPC);
+        assert_eq!(with_remedy(&no_space), no_space.to_string());
+        assert!(with_terminal_remedy(&no_space).contains("kernel.pty.max"));
     }
 }

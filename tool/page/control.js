@@ -267,7 +267,8 @@ export class Control {
     if (!this.message) return;
     clearTimeout(this.forget);
     this.message.textContent =
-      "sun2xp has NOT confirmed the stop: the hand may still move. The page sends the stop again when it is connected.";
+      "sun2xp has NOT confirmed the stop: the hand may still move. Use the emergency stop of the hand. If the page " +
+      "has no connection, it sends the stop again when it is connected.";
     this.message.className = "message refused";
   }
 

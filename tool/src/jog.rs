@@ -72,7 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut of_hand = configuration.hand.fingers.members().map(|number| &configuration.fingers[number.index()]);
     let real = of_hand.any(|finger| !finger.simulated());
     if real && !arguments.yes {
-        confirm(&configuration)?;
+        confirm(&configuration, arguments)?;
     }
     writeln!(io::stdout(), "opening the hand ...")?;
     // A signal while the tendons are tightened closes the hand as soon as it is open.
@@ -104,7 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Asks whether the real hand may move.
-fn confirm(configuration: &Configuration) -> Result<(), Failure> {
+fn confirm(configuration: &Configuration, arguments: &Arguments) -> Result<(), Failure> {
     let mut output = io::stdout().lock();
     writeln!(output, "This moves a real hand:")?;
     for number in configuration.hand.fingers.members() {
@@ -115,9 +115,15 @@ fn confirm(configuration: &Configuration) -> Result<(), Failure> {
         };
         writeln!(output, "    finger {number}: {port}")?;
     }
-    writeln!(output, "The tendons will be tightened. A step turns a joint by at most 3 degrees,")?;
-    writeln!(output, "or moves a tip by at most 0.3 cm and each joint by at most 9 degrees.")?;
-    write!(output, "Space stops all fingers. Keep hands and cables clear. Type yes to continue: ")?;
+    let stop = if arguments.web && !arguments.control {
+        writeln!(output, "The tendons will be tightened.")?;
+        "Ctrl-C closes the hand."
+    } else {
+        writeln!(output, "The tendons will be tightened. A step turns a joint by at most 3 degrees,")?;
+        writeln!(output, "or moves a tip by at most 0.3 cm and each joint by at most 9 degrees.")?;
+        if arguments.web { "The space bar stops all fingers, on the page only." } else { "Space stops all fingers." }
+    };
+    write!(output, "{stop} Keep hands and cables clear. Type yes to continue: ")?;
     output.flush()?;
     let mut answer = String::new();
     io::stdin().read_line(&mut answer)?;

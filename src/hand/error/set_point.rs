@@ -56,7 +56,7 @@ pub enum SetPointError {
     /// The path that the finger follows goes beyond the joint limits that an adjustment would set.
     #[error(
         "the path that finger {finger} follows takes joint {joint} to {value:.4} rad, outside the new limits, {low:.4} \
-         to {high:.4} rad: adjust when the path has ended, send another path or position first, or set \
+         to {high:.4} rad: repeat the adjustment when the path has ended, send another path or position first, or set \
          `hand.out_of_range = \"clamp\"`, which ends the path"
     )]
     PathBeyondJointLimit {

@@ -1,7 +1,7 @@
 //! Orders of `sun2xp board` that cause faults.
 
 use sun2xp::model::Shown;
-use sun2xp::realtime::with_remedy;
+use sun2xp::realtime::with_terminal_remedy;
 use sun2xp::simulated::{Defect, LineFault, SimulatedFinger, SimulatedPort, WiredPart};
 
 /// A fault of the board or its cable, or the end of faults.
@@ -23,7 +23,7 @@ pub enum Trouble {
 
 /// The answer to an order for a finger that the board does not have.
 pub fn no_finger(number: u8) -> String {
-    format!("error this board has no finger {number}: name a finger that it has (option --finger)")
+    format!("error this board has no finger {number}: name one of the fingers that the board was started with")
 }
 
 /// A duration longer than any program runs, ns.
@@ -164,7 +164,7 @@ impl Trouble {
             }
             Trouble::PlugIn => match port.plug_in() {
                 Ok(()) => format!("ok {}", port.path().display()),
-                Err(error) => format!("error {}", with_remedy(&error)),
+                Err(error) => format!("error {}", with_terminal_remedy(&error)),
             },
         }
     }

@@ -27,8 +27,8 @@ impl Sample {
                 _ => "soft finger",
             },
             law: match rest.law {
-                Law::Exact => "the exact law",
-                _ => "the report's law",
+                Law::Exact => "exact stiffness law",
+                _ => "stiffness law of the report",
             },
             damping: rest.damping,
             wall: rest.wall.map(|wall| wall.stiffness),
@@ -38,7 +38,7 @@ impl Sample {
     pub fn text(&self) -> String {
         let Self { joints_degrees, contact, law, damping, wall } = self;
         let wall = wall.map_or(String::new(), |stiffness| format!(", wall of {stiffness:.0} N/cm"));
-        format!("{}, {contact}, {law}, damping {damping:.2}{wall}", pose(joints_degrees))
+        format!("{}, {contact}, {law}, relative damping {damping:.2}{wall}", pose(joints_degrees))
     }
 }
 

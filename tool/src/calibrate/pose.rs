@@ -8,7 +8,7 @@ use sun2xp::model::configuration::ConfiguredFinger;
 pub fn ask_to_hold(finger: i32, configured: &ConfiguredFinger, yes: bool) -> Result<(), Failure> {
     let reason = match configured.zeroing.method {
         Some(_) => "zeroing.method is \"pose\"",
-        None => "zeroing.lower_stop_degrees and upper_stop_degrees do not give the angles of its stops",
+        None => "zeroing.lower_stop_degrees and zeroing.upper_stop_degrees are not both set",
     };
     let text = format!(
         "finger {finger} is zeroed at a pose, because {reason}.\n\

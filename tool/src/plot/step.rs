@@ -64,8 +64,8 @@ impl Plot for Step {
     fn draw(&self, selection: &Selection) -> Result<Figure, Failure> {
         let points = self.shown(selection);
         let (Some(first), Some(last)) = (points.first(), points.last()) else {
-            return Err("between --from and --to, the recording has no cycle in which the controller of this finger \
-                        ran: change --from, --to or --finger"
+            return Err("the selected part of the recording has no cycle in which the controller of this finger ran: \
+                        select another part or finger (--from, --to, --finger), or record while the finger runs"
                 .into());
         };
         let time = Axis::linear(first.time, last.time.max(first.time + 1e-3));

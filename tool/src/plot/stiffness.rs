@@ -62,7 +62,8 @@ impl Plot for Stiffness {
 
     fn draw(&self, selection: &Selection) -> Result<Figure, Failure> {
         let newest = self.newest.as_ref().ok_or(
-            "the finger is not a spring in any cycle between --from and --to: change --from, --to or --finger",
+            "the finger is not a spring in any cycle of the selected part of the recording: select another part or \
+             finger (--from, --to, --finger), or record while the finger is a spring",
         )?;
         let Newest { time, sent, in_force, force, scale } = newest;
         let forces = self.forces.iter().chain([force]).flatten().map(|part| part.abs());

@@ -52,8 +52,8 @@ impl Plot for Tensions {
 
     fn draw(&self, selection: &Selection) -> Result<Figure, Failure> {
         let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else {
-            return Err("between --from and --to, the recording has no cycle in which the controller of this finger \
-                        ran: change --from, --to or --finger"
+            return Err("the selected part of the recording has no cycle in which the controller of this finger ran: \
+                        select another part or finger (--from, --to, --finger), or record while the finger runs"
                 .into());
         };
         let time = Axis::linear(first.time, last.time.max(first.time + 1e-3));
