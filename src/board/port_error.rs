@@ -184,10 +184,9 @@ fn failing(source: &io::Error) -> String {
     }
 }
 
-/// [`remedy`] takes EAGAIN for a limit of threads, and ENOSPC for a limit of pseudo-terminals. A call at a port creates
-/// neither a thread nor a pseudo-terminal.
+/// [`remedy`] takes EAGAIN for a limit of threads or memory. A call at a port creates no thread.
 fn remedy_at_port(source: &io::Error) -> Option<&'static str> {
-    if matches!(source.raw_os_error(), Some(libc::EAGAIN | libc::ENOSPC)) { None } else { remedy(source) }
+    if source.raw_os_error() == Some(libc::EAGAIN) { None } else { remedy(source) }
 }
 
 /// The remedy in few words.
@@ -196,7 +195,7 @@ fn short_remedy(source: &io::Error) -> &'static str {
         Some(libc::EMFILE) => "close files of this process",
         Some(libc::ENFILE) => "end other programs",
         Some(libc::ENOMEM) => "free memory",
-        Some(libc::EPERM | libc::ENOSYS) => "permit it in the sandbox",
+        Some(libc::EPERM | libc::ENOSYS) => "a sandbox forbids to open it: permit that",
         _ => "check the adapter",
     }
 }

@@ -20,7 +20,8 @@ pub enum RemoteError {
     NoSuchFinger(i32),
     /// The hand does not have this finger.
     #[error(
-        "the hand \"{hand}\" has no finger {finger}: use one of its fingers, or add it to hand.fingers of the server"
+        "the hand \"{hand}\" has no finger {finger}: use a finger that it has, or add finger {finger} to \
+         hand.fingers of the server"
     )]
     NotInHand {
         /// The finger.

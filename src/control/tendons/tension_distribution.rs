@@ -50,8 +50,8 @@ impl TensionDistribution {
         let too_low = |&tendon: &usize| !maximum[tendon].is_finite() || maximum[tendon] <= at_rest[tendon];
         if let Some(tendon) = (0..4).find(too_low) {
             let reason = format!(
-                "is too low: tendon {} may have at most {:.2} N, and already has {:.2} N at zero joint torque (with \
-                 state feedback, both numbers contain a reserve). Raise tendon.maximum or motor.torque_limit, or lower \
+                "is too low: tendon {} may have at most {:.2} N, and already has {:.2} N at zero joint torque (state \
+                 feedback keeps a distance from both limits). Raise tendon.maximum or motor.torque_limit, or lower \
                  tendon.minimum",
                 tendon + 1,
                 maximum[tendon],

@@ -48,7 +48,7 @@ faults! {
     8 StalledMotor "STALLED_MOTOR" Fault Motor Tension "stalled motor",
         "a motor does not turn although its torque and the tension of its tendon are far out of balance",
         "the motor or its gear is jammed, its wires are broken, or its driver is off",
-        "Switch the power off, turn the motor by hand and check its wiring; then recover the finger", [Recover];
+        "Switch the motor supply off, turn the motor by hand and check its wiring; then recover the finger", [Recover];
     9 OverheatedMotor "OVERHEATED_MOTOR" Fault Motor Share "overheated motor",
         "a motor has been at its thermal limit for too long; its heat is computed from the square of its torque over \
          time",
@@ -115,7 +115,7 @@ faults! {
     23 BoardReset "BOARD_RESET" Fault Finger Nothing "board reset",
         "the board refuses commands because it has restarted and is not configured",
         "the board lost its power, or it was reset",
-        "Check the power of the board, then recover the finger", [Recover];
+        "Check the board's power and recover the finger, or open the hand again and zero it", [Recover, Open, Zero];
     24 CommandRefused "COMMAND_REFUSED" Fault Finger Reason "command refused",
         "the board refuses the frames of this finger",
         "another program uses the board, or the firmware of the board is faulty",
@@ -180,7 +180,7 @@ faults! {
         "Put the cables back and recover the finger; or close the hand and open it again to use the new board",
         [Recover, Close, Open];
     38 ZeroLost "ZERO_LOST" Fault Finger Status "zero lost",
-        "the board reports that its encoder counts are no longer valid",
+        "the encoder counts of the board are no longer valid",
         "the board or its encoders lost their power",
         "Close the hand, open it again and zero the finger", [Close, Open, Zero];
     39 Overrun "OVERRUN" Warning Finger Share "overrun",

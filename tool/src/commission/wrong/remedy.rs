@@ -18,9 +18,9 @@ impl Wrong {
                     .into()
             }
             Self::Supply => "Switch the supply on, and check the wire of its DC-OK output".into(),
-            Self::EncodersExchanged(order) => format!("Swap the encoder cables: {}", moves("encoder", order)),
+            Self::EncodersExchanged(order) => format!("Swap the encoder cables: {}", moves(order)),
             Self::MotorsAndEncodersExchanged(order) => {
-                format!("Swap motor and encoder cables together: {}", moves("motor", order))
+                format!("Swap motor and encoder cables together: {}", moves(order))
             }
             Self::MotorsExchanged(one, other) => {
                 format!("Swap the cables of motors {one} and {other} at their drivers. The encoders are right")
@@ -29,7 +29,7 @@ impl Wrong {
                 "Put tendon {one} on the drum of motor {one}, and tendon {other} on the drum of motor {other}. Cables \
                  of motors, encoders and gauges are right"
             ),
-            Self::GaugesExchanged(order) => format!("Swap the gauge cables: {}", moves("gauge", order)),
+            Self::GaugesExchanged(order) => format!("Swap the gauge cables: {}", moves(order)),
             Self::EncoderReversed(encoder) => {
                 format!("Nothing to do: encoder.sign compensates it. Or swap the channels A and B of encoder {encoder}")
             }
@@ -155,7 +155,7 @@ impl Wrong {
 }
 
 /// Says which plug belongs where. `order[n]` is the number at which the plug of part n + 1 is found.
-fn moves(part: &str, order: &[usize; 4]) -> String {
+fn moves(order: &[usize; 4]) -> String {
     let wrong = order.iter().enumerate().filter(|&(place, &found)| place + 1 != found);
     let text = |(place, found): (usize, &usize)| format!("the plug in socket {found} belongs in socket {}", place + 1);
     wrong.map(text).collect::<Vec<_>>().join(", ")
