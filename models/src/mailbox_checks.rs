@@ -45,7 +45,8 @@ pub fn an_order_comes_after_its_data() {
     assert_eq!(report.orders, accepted, "an order is lost");
 }
 
-/// A set point for an earlier spring is never used. A planner that knows of the new spring is served.
+/// Each time a finger becomes a spring, a new spring phase begins (`FingerReport::springs`). A set point for an earlier
+/// phase is never used. A planner that knows of the new phase is served.
 pub fn a_set_point_is_for_one_spring() {
     let mut report = running();
     let (planner, mut servo, _) = mailbox(report, &Adjustable { number: 0 }, &[0.0; 3]);
@@ -53,7 +54,7 @@ pub fn a_set_point_is_for_one_spring() {
         planner.send(|set_point| set_point.damping += 1.0).expect("the finger is healthy");
         planner
     });
-    // The finger becomes another spring. The planner's change must start from the set point of this spring.
+    // A new spring phase begins. The planner's change must start from the set point of this phase.
     report.springs = 2;
     report.set_point.damping = 100.0;
     servo.publish(report);

@@ -24,8 +24,8 @@ pub const LARGEST_OF_ROUTER: u16 = u16::MAX;
 /// waits.
 const LONGEST_WAIT: &str = "50000";
 
-/// Opens a session for these settings, with this access control if there is TLS. The session receives messages of at
-/// most `largest` bytes, [`LARGEST_OF_HAND`] or [`LARGEST_OF_ROUTER`].
+/// Opens a session for these settings, with this access control if it listens with TLS. The session receives messages
+/// of at most `largest` bytes, [`LARGEST_OF_HAND`] or [`LARGEST_OF_ROUTER`].
 ///
 /// # Errors
 /// Returns an error if a file of TLS is missing, or if the server cannot listen. A router that cannot be reached is no

@@ -185,7 +185,7 @@ fn what_is_wrong_is_said_with_its_remedy() {
     }
     let output = run(&["--make-certificates", &format!("{name}.d"), "--server", "fe80::1"]);
     let error = String::from_utf8_lossy(&output.stderr);
-    assert!(error.contains("the name of a server") && error.contains("into --address"), "{error}");
+    assert!(error.contains("the name of a server") && error.contains("are given with --address"), "{error}");
     assert_eq!(run(&["--rooter"]).status.code(), Some(2));
     assert_eq!(run(&["--client", "alice"]).status.code(), Some(2), "only with --make-certificates");
     let busy = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");

@@ -158,7 +158,7 @@ mod tests {
             (PortError::Baud { path: path(), wanted: 2_000_000, offered: 9600 }.into(), "cannot run at 2000000 bit/s"),
             (PortError::Opening { path: path(), source: broken() }.into(), "Protocol error"),
             (PortError::Vanished.into(), "disappeared"),
-            (PortError::Closed.into(), "closed its descriptor: search again"),
+            (PortError::Closed.into(), "this program has closed its descriptor"),
             (LinkError::Silent { milliseconds: 160 }, "nothing answers"),
             (LinkError::Unintelligible { bytes: 9, damaged: 1 }, "no valid frame"),
             (LinkError::WrongVersion { lowest: 2, highest: 3 }, "the board has protocol 2 to 3"),

@@ -195,7 +195,7 @@ fn short_remedy(source: &io::Error) -> &'static str {
         Some(libc::EMFILE) => "close files of this process",
         Some(libc::ENFILE) => "end other programs",
         Some(libc::ENOMEM) => "free memory",
-        Some(libc::EPERM | libc::ENOSYS) => "a sandbox forbids to open it: permit that",
+        Some(libc::EPERM | libc::ENOSYS) => "forbidden by a sandbox: permit it there",
         _ => "check the adapter",
     }
 }

@@ -12,8 +12,8 @@ pub const TOLERATED_PAUSE: Duration = Duration::from_millis(100);
 /// Longest time from a request to stop until the fault.
 const LIMIT: Duration = Duration::from_secs(20);
 
-/// Recovers a faulted finger. The recovery may be refused only because the machine was measured to pause the hand or
-/// its boards. After such a refusal the finger is stopped and recovered again, until more recoveries have succeeded
+/// Recovers a faulted finger. A refusal of the recovery is excused only if a pause of the hand or of its boards
+/// was measured. After such a refusal the finger is stopped and recovered again, until more recoveries have succeeded
 /// than were refused. `boards` are the processes of boards that are not in this process.
 pub fn recovers_despite_pauses(hand: &Hand, finger: i32, boards: &[u32]) {
     recovers_unless(hand, finger, boards, |_| false);

@@ -6,9 +6,10 @@
 //! joint 0, or the finger is nearly straight, K_theta is small in one direction. The lag is then larger than 5 % of a
 //! step of 5 mm.
 //!
-//! The additional stiffness is sigma R k R^T, a share of the stiffness that the tendons give the joints. In every
-//! direction, it adds the same sigma to the share of R k R^T that K_theta uses there. So it helps most in the
-//! directions in which K_theta is small, and changes little in the stiff directions, in which the loop has less margin.
+//! The additional stiffness is sigma R k R^T, a share of the stiffness that the tendons give the joints. In each
+//! direction, K_theta is a fraction of R k R^T. The additional stiffness adds sigma to this fraction in all directions.
+//! So it helps most in the directions in which K_theta is small, and changes little in the stiff directions, in which
+//! the loop has less margin.
 //!
 //! The additional stiffness decays soon after the motion. So a finger whose reference is at rest becomes the commanded
 //! spring again.
@@ -121,7 +122,7 @@ impl Stiffening {
             return Added::default();
         }
         let most = self.most.min(LARGEST_RATIO * used.spring);
-        // In this order, a share that is NaN gives zero.
+        // `max` comes before `min`, so that a NaN gives zero.
         let share = state.envelope * (SUPPORTED - used.spring - used.limits).max(0.0).min(most);
         let stiffness = self.tendons * share;
         let torques = (stiffness * change).zip_map(&self.largest, |torque, largest| torque.clamp(-largest, largest));

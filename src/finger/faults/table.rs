@@ -115,7 +115,7 @@ faults! {
     23 BoardReset "BOARD_RESET" Fault Finger Nothing "board reset",
         "the board refuses commands because it has restarted and is not configured",
         "the board lost its power, or it was reset",
-        "Check the board's power and recover the finger, or open the hand again and zero it", [Recover, Open, Zero];
+        "Check the power of the board, then recover the finger", [Recover];
     24 CommandRefused "COMMAND_REFUSED" Fault Finger Reason "command refused",
         "the board refuses the frames of this finger",
         "another program uses the board, or the firmware of the board is faulty",
@@ -138,7 +138,7 @@ faults! {
     28 PortBusy "PORT_BUSY" Refusal Finger Nothing "port busy",
         "another program, or another hand of this program, uses the serial port",
         "a planner or a terminal program is still running, or two hands have the same port",
-        "End that program (fuser -v PORT names it), close that hand, or configure another port", [];
+        "End that program (fuser -v PORT names it), close that hand, or configure another port", [Close];
     29 PortPermission "PORT_PERMISSION" Refusal Finger Nothing "no permission for the port",
         "this user has no permission to use the serial port",
         "the user is not in the group of the port",

@@ -144,13 +144,13 @@ fn impossible_values_are_named_with_line_and_reason() {
 #[test]
 fn values_with_which_no_controller_can_be_constructed_are_refused_with_the_key_to_correct() {
     for (text, line, beginning, words) in [
-        ("[finger.tendon]\nmaximum = 10\n", 2, "finger.1.tendon.maximum: leaves", "lower tendon.minimum"),
-        ("[hand]\nrate = 1000\n[finger.3.tendon]\nmaximum = 10\n", 4, "finger.3.tendon.maximum: leaves", "raise"),
+        ("[finger.tendon]\nmaximum = 10\n", 2, "finger.1.tendon.maximum: is too low", "lower tendon.minimum"),
+        ("[hand]\nrate = 1000\n[finger.3.tendon]\nmaximum = 10\n", 4, "finger.3.tendon.maximum: is too low", "Raise"),
         (
             "[finger.2.friction]\njoint_coulomb = [20, 20, 20]\n",
             2,
             "finger.2.friction.joint_coulomb: this value causes an error of the key motor.continuous_torque. \
-             Correct this value first. The error is: motor.continuous_torque: lets",
+             Correct this value first. The error is: motor.continuous_torque: is too low",
             "lower tendon.minimum",
         ),
         (

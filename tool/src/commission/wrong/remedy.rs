@@ -9,9 +9,7 @@ impl Wrong {
     /// What to do, or what the tool has done.
     pub fn remedy(&self) -> String {
         match self {
-            Self::EmergencyStop => {
-                "Release it, and reset the safety relay. If this does not help, check the wires of its contact".into()
-            }
+            Self::EmergencyStop => "Release it, reset the safety relay, and check the wires of its contact".into(),
             Self::EmergencyStopUnseen => {
                 "The contact of the stop is not wired to the board, or the input for it is inverted: check both. \
                  Without this signal the library does not know that the motors have no power"

@@ -178,9 +178,9 @@ fn a_real_finger_moves_in_small_steps() {
     configuration.fingers[0].port = "/dev/ttyUSB0".into();
     let execute = |command: Command| command.execute(&hand, &configuration, &|| false);
     let refusal = refused(execute(Command::MoveJoints { finger: 1, by: [0.1, 0.0, 0.0] }));
-    assert!(refusal.contains("at most 3.00 degrees, but 5.73 degrees"), "{refusal}");
+    assert!(refusal.contains("a joint of finger 1 by 5.73 degrees") && refusal.contains("at most 3.00 degrees"));
     let refusal = refused(execute(Command::MoveTip { finger: 1, by: [0.0, 0.4, 0.0] }));
-    assert!(refusal.contains("at most 0.30 cm, but 0.40 cm"), "{refusal}");
+    assert!(refusal.contains("the tip of finger 1 by 0.40 cm") && refusal.contains("at most 0.30 cm"), "{refusal}");
     done(execute(Command::MoveJoints { finger: 2, by: [0.1, 0.0, 0.0] }));
     done(execute(Command::MoveJoints { finger: 1, by: [0.05, 0.0, 0.0] }));
     settle(&hand, 1);
