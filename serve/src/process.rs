@@ -11,7 +11,10 @@ pub fn effective_user() -> Result<u32, ServeError> {
     let (doing, status) = ("find the user of this process", "/proc/self/status");
     let text = read_to_string(status);
     let text = text.map_err(|error| ServeError::System { doing, reason: format!("{status}: {error}. Mount /proc") })?;
-    user_in(&text).ok_or_else(|| ServeError::System { doing, reason: format!("{status} has no line Uid. Mount /proc") })
+    user_in(&text).ok_or_else(|| ServeError::System {
+        doing,
+        reason: format!("{status} has no line Uid. Mount a file system of the type proc at /proc"),
+    })
 }
 
 fn user_in(status: &str) -> Option<u32> {

@@ -3,7 +3,7 @@
 /// Says why the result of an identification cannot be used. NaN means that the measurements do not determine it.
 pub(super) fn outcome(what: &str, value: f64) -> String {
     if value.is_nan() {
-        return format!("the measurements do not determine {}", what.trim_end_matches(','));
+        return format!("the measurements do not determine {what}");
     }
     format!("the identification of {what} gave {value:.4}, which is not plausible")
 }

@@ -19,8 +19,8 @@ use thiserror::Error;
 pub enum SimulatedBoardError {
     /// The address is not between 1 and 15, or two fingers have it.
     #[error(
-        "finger address {0} is not between 1 and {HIGHEST_ADDRESS}, or two fingers of one port have it: leave \
-         finger.address out, or give each finger of the port an address of its own"
+        "finger address {0} is not between 1 and {HIGHEST_ADDRESS}, or is used twice at one port: leave finger.address \
+         out, or give each finger of the port an address of its own; and name no finger twice"
     )]
     Address(u8),
     /// The tendons of a finger are unusable.

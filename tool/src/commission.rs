@@ -167,8 +167,8 @@ pub fn examine(file: &Path, finger: FingerNumber, yes: bool, quiet: bool) -> Res
     }
     if ![Step::Zeros, Step::Tendons].iter().all(|step| known.steps.contains_key(step)) {
         return Err(format!(
-            "the steps \"zeros\" and \"tendons\" of finger {finger} do not both count as passed, because an earlier \
-             step was done again, or because one of the two was not done or has failed: {advice}"
+            "the step \"zeros\" or \"tendons\" of finger {finger} does not count as passed: it was not done, it has \
+             failed, or an earlier step was repeated after it: {advice}"
         )
         .into());
     }

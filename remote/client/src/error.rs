@@ -77,7 +77,7 @@ pub enum RemoteError {
     /// The client has received nothing from the hand for so long that it sends no set points.
     #[error(
         "for {age_ms} ms, nothing was received from the hand \"{hand}\", and remote.stale_ms is {stale_ms}, so no set \
-         point is sent: check the line to {endpoint} and the server, and repeat the call when the position can be read"
+         point is sent: check the line to {endpoint} and the server, and repeat this call when the hand answers again"
     )]
     Silent {
         /// The name of the hand.

@@ -129,7 +129,7 @@ impl JointFriction {
         let compared = gains / gains.mean();
         match compared.iter().position(|gain| !GAINS.contains(gain)) {
             Some(index) => {
-                let what = "the gain, relative to the other gauges,";
+                let what = "the gain relative to the other gauges";
                 Err(Obstacle::Implausible { part: Part::gauge(index), what, value: 1.0 / compared[index] })
             }
             None => Ok((gains, uncertainty)),

@@ -93,7 +93,7 @@ impl MomentArms {
             let found = moved / if known { expected } else { range };
             let difference = (found - row).amax() / row.amax();
             if difference > LARGEST {
-                let what = "the difference of its moment arms from geometry.r, relative to the largest arm,";
+                let what = "the relative error of geometry.r";
                 return Err(Obstacle::Implausible { part: Part::joint(joint), what, value: difference });
             }
             significant |= difference > SIGNIFICANT;

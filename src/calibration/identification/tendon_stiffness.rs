@@ -100,7 +100,7 @@ impl TendonStiffness {
     }
 
     pub fn solve(&self, instruments: &Instruments) -> Result<StiffnessFound, Obstacle> {
-        let what = "the stiffness, N/cm,";
+        let what = "the stiffness in N/cm";
         let (found, residual) = self.fit.solve().ok_or(Obstacle::Implausible {
             part: Part::Finger,
             what: "the stiffness of the tendons",

@@ -41,7 +41,7 @@ pub enum ValueKind {
     Pressure,
     /// The number of the rule.
     Rule,
-    /// The time since the planner last sent a command or renewed the validity of one, ms.
+    /// The time since the planner last sent a command or renewed the validity of its set point, ms.
     Age,
 }
 
@@ -61,7 +61,7 @@ impl ValueKind {
             ValueKind::Element => "number of the element",
             ValueKind::Pressure => "force on the element, N",
             ValueKind::Rule => "number of the rule",
-            ValueKind::Age => "time since the planner last sent a command or renewed the validity of one, ms",
+            ValueKind::Age => "time since the planner last sent a command or renewed the validity of its set point, ms",
         }
     }
 

@@ -94,8 +94,8 @@ pub enum ConfigurationError {
     },
     /// A calibration does not match the configuration file: a key on which it depends had another value in the hand.
     #[error(
-        "the calibration does not match {}: {key} is {} there, and was {} during the calibration. Nothing was written: \
-         correct the file, or close the hand and open it again if the file is right, and calibrate again",
+        "the calibration does not match {}: {key} is {} there, and was {} during the calibration. Nothing was written. \
+         If the file is wrong, correct it; if it is right, close the hand and open it again. Then calibrate again",
         ShownPath(path),
         Shown(is),
         Shown(was)

@@ -253,13 +253,13 @@ impl SetBound {
         }
         let NearAxis { samples, unstable, distance } = self.near_axis;
         let found = match unstable {
-            0 => "all stable".to_owned(),
-            unstable => format!("{unstable} unstable, up to {distance:.1} cm from the axis"),
+            0 => "all of them are stable".to_owned(),
+            unstable => format!("{unstable} of them are unstable, the farthest at {distance:.1} cm from the axis"),
         };
         writeln!(
             out,
-            "    not counted for the bound: {samples} samples with the tip within 3 cm of the axis of joint 0; at the \
-             bound, {found}"
+            "    not counted for the bound: {samples} samples with the tip within 3 cm of the axis of joint 0. With Kx \
+             at the bound, {found}"
         )
     }
 }

@@ -126,7 +126,7 @@ fn noise_and_heat(
     let hot = "Look for friction, for a joint that something holds, and for a pretension that is too high";
     each(
         all,
-        ("motor_heat", "heat at rest of motor", "of the heat at motor.continuous_torque"),
+        ("motor_heat", "heat at rest, motor", "of the heat at motor.continuous_torque"),
         (heat(before, configured), heat(today, found)),
         |before, today| today > before + HEAT,
         hot,
@@ -148,13 +148,7 @@ fn gauges_and_tensions(all: &mut Vec<Complaint>, before: &Vitals, today: &Vitals
     let gains = before.newton_per_count.map(|_| found.gauge.newton_per_count);
     each(all, ("gauge_gain", "scale of gauge", "N per count"), (before.newton_per_count, gains), relative(GAIN), gauge);
     let loose = "Look for friction in the path of the tendon; if its tension has fallen, tension it";
-    each(
-        all,
-        ("tension", "tension at rest of tendon", "N"),
-        (before.tensions, today.tensions),
-        relative(TENSION),
-        loose,
-    );
+    each(all, ("tension", "tension at rest, tendon", "N"), (before.tensions, today.tensions), relative(TENSION), loose);
 }
 
 /// Compares the values of each part.
@@ -289,10 +283,10 @@ mod tests {
         let stiff = named(|today| today.joint_friction = Some([0.05, 0.05, 0.2]));
         assert_eq!(stiff, only("joint_friction", "friction of joint 2"));
         let loose = named(|today| today.tensions = Some([4.0, 13.2, 13.2, 7.5]));
-        assert_eq!(loose, only("tension", "tension at rest of tendon 1"));
+        assert_eq!(loose, only("tension", "tension at rest, tendon 1"));
         let noisy = named(|today| today.gauge_noise = Some([0.02, 0.02, 0.02, 0.2]));
         assert_eq!(noisy, only("gauge_noise", "noise of gauge 4"));
         let hot = named(|today| today.torques = Some([1.0, 1.8, 1.0, 1.0]));
-        assert_eq!(hot, only("motor_heat", "heat at rest of motor 2"));
+        assert_eq!(hot, only("motor_heat", "heat at rest, motor 2"));
     }
 }

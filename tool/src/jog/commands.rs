@@ -92,9 +92,8 @@ impl Display for Refused {
             ),
             Self::BeyondLimits { finger, joint, angle } => write!(
                 formatter,
-                "the set point of joint {joint} of finger {finger} is {angle:.1} degrees, so far beyond the limits of \
-                 the joint that one step of a real finger does not bring it back: stop the hand, move the finger into \
-                 its limits by hand, and recover it"
+                "the set point of joint {joint} of finger {finger}, {angle:.1} degrees, is more than one step beyond \
+                 the limits of the joint: stop the hand, move the finger into its limits by hand, and recover it"
             ),
             Self::NoneRuns => formatter.write_str("no finger runs: recover the fingers first"),
             Self::Stopped { finger } => {

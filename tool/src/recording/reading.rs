@@ -261,7 +261,9 @@ fn message(topic: &str, encoding: &str, time: u64, data: &[u8]) -> Result<Option
             let message =
                 Message::decode(data).map_err(|error| format!("a message of {topic} cannot be read: {error}"))?;
             if let Message::Controller { source, .. } = &message {
-                source.finger.check().map_err(|wrong| format!("a controller of {topic}: {}", named(&wrong)))?;
+                source.finger.check().map_err(|wrong| {
+                    format!("{topic} describes a controller that cannot be used: {}", named(&wrong))
+                })?;
             }
             Item::Message(message)
         }
