@@ -176,6 +176,6 @@ fn a_board_is_found_by_its_unique_number() {
     assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
     let text = missing.to_string();
     let right_has = format!("{} has {}", right.display(), places[2]);
-    let used = format!("{}: in use by another program: end it", used.display());
+    let used = format!("{}: in use by another program or hand: end or close it", used.display());
     assert!(text.contains("finger.3.board") && text.contains(&right_has) && text.contains(&used), "{text}");
 }

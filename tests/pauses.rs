@@ -133,8 +133,8 @@ fn failures_are_excused_only_as_long_as_the_passed_attempts_outnumber_them() {
     assert_eq!(Tally::default().judge(false, TOLERATED_PAUSE / 2, TOLERATED_PAUSE), Verdict::Failed);
 }
 
-/// A defect shows in half of the attempts. On a machine that never pauses, half of the runs must fail because of it. On
-/// a machine that always pauses for long enough to excuse a failure, at least a quarter of the runs must fail.
+/// A defect shows in half of the attempts. On a machine that never pauses, nearly half of the runs must fail because of
+/// it. On a machine that always pauses for long enough to excuse a failure, at least a quarter of the runs must fail.
 #[test]
 fn a_defect_that_shows_in_half_of_the_attempts_does_not_stay_green() {
     let mut random = Pcg64::seed_from_u64(1);

@@ -13,7 +13,7 @@ import cffi
 def declarations(header: str) -> str:
     """The declarations and constants of the header. Comments and all other preprocessor lines are left out."""
     text = re.sub(r"/\*.*?\*/", "", header, flags=re.DOTALL)
-    # The blocks that are left out here are for C++, and check the sizes of structs. cffi computes these sizes itself.
+    # The blocks for C++ and the blocks that check the sizes of structs are left out. cffi computes the sizes itself.
     text = re.sub(r"#ifdef __(cplusplus|LP64__)\n.*?#endif", "", text, flags=re.DOTALL)
     lines = (line.strip() for line in text.splitlines())
     constant = re.compile(r"#define \w+ +\d+$")

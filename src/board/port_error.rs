@@ -99,7 +99,7 @@ impl PortError {
         match self {
             PortError::Missing(_) => "does not exist: check the cable".into(),
             PortError::Forbidden(_) => "no permission: join the port's group (usually dialout)".into(),
-            PortError::Busy(_) => "in use by another program: end it".into(),
+            PortError::Busy(_) => "in use by another program or hand: end or close it".into(),
             PortError::NotReady(_) => "not ready: try again after half a minute".into(),
             PortError::NotASerialPort(_) => "not a serial port: name another port".into(),
             PortError::Baud { wanted, .. } => format!("cannot run at {wanted} bit/s: choose another bit rate"),

@@ -97,7 +97,7 @@ mod tests {
         }
         assert_eq!(text(libc::EACCES), "Permission denied (os error 13)");
         assert_eq!(with_remedy(&io::Error::other("no number")), "no number");
-        // Other files and shared memory can cause this error too, so only the text about pseudo-terminals names them.
+        // Files and shared memory can cause ENOSPC too. So only `with_terminal_remedy` explains it by pseudo-terminals.
         let no_space = io::Error::from_raw_os_error(libc::ENOSPC);
         assert_eq!(with_remedy(&no_space), no_space.to_string());
         assert!(with_terminal_remedy(&no_space).contains("kernel.pty.max"));

@@ -19,8 +19,9 @@ use thiserror::Error;
 pub enum SimulatedBoardError {
     /// The address is not between 1 and 15, or two fingers have it.
     #[error(
-        "finger address {0} is not between 1 and {HIGHEST_ADDRESS}, or is used twice at one port: leave finger.address \
-         out, or give each finger of the port an address of its own; and name no finger twice"
+        "finger address {0} is not between 1 and {HIGHEST_ADDRESS}, or two fingers of one port have it, or a finger \
+         was given twice: give each finger of the port once, and leave finger.address out or make it different for \
+         each finger"
     )]
     Address(u8),
     /// The tendons of a finger are unusable.

@@ -148,8 +148,8 @@ fn a_finger_without_elements_sends_no_requests() {
     assert_eq!((bench.touch.unknown(), bench.touch.count()), (0, 0));
 }
 
-/// Resets the board of a finger with a pressed element. That contact ends before the board runs again. The first
-/// element is pressed while the finger is faulted.
+/// Ends the contact of a pressed element, and resets the board before it has reported that. Then presses element 0
+/// while the finger is faulted.
 fn resets(bench: &mut Bench) {
     push(bench, [0.0; 3]);
     bench.with_finger(|finger| finger.reset());

@@ -38,7 +38,7 @@ const PLOTS = [
     series: of(["f0", "f1", "f2"], (index) => "xyz"[index], { width: 1.5 }),
   },
   {
-    title: "Wake-up, worst in 1/60 s",
+    title: "Largest wake-up delay in each 1/60 s",
     unit: "µs",
     scale: 1,
     decimals: 0,

@@ -121,7 +121,7 @@ fn confirm(configuration: &Configuration, arguments: &Arguments) -> Result<(), F
     } else {
         writeln!(output, "The tendons will be tightened. A step turns a joint by at most 3 degrees,")?;
         writeln!(output, "or moves a tip by at most 0.3 cm and each joint by at most 9 degrees.")?;
-        if arguments.web { "The space bar stops all fingers, on the page only." } else { "Space stops all fingers." }
+        if arguments.web { "On the page, the space bar stops all fingers." } else { "Space stops all fingers." }
     };
     write!(output, "{stop} Keep hands and cables clear. Type yes to continue: ")?;
     output.flush()?;

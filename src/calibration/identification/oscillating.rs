@@ -58,7 +58,7 @@ pub(super) struct Oscillating {
     /// Number of the cycle in the period.
     cycle: usize,
     amplitude: f64,
-    /// What the common tension adds to the smallest pretension of the tendons, without the oscillation, N.
+    /// What the common tension adds to the smallest pretension of the tendons, N. The oscillation is not included.
     level: f64,
     /// Pose to which the joints move, rad, and their speed, rad/s.
     target: Vector3<f64>,

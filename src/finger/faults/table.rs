@@ -48,7 +48,7 @@ faults! {
     8 StalledMotor "STALLED_MOTOR" Fault Motor Tension "stalled motor",
         "a motor does not turn although its torque and the tension of its tendon are far out of balance",
         "the motor or its gear is jammed, its wires are broken, or its driver is off",
-        "Switch the motor supply off, turn the motor by hand and check its wiring; then recover the finger", [Recover];
+        "With the motor supply off, turn the motor by hand and check its wiring; then recover the finger", [Recover];
     9 OverheatedMotor "OVERHEATED_MOTOR" Fault Motor Share "overheated motor",
         "a motor has been at its thermal limit for too long; its heat is computed from the square of its torque over \
          time",

@@ -1,6 +1,6 @@
 //! The thread that collects timings and records from the servos, so that nothing is lost while no planner calls. When a
 //! finger faults and a folder is configured, this thread starts another one that writes the finger's black box. It also
-//! publishes what it collects to readers of telemetry. While the planner runs, it allocates memory only for a
+//! publishes what it collects to readers of telemetry. While the planner runs, this thread allocates memory only for a
 //! black box and when a reader attaches, so that the hand keeps working if the planner is out of memory.
 
 use crate::finger::Recording;
@@ -49,9 +49,8 @@ pub(super) fn collect(
                 drop(collected);
                 report(
                     Severity::Warning,
-                    "a finger faulted, but there is not enough free memory to write its black box: free memory, and \
-                     write the black box with a call before the finger is recovered. For the next fault, also raise \
-                     the memory limit of this process (ulimit -v)",
+                    "a finger faulted, but its black box was not written, because there is not enough free memory: end \
+                     other programs, or raise the memory limit of this process (ulimit -v)",
                 );
                 continue;
             }
