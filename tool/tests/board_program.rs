@@ -105,7 +105,10 @@ fn defects_occur_while_the_board_runs_and_are_repaired() {
     assert_eq!(board.order("mend 1"), "ok");
     assert!(tensions(&mut board)[1] > 1.0);
     for order in ["jam 7 1", "state 7"] {
-        assert_eq!(board.order(order), "error this board has no finger 7: name a finger that it has (option --finger)");
+        assert_eq!(
+            board.order(order),
+            "error this board has no finger 7: name one of the fingers that the board was started with"
+        );
     }
     assert!(board.order("jam 1 7").starts_with("error"));
     // The default finger has no tactile elements.

@@ -133,7 +133,7 @@ fn a_part_of_the_time_is_drawn_and_wrong_requests_are_refused() {
     for (arguments, status, part) in [
         (["--output", "x.pdf"], 2, ".svg or .png"),
         (["--from", "1000"], 1, "no cycle"),
-        (["--finger", "3"], 1, "no cycle of this finger"),
+        (["--finger", "3"], 1, "the controller of this finger ran"),
     ] {
         let output = tool(&folder, &[&["plot", file], arguments.as_slice()].concat());
         assert_eq!(output.status.code(), Some(status), "{output:?}");
