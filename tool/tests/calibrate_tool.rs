@@ -78,7 +78,8 @@ fn a_person_is_asked_to_hold_one_finger_in_its_pose() {
     contains(
         &said(&output),
         &[
-            "finger 1 is zeroed at a pose, because zeroing.lower_stop_degrees and zeroing.upper_stop_degrees are not both set",
+            "finger 1 is zeroed at a pose, because zeroing.lower_stop_degrees and zeroing.upper_stop_degrees are \
+             not both set",
             "0.0 degrees, straight ahead",
             "-10.0 degrees, bent back",
             "60.0 degrees, bent inward",
