@@ -3,7 +3,7 @@
 mod columns;
 mod output;
 
-use crate::failure::{Failure, wrong_usage};
+use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::trace::{self, Finger, Item, Mark, Row};
 use clap::ValueEnum;
@@ -221,10 +221,7 @@ impl Arguments {
 
     /// The name of a CSV file: the name of the recording without its extension, and the part.
     fn name(&self, part: &str) -> Result<String, Failure> {
-        let recording = self.file.file_stem().ok_or_else(|| {
-            wrong_usage(format!("{} has no file name: name a recording or a black box", ShownPath(&self.file)))
-        })?;
-        Ok(format!("{}-{part}.csv", recording.to_string_lossy()))
+        Ok(format!("{}-{part}.csv", trace::stem(&self.file)?))
     }
 }
 

@@ -58,6 +58,10 @@ pub struct Arguments {
 /// A curve has a gap where the controller has not run for this time, s. A busy servo skips single periods.
 const LONGEST_PAUSE: f64 = 0.05;
 
+/// The error of a plot of the controller's values if there are none.
+const NOT_CONTROLLED: &str = "the selected part of the recording has no cycle in which the controller of this finger \
+    ran: select another part or finger (--from, --to, --finger), or record while the finger runs";
+
 /// What a picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Kind {
@@ -165,10 +169,7 @@ impl Arguments {
         if let Some(output) = &self.output {
             return Ok(output.clone());
         }
-        let stem = self.file.file_stem().ok_or_else(|| {
-            wrong_usage(format!("{} has no file name: name a recording or a black box", ShownPath(&self.file)))
-        })?;
         let kind = self.kind.to_possible_value().map_or_else(String::new, |kind| kind.get_name().to_owned());
-        Ok(PathBuf::from(format!("{}-{kind}.png", stem.to_string_lossy())))
+        Ok(PathBuf::from(format!("{}-{kind}.png", trace::stem(&self.file)?)))
     }
 }

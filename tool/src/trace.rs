@@ -3,9 +3,11 @@
 #[cfg(test)]
 mod tests;
 
-use crate::failure::{Failure, complain};
+use crate::failure::{Failure, complain, wrong_usage};
 use crate::print::Progress;
 use crate::recording::{self, Entry, Recording};
+use std::borrow::Cow;
+use std::ffi::OsStr;
 use std::path::Path;
 use sun2xp::control::Feedback;
 use sun2xp::finger::events::{Event, EventKind};
@@ -101,6 +103,12 @@ pub fn read(file: &Path, what: &str, visit: Visit) -> Result<(), Failure> {
         complain(&format!("{} has no end: its recorder was killed, or still runs", ShownPath(file)));
     }
     Ok(())
+}
+
+/// Returns the name of a recording or black box without its extension. What is made from the file is named after it.
+pub fn stem(file: &Path) -> Result<Cow<'_, str>, Failure> {
+    let named = || wrong_usage(format!("{} has no file name: name a recording or a black box", ShownPath(file)));
+    file.file_stem().map(OsStr::to_string_lossy).ok_or_else(named)
 }
 
 /// Returns the time of the first cycle, ns of the monotonic clock. Returns none if the file has no cycle, or if an

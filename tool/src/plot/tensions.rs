@@ -5,7 +5,7 @@ use super::figure::{Figure, Sign, subtitle};
 use super::palette::{BLUE, PERMITTED, SOFT_INK, VERMILION};
 use super::panel::{Mark, Panel};
 use super::svg::Stroke;
-use super::{LONGEST_PAUSE, Plot, Selection};
+use super::{LONGEST_PAUSE, NOT_CONTROLLED, Plot, Selection};
 use crate::failure::Failure;
 use crate::trace::Item;
 
@@ -52,9 +52,7 @@ impl Plot for Tensions {
 
     fn draw(&self, selection: &Selection) -> Result<Figure, Failure> {
         let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else {
-            return Err("the selected part of the recording has no cycle in which the controller of this finger ran: \
-                        select another part or finger (--from, --to, --finger), or record while the finger runs"
-                .into());
+            return Err(NOT_CONTROLLED.into());
         };
         let time = Axis::linear(first.time, last.time.max(first.time + 1e-3));
         let (t_min, t_max) = self.bounds;

@@ -123,7 +123,10 @@ fn altered_configurations_are_refused_without_the_remedy_for_their_authors() {
     }
     write(&path, &reader, &messages);
     let refusal = Recording::open(&path).expect("a recording").find_map(Result::err).expect("altered").to_string();
-    assert!(refusal.contains(&format!("/replay: {reason}")), "{refusal}");
+    assert!(
+        refusal.contains(&format!("/finger1/replay describes a controller that cannot be used: {reason}")),
+        "{refusal}"
+    );
 }
 
 #[test]

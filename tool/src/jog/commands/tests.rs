@@ -178,7 +178,8 @@ fn a_real_finger_moves_in_small_steps() {
     configuration.fingers[0].port = "/dev/ttyUSB0".into();
     let execute = |command: Command| command.execute(&hand, &configuration, &|| false);
     let refusal = refused(execute(Command::MoveJoints { finger: 1, by: [0.1, 0.0, 0.0] }));
-    assert!(refusal.contains("a joint of finger 1 by 5.73 degrees") && refusal.contains("at most 3.00 degrees"));
+    let named = refusal.contains("a joint of finger 1 by 5.73 degrees") && refusal.contains("at most 3.00 degrees");
+    assert!(named, "{refusal}");
     let refusal = refused(execute(Command::MoveTip { finger: 1, by: [0.0, 0.4, 0.0] }));
     assert!(refusal.contains("the tip of finger 1 by 0.40 cm") && refusal.contains("at most 0.30 cm"), "{refusal}");
     done(execute(Command::MoveJoints { finger: 2, by: [0.1, 0.0, 0.0] }));
@@ -211,7 +212,7 @@ fn a_real_finger_beyond_its_limits_does_not_jump_to_them() {
         }
         let text = refused(Command::Close.execute(&hand, &configuration, &|| false));
         assert!(
-            text.starts_with("the set point of joint 1 of finger 1 is ") && text.contains("move the finger into"),
+            text.starts_with("the set point of joint 1 of finger 1, ") && text.contains("move the finger into"),
             "{text}"
         );
         assert_eq!(desired_joints(&hand, 1).expect("there"), before);
