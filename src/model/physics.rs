@@ -27,6 +27,12 @@ pub(crate) fn largest_viscous_friction(inertia: f64, least: f64) -> f64 {
     (inertia - least) / (2.0 * STEP)
 }
 
+/// Returns the smallest inertia, kg m^2, with which a step can integrate a rotor that has this viscous friction,
+/// N m s/rad. `least` is the smallest inertia without friction, the result of [`least_inertia`].
+pub(crate) fn inertia_for(viscous: f64, least: f64) -> f64 {
+    least + 2.0 * STEP * viscous
+}
+
 /// Returns whether a step can integrate a rotor with this inertia, kg m^2, and this viscous friction, N m s/rad.
 pub(crate) fn resolves_rotor(inertia: f64, stiffness: f64, radius: f64, viscous: f64) -> bool {
     let least = least_inertia(stiffness, radius);

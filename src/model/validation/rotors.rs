@@ -2,7 +2,7 @@
 
 use super::ranges::unusable;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
-use crate::model::physics::{largest_viscous_friction, least_inertia};
+use crate::model::physics::{inertia_for, largest_viscous_friction, least_inertia};
 
 impl ConfiguredFinger {
     /// Checks the rotors and tendons of the controller's model, with which the tools simulate every finger.
@@ -35,20 +35,26 @@ impl ConfiguredFinger {
             let least = least_inertia(stiffness[motor], self.geometry.motor_radius[motor]);
             if inertia[motor] < least {
                 let reason = format!(
-                    "{} kg m^2 of motor {} is too little for its {key_of_stiffness} and geometry.motor_radius: it must \
-                     be at least {least:.3e}. Check these three values",
+                    "{} kg m^2 of motor {} is too little for its {key_of_stiffness}, {key_of_viscous} and \
+                     geometry.motor_radius: the computed motion of the rotor would be wrong. The inertia must be at \
+                     least {:.3e}. Check these four values",
                     inertia[motor],
-                    motor + 1
+                    motor + 1,
+                    // The margin covers the rounding of the printed value.
+                    1.01 * inertia_for(viscous[motor], least)
                 );
                 return unusable(key, reason);
             }
             let most = largest_viscous_friction(inertia[motor], least);
             if viscous[motor] > most {
                 let reason = format!(
-                    "{} N m s/rad of motor {} is too much for its {key}: it must be at most {:.2e}. Check both values",
+                    "{} N m s/rad of motor {} is too much for its {key}: the computed motion of the rotor would be \
+                     wrong. The friction must be at most {:.2e}, or the inertia at least {:.3e} kg m^2. Check both \
+                     values",
                     viscous[motor],
                     motor + 1,
-                    0.99 * most
+                    0.99 * most,
+                    1.01 * inertia_for(viscous[motor], least)
                 );
                 return unusable(key_of_viscous, reason);
             }
@@ -69,6 +75,22 @@ mod tests {
         assert_eq!(finger.check_rotors(), Ok(()));
         finger.geometry.motor_radius[2] = 1.0;
         assert_eq!(finger.check_rotors().map_err(|unusable| unusable.key), Err("motor.inertia"));
+    }
+
+    #[test]
+    fn the_value_that_the_error_names_is_accepted() {
+        for stiffness in [1000.0, 3000.0, 3001.0, 7777.0] {
+            for radius in [0.313, 1.0, 1.7] {
+                let mut finger = ConfiguredFinger::default();
+                finger.motor.inertia = [1e-12; 4];
+                finger.tendon.stiffness = [stiffness; 4];
+                finger.geometry.motor_radius = [radius; 4];
+                let reason = finger.check_rotors().expect_err("too light").reason;
+                let named = reason.split("at least ").nth(1).and_then(|rest| rest.split(". ").next()).expect("a value");
+                finger.motor.inertia = [named.parse().expect("a number"); 4];
+                assert_eq!(finger.check_rotors(), Ok(()), "{reason}");
+            }
+        }
     }
 
     #[test]
