@@ -19,24 +19,20 @@ pub(super) fn written(numbers: &Numbers, present: &[f64]) -> (Vec<Value>, bool) 
 }
 
 /// Writes values to a key in the table `section`. `present` contains the numbers that the key has now, in this table,
-/// in the table for all fingers or by default. If the key is in this table, its comments and layout are kept.
+/// in the table for all fingers or by default. If the key is in this table, its comments and layout are kept. An array
+/// of another shape is written anew, without the comments in it.
 pub(super) fn set(section: &mut dyn TableLike, key: &str, values: Vec<Value>, array: bool, present: &[f64]) {
     if array {
         match section.get_mut(key).and_then(Item::as_array_mut) {
-            Some(here) if here.len() == values.len() && present.len() == values.len() => {
-                for (place, value) in values.into_iter().enumerate() {
-                    if !is(&value, present[place]) {
-                        here.replace(place, value);
-                    }
-                }
-            }
-            before => {
+            Some(here) if has_shape_of(here, &values) => fill(here, values, &mut present.iter()),
+            Some(here) => {
                 let mut array = values.into_iter().collect::<Array>();
                 // A comment after the array stays.
-                if let Some(before) = before {
-                    *array.decor_mut() = before.decor().clone();
-                }
-                section.insert(key, Item::Value(Value::Array(array)));
+                *array.decor_mut() = here.decor().clone();
+                *here = array;
+            }
+            None => {
+                section.insert(key, Item::Value(Value::Array(values.into_iter().collect())));
             }
         }
         return;
@@ -49,6 +45,30 @@ pub(super) fn set(section: &mut dyn TableLike, key: &str, values: Vec<Value>, ar
             }
             None => {
                 section.insert(key, Item::Value(value));
+            }
+        }
+    }
+}
+
+/// Whether the array has as many numbers as `values`, or as many rows with as many numbers.
+fn has_shape_of(array: &Array, values: &[Value]) -> bool {
+    array.len() == values.len()
+        && array.iter().zip(values).all(|(here, value)| match (here, value) {
+            (Value::Array(here), Value::Array(row)) => here.len() == row.len(),
+            (here, value) => !here.is_array() && !value.is_array(),
+        })
+}
+
+/// Replaces the numbers of an array that has the shape of `values`. Where the new number equals the one in `present`,
+/// it stays as it is written.
+fn fill<'a>(array: &mut Array, values: Vec<Value>, present: &mut impl Iterator<Item = &'a f64>) {
+    for (place, value) in values.into_iter().enumerate() {
+        match (array.get_mut(place), value) {
+            (Some(Value::Array(here)), Value::Array(row)) => fill(here, row.into_iter().collect(), present),
+            (_, value) => {
+                if present.next().is_none_or(|&number| !is(&value, number)) {
+                    array.replace(place, value);
+                }
             }
         }
     }

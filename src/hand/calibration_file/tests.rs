@@ -74,7 +74,12 @@ fn moment_arms_are_stored_with_the_zeros_that_belong_to_them() {
     let moment_arms = Some(IdentifiedArms { r, encoder_zero: zero });
     let friction = by_identification(FingerNumber::TWO, Identified { moment_arms, ..friction([300.0; 4], 0.05) });
     let file = "[finger.2.geometry]\n\
-                r = [[-1.09, 0.62, 0.62, -1.09], [1.09, 0.62, -0.62, -1.09], [0.0, 0.62, -0.62, 0.0]] # report\n";
+                # Measured.\n\
+                r = [ # joints\n  \
+                  [-1.09, 0.62, 0.62, -1.09], # 0\n  \
+                  [1.09, 0.62, -0.62, -1.09],\n  \
+                  [0.0, 0.62, -0.62, 0.000]\n\
+                ] # report\n";
     // These zeros were found with the new moment arms, before the moment arms were stored.
     let mut later = Configuration::default();
     later.fingers[1].geometry.r = std::array::from_fn(|row| std::array::from_fn(|column| r[(row, column)]));
@@ -83,8 +88,11 @@ fn moment_arms_are_stored_with_the_zeros_that_belong_to_them() {
     both.add(Found::by_calibration(&Findings::Zeros(zeros), FingerNumber::TWO, &later));
     for found in [friction, both] {
         let text = stored(file, &[found]);
-        let rows = "[[-1.1118, 0.6324, 0.6324, -1.1118], [1.1118, 0.6324, -0.6324, -1.1118], \
-                    [0.0, 0.6324, -0.6324, 0.0]] # report";
+        let rows = "# Measured.\nr = [ # joints\n  \
+                      [-1.1118, 0.6324, 0.6324, -1.1118], # 0\n  \
+                      [1.1118, 0.6324, -0.6324, -1.1118],\n  \
+                      [0.0, 0.6324, -0.6324, 0.000]\n\
+                    ] # report\n";
         assert!(text.contains(rows) && text.contains("zero = [5, 6, 7, 8]"), "{text}");
     }
 }
