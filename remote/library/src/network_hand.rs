@@ -44,7 +44,7 @@ impl Stoppable for NetworkHand {
         // A closed hand has nothing to stop. Its refusal cannot be reported to the planner, because the call that
         // requested the stop has returned.
         let Ok(connection) = self.connection() else { return true };
-        // A planner that has lost the hand must not stop the hand of the next owner later.
+        // If the planner has lost the hand, the stop must not be repeated: it would stop the hand of the next owner.
         connection.hand.emergency_stop().is_ok() || !connection.hand.is_owner()
     }
 }

@@ -20,7 +20,10 @@ pub(crate) fn open(source: RemoteSource, configuration: &Configuration) -> Resul
     };
     // The caller has found the table already. The file may have been replaced since then.
     let remote = read.map_err(refusal)?.ok_or_else(|| {
-        system("the table [remote] was removed from the file during this call: put it back, and open the hand again")
+        system(
+            libc::EIO,
+            "the table [remote] was removed from the file during this call: put it back, and open the hand again",
+        )
     })?;
     let hand = client::RemoteHand::open(&remote).map_err(|error| match error.kind() {
         // To a client that opens the hand, the server answers *not owner* only if the client does not have the

@@ -1,5 +1,6 @@
 //! Conversion of the client's errors to refusals of the C calls. If a hand of this machine can refuse a call for the
-//! same reason, errno is the same. The text says the same, but the words can differ, for example for a busy finger.
+//! same reason, errno is the same, except for requests that the server refuses: see `request_refusal`. The text says
+//! the same, but the words can differ, for example for a busy finger.
 
 use sun2xp::FaultKind;
 use sun2xp::capi::RemoteRefusal;
@@ -29,6 +30,10 @@ pub(crate) fn refusal(error: RemoteError) -> RemoteRefusal {
         return faulted(finger.number().into(), kind, name);
     }
     let (number, errno) = numbers(error.kind());
+    let errno = match &error {
+        RemoteError::System { source, .. } => source.raw_os_error().unwrap_or(errno),
+        _ => errno,
+    };
     let actions = match error.kind() {
         Kind::Faulted => vec![Action::Recover, Action::Close, Action::Open],
         Kind::NotOwner | Kind::Closed => vec![Action::Close, Action::Open],
@@ -105,8 +110,8 @@ pub(crate) fn forbidden(hand: &HandName) -> RemoteRefusal {
 }
 
 /// The refusal of something that the system or this library cannot do.
-pub(crate) fn system(text: &str) -> RemoteRefusal {
-    RemoteRefusal::Other { number: number::SYSTEM, errno: libc::EIO, text: text.into(), actions: Vec::new() }
+pub(crate) fn system(errno: i32, text: &str) -> RemoteRefusal {
+    RemoteRefusal::Other { number: number::SYSTEM, errno, text: text.into(), actions: Vec::new() }
 }
 
 #[cfg(test)]
@@ -135,7 +140,14 @@ mod tests {
         assert_eq!(numbers_of(recovery_refusal(owned())), (number::BUSY, libc::EBUSY));
     }
 
-    /// A value of 0 N that nobody has measured would mislead.
+    #[test]
+    fn the_errno_of_the_system_is_kept() {
+        let source = std::io::Error::from_raw_os_error(libc::EAGAIN);
+        let error = RemoteError::System { doing: "start a thread".into(), source };
+        assert_eq!(numbers_of(refusal(error)), (number::SYSTEM, libc::EAGAIN));
+    }
+
+    /// If the client has not received the text of the fault, the refusal names no part and no value.
     #[test]
     fn a_fault_has_the_text_of_a_hand_of_this_machine() {
         let mut fault = Fault::of(FaultKind::BrokenTendon, 0.2);

@@ -42,7 +42,10 @@ impl StopCalls {
                 thread::sleep(INTERVAL);
             }
         });
-        started.map(|_| Self(ended)).map_err(|error| system(&format!("cannot start a thread: {}", with_remedy(&error))))
+        started.map(|_| Self(ended)).map_err(|error| {
+            let errno = error.raw_os_error().unwrap_or(libc::EIO);
+            system(errno, &format!("cannot start a thread: {}", with_remedy(&error)))
+        })
     }
 }
 

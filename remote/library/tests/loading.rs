@@ -1,4 +1,5 @@
-//! The error that a planner receives if the library of remote hands, the server or the configuration is not there.
+//! The error that a planner receives if the library of remote hands, the server or the table `[remote]` is missing or
+//! wrong.
 
 mod rig;
 
