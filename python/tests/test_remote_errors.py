@@ -133,6 +133,21 @@ def test_a_fault_has_its_name_unless_the_server_does_not_tell_it(server, remote,
     assert fault.value.text == f"finger 2 is faulted (fault 13){name}: {fault.value.remedy}"
 
 
+def test_a_wait_takes_the_event_that_ended_it(server, remote, monkeypatch):
+    events = remote.events()
+    message = struct.pack("<BBBBHxxQQQ4d", 3, 1, 2, 0, EventKind.ARRIVED, 1, 7, 8 * MS, 1.0, 2.0, 3.0, 4.0)
+    server._subscribers["events"](message)
+    wait_for = events._receiver.wait_for
+
+    def wait_while_another_thread_takes(holds, timeout):
+        found = wait_for(holds, timeout)
+        assert events.take() is None
+        return found
+
+    monkeypatch.setattr(events._receiver, "wait_for", wait_while_another_thread_takes)
+    assert events.wait(5).kind == EventKind.ARRIVED
+
+
 def test_an_event_has_the_values_of_its_kind(server, remote):
     events = remote.events()
     for kind in EventKind:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Iterator, Optional
+from typing import Iterator, List, Optional
 
 from .._types import Event
 from ._errors import forked
@@ -38,8 +38,18 @@ class RemoteEvents:
     def wait(self, timeout: Optional[float] = None) -> Optional[Event]:
         """Waits for the next event, and takes it. Returns None if no event comes within `timeout` s, or if the hand or
         the queue is closed and no event is left. Without a timeout, waits without a limit."""
-        self._receiver.wait_for(lambda: self._queue or self._closed, timeout)
-        return self.take()
+        if self._receiver.forked:
+            raise forked()
+        taken: List[Event] = []
+
+        def take() -> bool:
+            # Under the lock, so that no other thread takes an event that this one has seen.
+            if self._queue and not taken:
+                taken.append(self._queue.popleft())
+            return bool(taken) or self._closed
+
+        self._receiver.wait_for(take, timeout)
+        return taken[0] if taken else None
 
     def close(self) -> None:
         """Closes the queue: it gets no further events, and the waits of all threads for its events end."""
