@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use sun2xp::ConfigurationError;
 use sun2xp::files::read_regular_file;
 use sun2xp::hand::{Wrong, deserialize};
+use sun2xp::model::Shown;
 use sun2xp_remote_protocol::{ClientName, HandName};
 use toml_edit::{Document, Item};
 
@@ -79,7 +80,7 @@ pub struct Limits {
     pub catch_ms: u32,
     /// Time without a Target after which every finger goes to its end state, ms.
     pub end_ms: u32,
-    /// Kx with which a caught finger holds its pose, N/cm.
+    /// Kx with which a finger holds its pose after its Target has expired (see [`crate::silence`]), N/cm.
     pub soft_stiffness: f64,
     /// Largest force with which a set point pulls a fingertip, N.
     pub lead_force: f64,
@@ -156,8 +157,15 @@ impl Settings {
         overrides: &Overrides,
         refuse: &dyn Fn(&str, String) -> ServeError,
     ) -> Result<Self, ServeError> {
-        let name = overrides.name.as_ref().unwrap_or(&table.name);
-        let name = name.parse().map_err(|error| refuse("name", format!("\"{name}\": {error}")))?;
+        let argument =
+            |option, text: &str, reason| ServeError::Argument { option, text: Shown(text).to_string(), reason };
+        let name = match &overrides.name {
+            Some(name) => name.parse::<HandName>().map_err(|error| argument("--name", name, error.to_string()))?,
+            None => {
+                let name = &table.name;
+                name.parse().map_err(|error| refuse("name", format!("\"{name}\": {error}")))?
+            }
+        };
         table.check_numbers(refuse)?;
         let endpoints = |key: &str, texts: &[String]| {
             texts.iter().map(|text| text.parse().map_err(|reason| refuse(key, reason))).collect::<Result<Vec<_>, _>>()
@@ -167,7 +175,10 @@ impl Settings {
             ([], Some(listen)) => endpoints("listen", listen)?,
             ([], None) if connect.is_empty() => endpoints("listen", &[LOOPBACK.into()])?,
             ([], None) => Vec::new(),
-            (listen, _) => endpoints("listen", listen)?,
+            (listen, _) => {
+                let endpoint = |text: &String| text.parse().map_err(|reason| argument("--listen", text, reason));
+                listen.iter().map(endpoint).collect::<Result<_, _>>()?
+            }
         };
         if listen.is_empty() && connect.is_empty() {
             return Err(refuse("listen", format!("is empty, and so is connect: set listen = [\"{LOOPBACK}\"]")));
@@ -184,7 +195,9 @@ impl Settings {
         });
         for endpoint in listen.iter().chain(&connect) {
             endpoint.check(tls.is_some()).map_err(|reason| match reason {
-                Some(reason) => refuse(if listen.contains(endpoint) { "listen" } else { "connect" }, reason),
+                Some(reason) if !listen.contains(endpoint) => refuse("connect", reason),
+                Some(reason) if overrides.listen.is_empty() => refuse("listen", reason),
+                Some(reason) => argument("--listen", &endpoint.to_string(), reason),
                 None => ServeError::NotLoopback { endpoint: endpoint.to_string() },
             })?;
         }

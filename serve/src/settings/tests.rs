@@ -70,3 +70,17 @@ fn the_command_line_replaces_the_file() {
     let settings = Settings::from_text(text, Path::new("f"), &overrides).expect("usable");
     assert_eq!((settings.name.as_str(), settings.listen[0].to_string().as_str()), ("left", "tcp/127.0.0.1:9"));
 }
+
+#[test]
+fn an_error_of_the_command_line_names_the_option_and_not_the_file() {
+    let refusal = |overrides: Overrides| {
+        let text = "[serve]\nname = 'right'\nlisten = ['tcp/127.0.0.1:7']\n";
+        Settings::from_text(text, Path::new("sun2xp.toml"), &overrides).expect_err("refused").to_string()
+    };
+    let name = refusal(Overrides { name: Some("a/b".into()), listen: Vec::new() });
+    assert!(name.starts_with("--name \"a/b\": "), "{name}");
+    for endpoint in ["nowhere", "tls/cell:7"] {
+        let listen = refusal(Overrides { name: None, listen: vec![endpoint.into()] });
+        assert!(listen.starts_with(&format!("--listen \"{endpoint}\": ")), "{listen}");
+    }
+}
