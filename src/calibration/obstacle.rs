@@ -72,8 +72,8 @@ pub enum Obstacle {
     /// The finger moved although it had to stay in its pose.
     #[error(
         "joint {joint} moved by {degrees:.2} degrees while the pose was read. Keep the finger still in \
-         zeroing.pose_degrees (nothing may push it, and it must have reached its set point) and zero it again, or set \
-         zeroing.method = \"stops\""
+         zeroing.pose_degrees (nothing may push it, and it must have reached its set point) and zero it again, or zero \
+         it at its stops (zeroing.method = \"stops\", zeroing.lower_stop_degrees, zeroing.upper_stop_degrees)"
     )]
     Moved {
         /// The joint, 0 to 2.
@@ -84,7 +84,8 @@ pub enum Obstacle {
     /// Nothing holds the limp finger in its pose.
     #[error(
         "nothing holds the finger in its pose: joint {joint} moved by {degrees:.1} degrees under a light push. Hold \
-         the finger in zeroing.pose_degrees until it is zeroed, or set zeroing.method = \"stops\""
+         the finger in zeroing.pose_degrees until it is zeroed, or zero it at its stops (zeroing.method = \"stops\", \
+         zeroing.lower_stop_degrees, zeroing.upper_stop_degrees)"
     )]
     NotHeld {
         /// The joint, 0 to 2.
@@ -125,8 +126,8 @@ pub enum Obstacle {
     JointBlocked {
         /// The joint, 0 to 2.
         joint: u8,
-        /// Whether the joint was on the way back to its start. `zeroing.torque` affects the torque of this motion, but
-        /// not that of the motion back and forth.
+        /// Whether the joint was on the way back to its start, with a torque that `zeroing.torque` affects. Otherwise
+        /// it was moved back and forth to measure its friction, with another torque.
         returning: bool,
     },
     /// The measurements do not determine a value, or the value is impossible.

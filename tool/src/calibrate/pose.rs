@@ -15,14 +15,14 @@ pub fn ask_to_hold(finger: i32, configured: &ConfiguredFinger, yes: bool) -> Res
          Hold it in this pose with a jig or a steady hand, until its zeros are found (about 10 s):\n{}",
         pose(configured.zeroing.pose_degrees)
     );
-    wait(&text, "when you hold it there", yes)
+    wait(&text, ["when you hold it there", "a jig holds the finger"], yes)
 }
 
 /// Asks the person to let go of a finger that will move by itself. `yes` has the same meaning as in [`ask_to_hold`].
 pub fn ask_to_release(finger: i32, yes: bool) -> Result<(), Failure> {
     wait(
         &format!("finger {finger} will move by itself. Let go of it and clear the space around it.\n"),
-        "when it is free",
+        ["when it is free", "nothing holds the finger"],
         yes,
     )
 }
@@ -45,7 +45,8 @@ pub fn pose([side, base, middle]: [f64; 3]) -> String {
     )
 }
 
-fn wait(text: &str, when: &str, yes: bool) -> Result<(), Failure> {
+/// Waits for Enter, unless `yes` is true. `when` says when to press Enter, and `condition` when `--yes` may be given.
+fn wait(text: &str, [when, condition]: [&str; 2], yes: bool) -> Result<(), Failure> {
     let mut output = io::stderr().lock();
     write!(output, "{text}")?;
     if yes {
@@ -56,9 +57,10 @@ fn wait(text: &str, when: &str, yes: bool) -> Result<(), Failure> {
     output.flush()?;
     if io::stdin().read_line(&mut String::new())? == 0 {
         writeln!(output)?;
-        return Err("standard input ended before Enter was pressed: run the tool in a terminal, or with --yes if a \
-                    jig holds the finger"
-            .into());
+        return Err(format!(
+            "standard input ended before Enter was pressed: run the tool in a terminal, or with --yes if {condition}"
+        )
+        .into());
     }
     Ok(())
 }

@@ -92,7 +92,8 @@ impl Wrong {
                 "Check the masses of the weights, that they hang freely, and that nothing rubs on tendon {gauge}"
             ),
             Self::GaugeAtEnd(gauge, count, zero) => {
-                // The count shows at which end of the range the gauge is. The zero by the weights is less certain.
+                // The count shows at which end of the range the gauge is. The zero that was
+                // computed from the readings with weights is less certain.
                 let direction = if *count < 1.0 { "up" } else { "down" };
                 format!(
                     "Shift the offset of amplifier {gauge} {direction} by at least {:.0} counts, so that the count \
@@ -132,8 +133,10 @@ impl Wrong {
             }
             Self::PoseRefused(_) => {
                 "If a jig held the finger, the finger probably trembled in the jig because its gauges lag: zero it at \
-                 its stops instead. For that, leave with q, set zeroing.method = \"stops\" for this finger \
-                 in the configuration file, and start the tool again. The tool reads the file only when it starts"
+                 its stops instead. For that, leave with q and set three keys of this finger in the \
+                 configuration file: zeroing.method = \"stops\", and the angles of its stops in \
+                 zeroing.lower_stop_degrees and zeroing.upper_stop_degrees. Then start the tool again: it reads the \
+                 file only when it starts"
                     .into()
             }
             Self::Computer(_) => {
