@@ -46,14 +46,17 @@ fn kernel(version: &str, realtime: bool) -> Finding {
         return Finding::good("kernel", format!("Linux {release}, PREEMPT_RT"));
     }
     let advice = "An ordinary kernel usually wakes threads up in time, but its worst wake-up latency has no bound. \
-                  Install a PREEMPT_RT kernel (Debian: apt install linux-image-rt-amd64) and boot it";
+                  Install a PREEMPT_RT kernel (Debian: apt install linux-image-rt-amd64, or linux-image-rt-arm64) and \
+                  boot it";
     Finding::new(Rating::Warning, "kernel", format!("Linux {release}, without PREEMPT_RT"), advice)
 }
 
 /// `runtime` us of every `period` us are available to real-time threads.
 fn throttling(runtime: &str, period: &str) -> Finding {
     let subject = "real-time throttling";
-    let remedy = "sudo sysctl kernel.sched_rt_runtime_us=950000";
+    // 95 % of the period, as in the kernel's default.
+    let usual = period.parse::<i64>().ok().filter(|&period| period > 0).unwrap_or(1_000_000) / 20 * 19;
+    let remedy = format!("sudo sysctl kernel.sched_rt_runtime_us={usual}");
     match (runtime.parse::<i64>(), period.parse::<i64>()) {
         (Ok(-1), _) => Finding::new(
             Rating::Warning,

@@ -56,6 +56,7 @@ fn every_fault_is_found_alone_with_its_remedy() {
         ("proc/sys/kernel/sched_rt_runtime_us", "-1".into(), "real-time throttling", Warning, "950000"),
         ("proc/sys/kernel/sched_rt_runtime_us", "0".into(), "real-time throttling", Failure, "950000"),
         ("proc/sys/kernel/sched_rt_runtime_us", "200000".into(), "real-time throttling", Warning, "950000"),
+        ("proc/sys/kernel/sched_rt_period_us", "10000000".into(), "real-time throttling", Warning, "=9500000"),
         ("proc/self/limits", limits("unlimited", "0"), "real-time priority", Warning, "rtprio 90"),
         ("proc/self/limits", limits("65536", "90"), "locked memory", Warning, "memlock unlimited"),
         ("proc/self/status", status("0", "0-1"), "cores", Warning, "finger.core"),
