@@ -21,7 +21,7 @@ use sun2xp::simulated::ObjectState;
 /// Writes a recording as CSV: one file for each finger, one for the events, and one for the object of a simulated hand.
 ///
 /// The first line of a file names the columns and their units. Numbers have enough digits to restore the recorded bits.
-/// A value that a cycle does not have is an empty field.
+/// A value that a cycle does not have is an empty field. The long format leaves its row out.
 ///
 /// Exit status: 0 if everything was written, 1 if not, 2 for wrong usage.
 #[derive(clap::Args)]

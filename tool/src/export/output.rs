@@ -30,12 +30,12 @@ impl Output {
     /// file at `path`, or if the folder cannot be written.
     pub fn file(path: PathBuf, force: bool) -> Result<Self, Failure> {
         let old = fs::metadata(&path).ok();
-        if fs::symlink_metadata(&path).is_ok() && !force {
-            return Err(exists(&path));
-        }
         if old.as_ref().is_some_and(|old| !old.is_file()) {
             let shown = ShownPath(&path);
             return Err(format!("cannot replace {shown}: it is not a regular file. Choose another --output").into());
+        }
+        if fs::symlink_metadata(&path).is_ok() && !force {
+            return Err(exists(&path));
         }
         let target = path.canonicalize().unwrap_or_else(|_| path.clone());
         let file = NewFile::beside(&target, old.as_ref()).map_err(|error| unwritable(&path, &error))?;

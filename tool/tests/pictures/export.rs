@@ -108,6 +108,14 @@ fn no_file_is_replaced_without_force_and_other_fingers_are_left_out() {
     assert_eq!(refused.status.code(), Some(2), "{refused:?}");
     assert!(String::from_utf8_lossy(&refused.stderr).contains("--force"), "{refused:?}");
     assert!(export(&["--force"]).status.success());
+
+    for entry in fs::read_dir(folder.path()).expect("a folder") {
+        let file = entry.expect("an entry").path();
+        fs::remove_file(&file).and_then(|()| fs::create_dir(&file)).expect("a folder in place of the file");
+    }
+    let refused = export(&[]);
+    let text = String::from_utf8_lossy(&refused.stderr);
+    assert!(text.contains("not a regular file") && !text.contains("--force"), "{text}");
 }
 
 #[test]
