@@ -21,7 +21,8 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 /// Runs a simulated board behind a serial port of its own.
 ///
 /// The first line on standard output is the path of the port. Each line on standard input is an order; the end of
-/// --help lists the orders. The board answers each order with one line: `ok`, `state ...` or `error ...`.
+/// --help lists the orders. The board answers each order except `quit` with one line: `ok`, `ok PATH`, `state ...` or
+/// `error ...`.
 ///
 /// The program ends at `quit` or a signal, and not at the end of standard input, so that it can run detached.
 #[derive(clap::Args)]
@@ -88,8 +89,11 @@ pub struct Arguments {
 /// Starts the board, and executes orders until `quit`.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let orders = orders_in(&arguments.orders)?;
-    let fingers: Vec<FingerNumber> =
+    let mut fingers: Vec<FingerNumber> =
         arguments.fingers.iter().filter_map(|&number| FingerNumber::new(number.into())).collect();
+    fingers.sort_unstable();
+    // A finger may be named twice.
+    fingers.dedup();
     let mut configuration = match &arguments.config {
         Some(file) => hand::Configured::read_for_board(file, &fingers)?.configuration,
         None => Configuration::default(),

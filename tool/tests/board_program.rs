@@ -98,7 +98,8 @@ fn the_end_of_its_input_does_not_end_the_board() {
 
 #[test]
 fn defects_occur_while_the_board_runs_and_are_repaired() {
-    let mut board = Board::start(&["--finger", "1", "--order", "cut 1 2"]);
+    // A finger that is named twice is one finger.
+    let mut board = Board::start(&["--finger", "1", "--finger", "1", "--order", "cut 1 2"]);
     let port = board.line();
     let tensions = |board: &mut Board| numbers(&board.order("state 1"), "tensions", 4);
     assert_eq!(tensions(&mut board)[1], 0.0, "cut by --order");
@@ -112,7 +113,7 @@ fn defects_occur_while_the_board_runs_and_are_repaired() {
     }
     assert!(board.order("jam 1 7").starts_with("error"));
     // The default finger has no tactile elements.
-    let without_elements = "error finger 1 does not have the part that this order names: name a part that it has";
+    let without_elements = "error finger 1 has no tactile element with this number: see finger.touch.elements";
     assert_eq!(board.order("dead-element 1 0"), without_elements);
     let answer = board.order("shove 1");
     let orders = ["force", "state", "cut", "drift-gauge", "mend", "drop", "commands", "unplug", "replug"];

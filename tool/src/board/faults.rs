@@ -136,7 +136,7 @@ impl Trouble {
         {
             Some(true) => "ok".into(),
             Some(false) => {
-                format!("error finger {number} does not have the part that this order names: name a part that it has")
+                format!("error finger {number} has no tactile element with this number: see finger.touch.elements")
             }
             None => no_finger(number),
         };

@@ -65,7 +65,7 @@ const LINE_FAULTS: [Entry; 10] = [
     ("duplicate PROBABILITY [MS]", "send frames twice"),
     ("reorder PROBABILITY [MS]", "send frames in the wrong order"),
     ("stall MS", "send nothing for MS, then everything at once"),
-    ("commands FAULT", "one of the faults above, for frames to the board: commands drop 0.01"),
+    ("commands FAULT", "one of the faults above, but for frames to the board. Example: commands drop 0.01"),
     ("good", "end all line faults, in both directions"),
     ("unplug", "remove the port"),
     ("replug", "create a new port and answer with its path"),

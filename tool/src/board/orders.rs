@@ -42,6 +42,7 @@ impl Order {
         let (name, finger, numbers) = match words[..] {
             [] => return Ok(None),
             ["quit"] => return Ok(Some(Order::Quit)),
+            ["quit", ..] => return Err("quit does not take these words: type quit alone".into()),
             [name, ..] if !manual::names().any(|order| order == name) => return Err(manual::unknown(name)),
             [name] => return Err(format!("{} needs the number of a finger", Shown(name))),
             [name, finger, ref numbers @ ..] => (name, finger, numbers),
@@ -183,6 +184,7 @@ mod tests {
             ),
             ("shove", "drop, corrupt, delay, duplicate, reorder, stall, commands, good, unplug, replug; see"),
             ("good 1", "does not take these words"),
+            ("quit 1", "quit does not take these words"),
             ("state", "state needs the number of a finger"),
         ] {
             let error = Order::read(line).unwrap_err();
