@@ -39,7 +39,7 @@ const LARGEST: f64 = 0.6;
 /// Smallest and largest plausible factor of a gauge, relative to the mean factor.
 const GAINS: std::ops::Range<f64> = 0.5..2.0;
 
-/// A motion in one direction.
+/// A motion back and forth along one direction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stroke {
     /// Whether the common tension is at its higher level.

@@ -52,7 +52,7 @@ impl MotorFriction {
         }
     }
 
-    /// Returns the friction if `gains` are the factors for the tensions.
+    /// Returns the friction. The true tensions are the measured ones multiplied by `gains`.
     pub fn solve(&self, gains: &Vector4<f64>) -> Result<MotorFrictionFound, Obstacle> {
         let mut friction =
             MotorFrictionFound { coulomb: Vector4::zeros(), conduit: Vector4::zeros(), ratio: Vector4::zeros() };
@@ -61,9 +61,12 @@ impl MotorFriction {
             let (found, _) = fit.solve().ok_or(implausible("the friction", f64::NAN))?;
             let [a, coulomb, conduit]: [f64; 3] = found.into();
             let (a, conduit) = (a / gains[motor], conduit / gains[motor]);
-            // If the friction of the conduit exceeded `a`, the ratio below would be the root of a negative number.
-            if !RATIOS.contains(&a) || conduit.abs() >= a {
+            if !RATIOS.contains(&a) {
                 return Err(implausible("the ratio of commanded pull to tension", a));
+            }
+            // If the friction of the conduit exceeded `a`, the ratio below would be the root of a negative number.
+            if conduit.abs() >= a {
+                return Err(implausible("the friction of the conduit", conduit));
             }
             friction.coulomb[motor] = coulomb.max(0.0);
             friction.conduit[motor] = conduit.max(0.0);

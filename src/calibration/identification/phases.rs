@@ -17,7 +17,8 @@ use crate::control::signals::Activity;
 use crate::control::spring::joint_hold::HOLDING_STIFFNESS;
 use std::ops::ControlFlow::{Break, Continue};
 
-/// A joint has returned when it is this close to its start, rad.
+/// A joint has returned when it is this close to its start, rad. The angle within which friction holds the joint is
+/// added.
 const NEAR: f64 = 0.05;
 /// Torque limit of every joint that moves back and forth, N cm. The guide must hold the joints against the torques that
 /// wrong gauge gains and the friction of pulleys cause.

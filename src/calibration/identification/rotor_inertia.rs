@@ -237,7 +237,8 @@ mod tests {
         assert_eq!(Motor { amplitude: 1e-4, ..MOTOR }.found(), None);
     }
 
-    /// The pull of a stuck motor does not reach the gauge, and its travel is that of the shaft alone.
+    /// A stuck motor only twists its shaft. The encoder shows this small travel, and the pull does not reach the gauge,
+    /// so the motor looks like a stiff spring.
     #[test]
     fn a_motor_that_seems_to_be_a_spring_has_no_inertia() {
         assert_eq!(Motor { hidden: 5000.0, ..MOTOR }.found(), None);
