@@ -6,7 +6,7 @@ use thiserror::Error;
 /// Why a payload cannot be decoded.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DecodeError {
-    /// The payload has no type and no version.
+    /// The payload is too short for a type and a version.
     #[error("{0} bytes are too few for a message: every message begins with its type and its version")]
     Short(usize),
     /// The payload is a message of another type.
@@ -82,9 +82,9 @@ pub enum Reason {
         /// The largest allowed value.
         most: u64,
     },
-    /// A value is not higher than the one before.
-    #[error("must be higher than the one before")]
-    NotRising,
+    /// A value is not higher than the previous one.
+    #[error("must be higher than that of {0}")]
+    NotRising(&'static str),
     /// The time of a pose of a path is not above 0, or not higher than the time of the pose before.
     #[error("must be above 0 and higher than that of the pose before, but pose {pose} has the time {time} s")]
     PoseTime {

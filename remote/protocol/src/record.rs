@@ -31,7 +31,8 @@ pub struct Record {
     pub set_point: Option<[f64; 3]>,
     /// Position of the tip in the finger's frame, cm.
     pub tip: [f64; 3],
-    /// Force of the tip on what it touches, with friction, weight and inertia of the finger, in the finger's frame, N.
+    /// Force of the tip on what it touches, in the finger's frame, N. It includes the effects of friction, weight and
+    /// inertia of the finger.
     pub force: [f64; 3],
     /// Tendon tensions, N.
     pub tensions: [f64; 4],

@@ -12,7 +12,7 @@ const RECOVER: u8 = 2;
 /// A request of a client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Request {
-    /// What is requested. It must agree with the key.
+    /// What is requested. It must agree with the action in the Zenoh key of the request.
     pub action: Action,
     /// The finger; none for every finger. Calibrate and identify need one, and acquire and release have none.
     pub finger: Option<Finger>,

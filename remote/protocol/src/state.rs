@@ -14,7 +14,8 @@ const KIND: MessageKind = MessageKind::State;
 /// newest cycle. Cycles can be absent: `missing` is their number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Number of cycles that are missing before this State, because the server was late.
+    /// Number of cycles that are missing before this State, because the server was late or their values were not
+    /// finite.
     pub missing: u32,
     /// The number of this State. The next State has the next number.
     pub number: u64,
@@ -54,7 +55,11 @@ impl State {
         for (number, record) in self.records.iter().enumerate() {
             let before = newest[record.finger.index()].replace(record.cycle);
             if before.is_some_and(|before| before >= record.cycle) {
-                return Err(FieldError::new("number of the cycle", Reason::NotRising).within("record", number));
+                return Err(FieldError::new(
+                    "number of the cycle",
+                    Reason::NotRising("the previous record of this finger"),
+                )
+                .within("record", number));
             }
         }
         Ok(())

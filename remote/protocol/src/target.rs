@@ -74,7 +74,9 @@ impl Target {
         within("validity", u64::from(self.validity_ms), 1, u64::from(LONGEST_VALIDITY_MS))?;
         for (number, pair) in self.parts.windows(2).enumerate() {
             if pair[1].finger <= pair[0].finger {
-                return Err(FieldError::new("finger", Reason::NotRising).within("part", number + 1));
+                return Err(
+                    FieldError::new("finger", Reason::NotRising("the previous part")).within("part", number + 1)
+                );
             }
         }
         Ok(())

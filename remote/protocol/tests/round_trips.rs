@@ -198,7 +198,7 @@ fn what_cannot_be_decoded_is_not_encoded() {
     assert_eq!(refused(target(vec![part(Finger::ALL[1])])), "part 0, joint angles must be finite, and not NaN");
     let good = |finger| Part { place: Place::Kept, ..part(finger) };
     let falling = target(vec![good(Finger::ALL[1]), good(Finger::ALL[0])]);
-    assert_eq!(refused(falling), "part 1, finger must be higher than the one before");
+    assert_eq!(refused(falling), "part 1, finger must be higher than that of the previous part");
     let none = Part { command: 0, ..good(Finger::ALL[0]) };
     assert_eq!(refused(target(vec![none])), "part 0, command number is 0: it must be 1 to 4294967295");
 }

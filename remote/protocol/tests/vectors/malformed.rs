@@ -91,12 +91,12 @@ fn parts() -> Vec<String> {
             ("a joint angle is NaN", PART + 16, &NAN),
             ("Kx is infinite", PART + 96, &INFINITY),
             ("the damping is NaN", PART + 104, &NAN),
-            ("Kx is there, but not given", PART + 2, &[2]),
-            ("the damping is there, but not given", PART + 2, &[1]),
-            ("joint angles are there, but no place", PART + 1, &[0]),
+            ("Kx is not zero, but its bit is 0", PART + 2, &[2]),
+            ("the damping is not zero, but its bit is 0", PART + 2, &[1]),
+            ("joint angles are not zero, but the place is none", PART + 1, &[0]),
         ],
     );
-    lines.extend(changed("Target", &kept, &[("NaN that is not given", PART + 32, &NAN)]));
+    lines.extend(changed("Target", &kept, &[("Kx is NaN, but its bit is 0", PART + 32, &NAN)]));
     lines.push(line("Target", "poses without a path", &{
         let mut payload = full.clone();
         payload[PART + 3] = 1;
