@@ -4,7 +4,8 @@
        CanDrives INTERFACE | FOLDER
 
    INTERFACE is the name of a CAN interface. On a machine without a CAN interface, give FOLDER instead: the path of an
-   empty folder. The path must contain a slash. The frames then go through Unix datagram sockets in this folder.
+   empty folder. The path must contain a slash, and have at most 80 characters. The frames then go through Unix datagram
+   sockets in this folder.
 
    When a frame starts or stops a drive, the program answers with encoder counts and tensions. When a frame of torques
    reaches a started drive, the program answers in the same way, and then advances the physics of this drive's finger by

@@ -268,8 +268,9 @@ typedef struct sun2xp_hand sun2xp_hand;
 #define SUN2XP_ERROR_TOO_MANY 6             /* Too many hands or reflexes. */
 #define SUN2XP_ERROR_ARGUMENT 7             /* An argument makes no sense: null, NaN, no such finger, a struct that
                                                is too small. */
-#define SUN2XP_ERROR_LIMIT 8                /* An argument is outside the limits of the finger: out of reach, too
-                                               fast, too stiff. */
+#define SUN2XP_ERROR_LIMIT 8                /* An argument is outside the limits of the finger (out of reach, too
+                                               fast, too stiff), or it is a matrix that cannot be the stiffness of a
+                                               spring. */
 #define SUN2XP_ERROR_FAULTED 9              /* The finger has stopped because of a fault. */
 #define SUN2XP_ERROR_CONFIGURATION 10       /* The configuration cannot be read, used, changed or stored. */
 #define SUN2XP_ERROR_PORT 11                /* A port, a board or the connection to another machine does not work. A
@@ -507,9 +508,9 @@ int sun2xp_open_named(const char *name, sun2xp_hand **hand);
 
  Returns 0, or a negative number with
    EPERM    forked child
-   ENODEV   no such hand, or another thread has begun to close it (the call does not wait for the end)
-   EBUSY    the call was made in a callback of sun2xp_on_event, of this hand or of another one, while
-            another thread was closing this hand
+   ENODEV   no such hand, or another thread is closing it already (the call does not wait for the end)
+   EBUSY    only in a callback of sun2xp_on_event, of this hand or of another one: another thread is just
+            beginning to close this hand, or the process exits
 
  Threads: any. Waits until the callback of this hand has returned, unless the call was made in a callback
  of sun2xp_on_event, of this hand or of another one.
@@ -1054,9 +1055,9 @@ struct sun2xp_set_point {
  refused, no finger gets its command.
 
  If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
- "board" the periods of the threads follow different clocks, and the difference between two of these clocks
- changes slowly. In the time in which it changes by one period, at most about one group takes effect one
- period later in a finger than in the other fingers.
+ "board" the cycles of a thread follow the clock of its board, but the periods are counted by the host's
+ clock. So the cycles skip or repeat a period now and then, and a group may then take effect one period
+ later in the fingers of this thread.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -1098,8 +1099,8 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
  for each finger and its own set point. The fingers may arrive or settle in different cycles. A finger that
  an object blocks settles without arriving. If the set point is a position of the tip, the finger arrives
  at the joint angles that were computed for it. If a reflex has replaced the set point that was sent last,
- the condition must hold for the set point of the reflex. The same applies if the finger ignored the set
- point because a reflex inhibits set points for some time. The wait then returns only after this time. If
+ the condition must hold for the set point of the reflex. This is also so if the finger ignored a later set
+ point because the reflex inhibits set points for some time. The wait then returns only after this time. If
  the set point that was sent last has expired, the condition must be true for the pose in which the finger
  has stayed since then. The event SUN2XP_EVENT_REFLEX_FIRED reports the reaction of a reflex, and the event
  SUN2XP_EVENT_EXPIRED reports that a set point has expired. Other calls work during the wait. sun2xp_close

@@ -144,6 +144,8 @@ static struct memory *map(const char *path)
     while ((file = open(path, O_RDWR)) < 0 || lseek(file, 0, SEEK_END) < (off_t)sizeof *memory) {
         if (file >= 0)
             close(file);
+        else if (errno != ENOENT)
+            return NULL;
         if (seconds() > deadline) {
             errno = ETIMEDOUT;
             return NULL;
@@ -200,7 +202,9 @@ int main(int count, char **arguments)
     int i, result;
 
     if (count > 1 && memory == NULL) {
-        fprintf(stderr, "%s: %s: start simulation.py with the same file\n", arguments[1], strerror(errno));
+        const char *remedy = errno == ETIMEDOUT ? ": start simulation.py with the same file" : "";
+
+        fprintf(stderr, "%s: %s%s\n", arguments[1], strerror(errno), remedy);
         return 1;
     }
     memset(io, 0, sizeof io);

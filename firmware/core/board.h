@@ -16,8 +16,8 @@ struct board {
 /* The fingers must have been started with finger_start. */
 void board_start(struct board *board, unsigned line, struct finger *fingers, size_t count);
 
-/* Answers every request that has arrived, then checks watchdogs and faults. Call it whenever bytes have arrived, and
-   at least every millisecond. It never blocks. */
+/* Answers the requests that have arrived, then checks watchdogs and faults. Call it whenever bytes have arrived, and
+   at least every millisecond. It never blocks: after a flood of bytes it leaves some of them for the next call. */
 void board_poll(struct board *board);
 
 #endif

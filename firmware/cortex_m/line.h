@@ -15,7 +15,7 @@ void line_received(uint8_t byte);
 bool line_next(uint8_t *byte);
 
 /* Implemented by the processor's file: writes bytes to the UART while it has room, and enables the transmit interrupt
-   only if more bytes wait. Called by the interrupt of the UART, and with interrupts masked. */
+   if more bytes may wait. Called by the interrupt of the UART, and by hal_send with interrupts masked. */
 void uart_transmit(void);
 
 /* Implemented by each port: called when hal_receive has taken the last byte of a frame. The byte arrived at

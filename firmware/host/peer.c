@@ -2,8 +2,9 @@
 
        peer ADDRESS...
 
-   The first line of output is the path of the port. For each line on standard input the program prints the true joint
-   angles, rad: three for each finger. The end of standard input ends the program. */
+   The first line of output is the path of the port. The program answers each line on standard input with the true
+   joint angles, rad, three for each finger. Read this answer before you write the next line. The end of standard
+   input ends the program. */
 
 #define _XOPEN_SOURCE 700
 

@@ -7,7 +7,7 @@
 /* Symbol of the linker script. */
 extern uint32_t stack_top;
 
-/* The emulated board has no watchdog that resets it. */
+/* The emulated board does not use its watchdog, so nothing resets it. */
 void processor_fault(void)
 {
     for (;;)

@@ -11,8 +11,8 @@
    not exceed 48 MHz, although this port does not use it. */
 enum { PLLM = HSE_MEGAHERTZ, PLLN = 336, PLLQ = 7 };
 
-/* A crystal starts within 10 ms, and the PLL locks within 0.3 ms. Each round of the wait takes at least 8 of the 16
-   cycles in a us, so the limit is 20 ms or more. */
+/* A crystal starts within 10 ms, and the PLL locks within 0.3 ms. Each round of the wait takes at least 8
+   cycles, which are 0.5 us at 16 MHz, so the limit is 20 ms or more. */
 enum { ROUNDS = 40000 };
 
 /* The waits have a limit, so that a board without a crystal still answers and reports the fault. The waits can be

@@ -7,14 +7,15 @@
 #include "pins.h"
 #include "registers.h"
 
-/* How old the sample that was read last may become before sensors_poll reads another one, us. */
+/* Largest age of the newest sample that was read, us. If it is older, sensors_poll reads another one. */
 enum { REFRESH = 10000 };
 
 /* How old a sample may be when the core asks for it, us. */
 enum { USABLE = 50 };
 
 static uint32_t sampled_at;
-/* The time of the sample that was read last, us. A line that only carries noise begins samples that nobody reads. */
+/* The time of the sample that was read last, us. It may be before sampled_at: on a line with noise, a zero byte can
+   cause a sample that nobody reads. */
 static uint32_t read_at;
 /* Whether nobody has read the last sample. */
 static bool unread;

@@ -12,7 +12,7 @@ struct pin {
 
 static const struct pin pins[] = {PINS(PIN_ENTRY)};
 
-/* Replaces the bits of one pin in a register with `width` bits for each pin. */
+/* Sets the bits of one pin to `value`. The register has `width` bits for each pin. */
 static void set_field(volatile uint32_t *address, unsigned pin, unsigned width, uint32_t value)
 {
     uint32_t mask = ((1u << width) - 1) << width * pin;

@@ -32,7 +32,7 @@ enum pin_pull { NO_PULL = 0, PULL_UP = 1, PULL_DOWN = 2 };
     PIN(C, 2, OUTPUT, 0, PULL_DOWN, DIRECTION_3, "output", "direction of driver 3; high is positive")                  \
     PIN(C, 3, OUTPUT, 0, PULL_DOWN, DIRECTION_4, "output", "direction of driver 4; high is positive")                  \
     PIN(C, 4, OUTPUT, 0, PULL_DOWN, ENABLE, "output", "enable of all four drivers; 4.7 kOhm to ground")                \
-    PIN(A, 6, ALTERNATE, 3, PULL_UP, STOP, "TIM8_BKIN", "emergency stop: low is closed, high or open stops")           \
+    PIN(A, 6, ALTERNATE, 3, PULL_UP, STOP, "TIM8_BKIN", "emergency stop contact: low runs, high or open stops")        \
     PIN(C, 10, INPUT, 0, PULL_UP, DRIVER_FAULT, "input", "fault outputs of the drivers, open drain; low is a fault")   \
     PIN(C, 11, INPUT, 0, PULL_DOWN, SUPPLY_GOOD, "input", "motor supply; high is good, low or open is a fault")        \
     PIN(B, 13, ALTERNATE, 5, NO_PULL, GAUGE_CLOCK, "SPI2_SCK", "converter, SCLK")                                      \

@@ -19,7 +19,8 @@ void serial_start(uint32_t megahertz)
 {
     RCC->APB2ENR |= RCC_APB2ENR_USART1;
     (void)RCC->APB2ENR;
-    /* The divider has four binary places, so the register holds the bus cycles in a bit (30.3.4). */
+    /* A bit takes 16 times the divider in bus cycles, and the register holds the divider with four binary places. So
+       the register holds the bus cycles of a bit (30.3.4). */
     USART1->BRR = (megahertz * 1000000u + BAUD / 2u) / BAUD;
     USART1->CR1 = SERIAL_RUN;
     NVIC_IPR[INTERRUPT_USART1] = PRIORITY;

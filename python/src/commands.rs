@@ -56,8 +56,8 @@ impl Hand {
 
     /// Sends the stiffness of a contact. The shape of the stiffness selects the type of the contact: a number, N/cm,
     /// with a normal for a frictionless point; (3, 3), N/cm, for a hard finger; (4, 4) with a normal for a soft finger;
-    /// (6, 6) for any contact. Row 3 and column 3 of the (4, 4) matrix belong to the rotation about the normal,
-    /// N cm/rad. The normal is in the finger's frame.
+    /// (6, 6) for any contact. In the (4, 4) matrix, row 3 and column 3 belong to the rotation about the normal:
+    /// N/rad, and N cm/rad on the diagonal. The normal is in the finger's frame.
     #[pyo3(signature = (finger, stiffness, normal=None))]
     fn send_contact(
         &self,

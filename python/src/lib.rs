@@ -43,8 +43,8 @@ mod _sun2xp {
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("version", env!("CARGO_PKG_VERSION"))?;
         fork::watch(module.py())?;
-        // Python runs the handlers in the reverse order of their registration. The program registers its handlers after
-        // this one, so they run before it and can still use the hands.
+        // Python runs the handlers in the reverse order of their registration. Handlers that the program registers
+        // after the import run before this one, and can still use the hands.
         module.py().import("atexit")?.call_method1("register", (module.getattr("close_all")?,))?;
         Ok(())
     }

@@ -37,7 +37,7 @@ struct Messages {
 static MESSAGES: Mutex<Messages> =
     Mutex::new(Messages { waiting: VecDeque::new(), sent: 0, taken: 0, logged: 0, open: false });
 
-/// Signals each change of `MESSAGES`.
+/// Signals that a message has come, that messages were logged, or that `open` became false.
 static CHANGED: Condvar = Condvar::new();
 
 /// Begins to take messages for the thread of Python, which calls `next_message` until it returns None.

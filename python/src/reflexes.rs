@@ -89,7 +89,7 @@ fn value<'py>(tuple: &Bound<'py, PyTuple>, place: usize) -> PyResult<Bound<'py, 
     tuple.get_item(place)
 }
 
-/// Returns the kind of event with the number of a member of `EventKind`.
+/// Returns the kind of event with this number, which is the value of a member of the Python class `EventKind`.
 fn event(number: &Bound<'_, PyAny>) -> PyResult<EventKind> {
     let text = || format!("there is no kind of event {number}: use the members of sun2xp.EventKind");
     let found = EventKind::from_number(arguments::in_range(number, number.extract(), text)?);

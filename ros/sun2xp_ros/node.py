@@ -83,7 +83,7 @@ class HandNode(Node):
         self._described = [
             FingerDiagnostics(self.hand, finger, f"{self._prefix}finger{finger}") for finger in self.fingers
         ]
-        #: The newest measurement of each finger in a message, and the mean rates of that message.
+        #: For each finger: the measurement that was published last, and the mean rates that were published with it.
         self._before: Dict[int, Tuple[sun2xp.JointState, Any]] = {}
         self._faults = [described.fault() for described in self._described]
         self._takes = Commands(self, self.hand, self.fingers, self._prefix)

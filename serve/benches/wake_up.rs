@@ -219,7 +219,7 @@ impl Drop for Clients {
     }
 }
 
-/// Runs a client until it is killed, or until its hand refuses a call.
+/// Runs a client until it is killed. The owner also ends if its hand refuses a call.
 fn client(role: &str, endpoint: &str, folder: Option<&str>) -> Result<(), Failure> {
     match role {
         "owner" => {

@@ -26,8 +26,8 @@ pub enum ServeError {
     },
     /// An endpoint in `listen` or `connect` that other machines can reach is configured without TLS.
     #[error(
-        "{endpoint} needs TLS, because it is not an address that only this machine can reach: make certificates with \
-         `sun2xp serve --make-certificates FOLDER --server NAME --client NAME`, name them in [serve.tls], and use \
+        "{endpoint} needs TLS, because other machines can reach this address: make certificates with `sun2xp \
+         serve --make-certificates FOLDER --server NAME --client NAME`, name them in [serve.tls], and use \
          tls/HOST:PORT; or use tcp/127.0.0.1:PORT"
     )]
     NotLoopback {

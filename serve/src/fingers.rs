@@ -171,7 +171,8 @@ impl Fingers {
             }
             if let Destination::Path { end, until } = goal.destination {
                 if now >= until && (report.reference.joints - end).amax() < AT_END {
-                    // From now on, the end of the path is an ordinary destination, to which the whole way was sent.
+                    // From now on, the end of the path is an ordinary destination, and the whole way to it has been
+                    // sent.
                     (self.goals[index].destination, self.goals[index].whole) = (Destination::Joints(end), true);
                 } else if self.admitted(number, &goal, &report, &report.reference.joints) < 1.0 {
                     // The finger lags behind its path. It leaves the path and moves straight to the last pose.

@@ -44,8 +44,8 @@ pub struct Goal {
     /// Numbers of the finger's recoveries and orders (see [`FingerReport`]) when this goal was set. A later recovery or
     /// order cancels the goal.
     phase: (u32, u32),
-    /// `FingerReport::springs` when the goal was sent last. This number rises when the finger begins anew to follow set
-    /// points, for example when it is caught.
+    /// `FingerReport::springs` when the goal was sent last. This number rises when a new spring phase begins, for
+    /// example when the finger is caught.
     springs: u32,
 }
 

@@ -107,9 +107,9 @@ impl Publishing {
         }
     }
 
-    /// Returns false for an arrival at a place that is not the owner's destination. Such a place is either a set point
-    /// on the way, which the bound of the lead (see [`crate::lead`]) makes, or the place where the finger was caught
-    /// (see [`crate::silence`]).
+    /// Returns false for an arrival at a place that is not the owner's destination. Such a place is either an
+    /// intermediate set point, which the server sends if the destination is too far ahead of the finger (see
+    /// [`crate::lead`]), or the place where the finger was caught (see [`crate::silence`]).
     fn is_of_destination(&self, event: &Event) -> bool {
         if event.kind != EventKind::Arrived {
             return true;
@@ -119,7 +119,8 @@ impl Publishing {
         let [first, second, third, _] = event.values;
         // The goal is read after the event, because the owner may have sent a new destination since the State was made.
         let goal = self.shared.desk.lock().goals()[index];
-        // The bound of the lead can make set points that are nearly at the destination.
+        // An intermediate set point can be within the tolerance of the destination. So an arrival counts only if the
+        // whole way has been sent.
         (goal.whole || !goal.is_commanded()) && goal.is_reached(&Vector3::new(first, second, third), tolerance)
     }
 

@@ -198,7 +198,8 @@ fn take(shared: &Shared, request: &Request, client: &ClientName, epoch: u64) -> 
         Ok(number) => Ok((number, desk.stops())),
         Err(other) => {
             let text = format!(
-                "{other} owns the hand: wait until it releases the hand, or take the hand over (remote.take_over)"
+                "{other} owns the hand: wait until it releases the hand, or take the hand over (remote.take_over, or \
+                 take_over=True in Python)"
             );
             Err(desk.answer(Code::Owned, text, 0, time))
         }

@@ -112,7 +112,8 @@ impl PortError {
         }
     }
 
-    /// Returns the errno that the system reported, or the closest one if it reported none.
+    /// Returns the errno of the error: that of the system, with two exceptions. If the device of an open port
+    /// disappears, errno is EIO, whatever the driver reports. If the path is a folder, errno is ENOTTY, not EISDIR.
     pub fn errno(&self) -> i32 {
         match self {
             PortError::Missing(_) => libc::ENOENT,
@@ -195,7 +196,7 @@ fn short_remedy(source: &io::Error) -> &'static str {
         Some(libc::EMFILE) => "close files of this process",
         Some(libc::ENFILE) => "end other programs",
         Some(libc::ENOMEM) => "free memory",
-        Some(libc::EPERM | libc::ENOSYS) => "forbidden by a sandbox: permit it there",
+        Some(libc::EPERM | libc::ENOSYS) => "permit it in the sandbox or container",
         _ => "check the adapter",
     }
 }

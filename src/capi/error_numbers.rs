@@ -29,7 +29,8 @@ pub const SUN2XP_ERROR_TOO_MANY: c_int = 6;
 /// An argument makes no sense: null, NaN, no such finger, a struct that is too small.
 pub const SUN2XP_ERROR_ARGUMENT: c_int = 7;
 
-/// An argument is outside the limits of the finger: out of reach, too fast, too stiff.
+/// An argument is outside the limits of the finger (out of reach, too fast, too stiff), or it is a matrix that cannot
+/// be the stiffness of a spring.
 pub const SUN2XP_ERROR_LIMIT: c_int = 8;
 
 /// The finger has stopped because of a fault.

@@ -94,8 +94,8 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
             if left.is_some_and(|left| left.is_zero()) {
                 return 0;
             }
-            // The thread of this call only waits. The planner's thread takes the event, so that no event is lost if a
-            // signal handler jumps out of the wait.
+            // `delegated` waits in another thread. The planner's own thread takes the event, so that no event is lost
+            // if a signal handler jumps out of the wait.
             let wait = move || match hand_table::remote(hand)? {
                 Some(remote) => Ok(remote.wait_for_event(left)?),
                 None => hand_table::events(hand)?.wait(hand, left).map(|_| ()),

@@ -44,7 +44,7 @@ use std::ffi::c_int;
 pub unsafe extern "C" fn sun2xp_send_tip(hand: *mut sun2xp_hand, finger: c_int, tip: *const f64) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_send_tip", hand, || {
-        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array that the manual describes.
         let tip = unsafe { load::<f64, 3>(tip, "tip") }?;
         let command = || FingerCommand::new(finger).tip(tip);
         hand_table::send(hand, |hand| hand.send_tip(finger, tip), command)

@@ -55,9 +55,9 @@ pub struct sun2xp_set_point {
 /// refused, no finger gets its command.
 ///
 /// If a servo is so late that it skips this period, its finger follows in its next cycle. With hand.clock =
-/// "board" the periods of the threads follow different clocks, and the difference between two of these clocks
-/// changes slowly. In the time in which it changes by one period, at most about one group takes effect one
-/// period later in a finger than in the other fingers.
+/// "board" the cycles of a thread follow the clock of its board, but the periods are counted by the host's
+/// clock. So the cycles skip or repeat a period now and then, and a group may then take effect one period
+/// later in the fingers of this thread.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
@@ -122,8 +122,8 @@ pub unsafe extern "C" fn sun2xp_send_group(
 /// for each finger and its own set point. The fingers may arrive or settle in different cycles. A finger that
 /// an object blocks settles without arriving. If the set point is a position of the tip, the finger arrives
 /// at the joint angles that were computed for it. If a reflex has replaced the set point that was sent last,
-/// the condition must hold for the set point of the reflex. The same applies if the finger ignored the set
-/// point because a reflex inhibits set points for some time. The wait then returns only after this time. If
+/// the condition must hold for the set point of the reflex. This is also so if the finger ignored a later set
+/// point because the reflex inhibits set points for some time. The wait then returns only after this time. If
 /// the set point that was sent last has expired, the condition must be true for the pose in which the finger
 /// has stayed since then. The event SUN2XP_EVENT_REFLEX_FIRED reports the reaction of a reflex, and the event
 /// SUN2XP_EVENT_EXPIRED reports that a set point has expired. Other calls work during the wait. sun2xp_close

@@ -7,7 +7,7 @@
 use std::ptr::without_provenance_mut;
 
 /// An open hand. A program has only pointers to it.
-// The name of the header.
+// The C header gives the type this name.
 #[allow(non_camel_case_types)]
 #[repr(C)]
 pub struct sun2xp_hand {
@@ -46,8 +46,9 @@ impl Handle {
         Self(TAG << (usize::BITS - TAG_BITS) | number << PLACE_BITS | place)
     }
 
-    /// Inlined into the exported functions: a call that might unwind would give their frames a landing pad, at which
-    /// the unwinder ends the process if the thread is cancelled asynchronously.
+    /// Inlined into the exported functions. If they called this function instead, the compiler would assume that the
+    /// call can unwind, and would give their frames a landing pad. If the thread is cancelled asynchronously, the
+    /// unwinder ends the process at a landing pad.
     #[inline(always)]
     pub fn of(pointer: *const sun2xp_hand) -> Self {
         Self(pointer.addr())
@@ -67,7 +68,8 @@ impl Handle {
         without_provenance_mut(self.0)
     }
 
-    /// The place in the table; none if the library never gives out such a handle.
+    /// The place that the handle names; none if it does not have the tag of a handle. The place may be beyond the
+    /// table.
     pub fn place(self) -> Option<usize> {
         (self.0 >> (usize::BITS - TAG_BITS) == TAG).then_some(self.0 & ((1 << PLACE_BITS) - 1))
     }

@@ -123,8 +123,8 @@ pub(super) unsafe fn load(number: c_int, io: *const sun2xp_io) -> Result<HandIo,
             return Err(Refusal::IoWatchdog { finger, seconds: table.shortest_watchdog });
         }
     }
-    // The functions are checked last, because the entry of sun2xp_open_io lists a missing function after the other
-    // reasons that this function finds.
+    // The callbacks are checked last, because the manual of sun2xp_open_io lists a missing callback after the other
+    // errors that are found here.
     for (loaded, table) in loaded.iter_mut().zip(&by_finger) {
         if let Some(table) = table {
             *loaded = Some(Box::new(from_table(table)?));

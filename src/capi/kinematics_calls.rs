@@ -75,7 +75,7 @@ pub unsafe extern "C" fn sun2xp_jacobian(
     let hand = Handle::of(hand);
     guarded("sun2xp_jacobian", hand, || {
         non_null(jacobian, "jacobian", Wanted::Array(9))?;
-        // SAFETY: by the contract in the manual, `position` is null or points to the array of its description.
+        // SAFETY: by the contract in the manual, `position` is null or points to the array that the manual describes.
         let joints = if position.is_null() { None } else { Some(unsafe { load::<f64, 3>(position, "position") }?) };
         let computed = hand_table::with(hand, |hand| hand.jacobian(finger, joints))?;
         // SAFETY: `jacobian` is not null, as checked above, and by the contract in the manual it has room for nine
@@ -242,7 +242,7 @@ pub unsafe extern "C" fn sun2xp_palm_pose(hand: *mut sun2xp_hand, finger: c_int,
 pub unsafe extern "C" fn sun2xp_set_gravity(hand: *mut sun2xp_hand, gravity: *const f64) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_set_gravity", hand, || {
-        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array that the manual describes.
         let gravity = unsafe { load::<f64, 3>(gravity, "gravity") }?;
         hand_table::command(hand, |hand| hand.set_gravity(gravity))
     })

@@ -6,7 +6,7 @@
 //! (EFAULT), exiting process (ESHUTDOWN), no hand (ENODEV), a struct whose size is too small (EINVAL), then the reasons
 //! that the hand finds: finger number, numbers that are not finite, symmetry and eigenvalues, limits, faulted finger.
 //! The lists in the manual have the same order, without ESHUTDOWN. A slow call checks for free memory (ENOMEM) after
-//! the check for a forked child.
+//! the check for a forked child. The manual names the exceptions.
 
 // A C interface needs raw pointers.
 #![allow(unsafe_code)]

@@ -88,7 +88,7 @@ pub unsafe extern "C" fn sun2xp_object(hand: *mut sun2xp_hand, object: *mut sun2
 pub unsafe extern "C" fn sun2xp_push(hand: *mut sun2xp_hand, finger: c_int, force: *const f64) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_push", hand, || {
-        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array that the manual describes.
         let force = unsafe { load::<f64, 3>(force, "force") }?;
         hand_table::command(hand, |hand| hand.push_simulated(finger, force))
     })

@@ -24,8 +24,8 @@ pub(super) enum Source {
     /// The file that OpenHand finds. If OpenHand finds none, the hand has the default configuration, without a file.
     Found,
     File(PathBuf),
-    /// A text that is possibly not UTF-8. It is checked when it is read, because the manual lists EMFILE before the
-    /// EINVAL of an unusable configuration.
+    /// A text that is possibly not UTF-8. It is checked only when it is read, after the check of the number of open
+    /// hands: of several errors, a call reports the one that the manual lists first, and EMFILE comes before EINVAL.
     Text(Vec<u8>),
 }
 

@@ -129,9 +129,9 @@ pub unsafe extern "C" fn sun2xp_open_named(name: *const c_char, hand: *mut *mut 
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
-///   ENODEV   no such hand, or another thread has begun to close it (the call does not wait for the end)
-///   EBUSY    the call was made in a callback of sun2xp_on_event, of this hand or of another one, while
-///            another thread was closing this hand
+///   ENODEV   no such hand, or another thread is closing it already (the call does not wait for the end)
+///   EBUSY    only in a callback of sun2xp_on_event, of this hand or of another one: another thread is just
+///            beginning to close this hand, or the process exits
 ///
 /// Threads: any. Waits until the callback of this hand has returned, unless the call was made in a callback
 /// of sun2xp_on_event, of this hand or of another one.

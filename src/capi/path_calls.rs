@@ -153,7 +153,7 @@ pub unsafe extern "C" fn sun2xp_send_position_for(
 ) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_send_position_for", hand, || {
-        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array that the manual describes.
         let joints = unsafe { load::<f64, 3>(position, "position") }?;
         hand_table::command(hand, |hand| -> Result<(), HandError> {
             hand.send_position_for(finger, joints, valid(seconds)?)

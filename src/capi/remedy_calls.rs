@@ -3,8 +3,8 @@
 use crate::finger::Action;
 use std::fmt::{self, Display, Formatter};
 
-/// The interface to which a call belongs. A remedy names the call of the same interface, if that interface has a call
-/// for the action. Otherwise it names the call with a handle.
+/// The interface to which a call belongs. A remedy names a call of the same interface as the refused call, if this
+/// interface has one for the action. Otherwise it names the call with a handle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Interface {
     /// The five calls of 1990.

@@ -94,8 +94,8 @@ fn file_name() -> String {
     format!("libsun2xp_remote.so.{SUN2XP_ABI_VERSION}")
 }
 
-/// libsun2xp_remote.so is in this subfolder of the folder of libsun2xp. It has the soname of libsun2xp, so it must not
-/// be in a folder that the system's loader searches.
+/// libsun2xp_remote.so is in this subfolder of the folder of libsun2xp. It has the soname of libsun2xp, so it is not
+/// installed in a folder that the loader searches by default: there it could take the place of libsun2xp.
 const FOLDER: &str = "sun2xp-remote";
 
 /// Loads the library from the place where it is installed. If it is not there, the loader searches for it. The library

@@ -52,7 +52,7 @@ pub unsafe extern "C" fn sun2xp_send_joint_stiffness(
 ) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_send_joint_stiffness", hand, || {
-        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array that the manual describes.
         let rows = unsafe { load_rows(stiffness, "stiffness") }?;
         hand_table::command(hand, |hand| hand.send_joint_stiffness(finger, rows))
     })
@@ -90,7 +90,7 @@ pub unsafe extern "C" fn sun2xp_send_joint_stiffness(
 pub unsafe extern "C" fn sun2xp_send_joint_torque(hand: *mut sun2xp_hand, finger: c_int, torque: *const f64) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_send_joint_torque", hand, || {
-        // SAFETY: by the contract in the manual, the pointer is null or points to the array of its description.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array that the manual describes.
         let torque = unsafe { load::<f64, 3>(torque, "torque") }?;
         hand_table::command(hand, |hand| hand.send_joint_torque(finger, torque))
     })

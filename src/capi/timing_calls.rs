@@ -114,7 +114,8 @@ pub unsafe extern "C" fn sun2xp_timing(
         let read = |hand: &Hand| {
             // Reports a wrong finger number before a wrong stage.
             hand.report(finger)?;
-            // Times are read before the losses, so that `count` never exceeds `cycles`.
+            // Times are read before the losses, so that `count` does not exceed `cycles`. Just after
+            // sun2xp_reset_timing it can exceed `cycles` by 1.
             let times = hand.timing(finger, cycle_stage(stage).ok_or(HandError::NoSuchStage(stage))?)?;
             let losses = hand.losses(finger)?;
             Ok(to_c(stage, &times, &losses))

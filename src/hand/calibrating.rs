@@ -122,9 +122,9 @@ impl Calibrating {
         let finger = self.finger;
         let report = hand.dispatcher.report(finger)?;
         if report.recoveries != self.recoveries {
-            // The finger has faulted and recovered between two polls, so this calibration is over. If the report has a
-            // verdict, the verdict belongs to another calibration. Without this return, progress would be reported
-            // forever. Results that were found before the fault are in force.
+            // The finger has faulted and recovered between two polls, so this calibration is over. The recovery may
+            // have discarded the order of this calibration before the servo took it. Then the report still has the
+            // verdict of an earlier calibration. Results that an earlier call of `poll` has put in force stay in force.
             return Err(HandError::Interrupted(finger));
         }
         if report.orders != self.order {
@@ -163,14 +163,15 @@ impl Calibrating {
         let mut configuration = hand.configuration.write();
         let mut changed = configuration.clone();
         found.apply(&mut changed.fingers[finger.index()]);
-        // This check permits a bound below the initial stiffness, which an earlier adjustment may have set.
+        // An earlier adjustment may have set the bound below the initial stiffness. This check permits that.
         changed.check()?;
         let adjustable = Adjustable::new(&changed, finger).map_err(|unusable| refusal(finger, unusable))?;
         let limp = self.stays_limp;
         let to_store = Found::by_calibration(&found, finger, &changed);
         let member = hand.dispatcher.member(finger)?;
         self.order = hand.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
-            // Moment arms and tendon stiffness determine the ranges of torque and damping, and the force of the tip.
+            // The results can change moment arms and tendon stiffness. The checks of set points depend on these values,
+            // so they are constructed again.
             let mut checks = member.admission.write();
             let order = Self::ordered(finger, member.mailbox.restart(adjustable, limp))?;
             *checks = Admission::new(&changed, finger);

@@ -108,7 +108,7 @@ pub enum HandError {
         /// What is wrong with the port or the board.
         source: LinkError,
     },
-    /// The board that the configuration names by its unique number was not found.
+    /// The board that the configuration names by its unique number was not found, or was found at several ports.
     #[error(
         "finger {finger}: the board with the number {number} of finger.{finger}.board was {searched} {patterns}. \
          Found: {found}. Connect exactly one board with this number and switch it on, correct finger.{finger}.board, \
@@ -180,11 +180,11 @@ pub enum HandError {
         /// The cause and the remedy.
         obstacle: Obstacle,
     },
-    /// A calibration was interrupted. Its results are in force if they had been found before.
+    /// A calibration was interrupted. Its results stay in force if they were in force already.
     #[error(
         "the calibration of finger {0} was interrupted, because the finger faulted and recovered, or because the hand \
-         is being closed. If the calibration had found its results before, they are in force. Otherwise the previous \
-         calibration is in force. Calibrate the finger again"
+         is being closed. If its results were already in force, they stay in force. Otherwise the previous calibration \
+         is in force. Calibrate the finger again"
     )]
     Interrupted(FingerNumber),
     /// The finger is busy.
@@ -235,7 +235,7 @@ pub enum HandError {
     /// The cycle is not in the black box.
     #[error(
         "cycle {cycle} of finger {finger} is not in the black box, which contains the cycles of the last two seconds: \
-         request one of these cycles, or 0 for the newest"
+         request one of these cycles, or the newest one"
     )]
     NoRecord {
         /// The finger.

@@ -22,11 +22,12 @@ pub struct FingerTip {
     /// Measured tendon tensions, N.
     pub tensions: [f64; 4],
     /// Stiffness of the tip in the present pose, in the finger's frame, N/cm. It is the part of Kx, or of the joint
-    /// stiffness, that the present pose admits. Three other springs add to it: a rotational stiffness of the contact,
-    /// the soft joint limits, and the spring of joint 0 while the tip is near the axis of this joint. (The rotational
-    /// stiffness adds, because a force that displaces the tip also turns it.) After a change of Kx, this field has its
-    /// new value in the next cycle, although the stiffness of the finger itself changes over 50 ms. The stiffness is
-    /// zero in a direction that the joints do not feel, and while the finger is not in the stage `Running`.
+    /// stiffness, that the present pose admits. The field also contains the effect of three other springs: a rotational
+    /// stiffness of the contact, the soft joint limits, and the spring of joint 0 while the tip is near the axis of
+    /// this joint. (The rotational stiffness contributes, because a force that displaces the tip also turns it.) After
+    /// a change of Kx, this field has its new value in the next cycle, although the stiffness of the finger itself
+    /// changes over 50 ms. The stiffness is zero in a direction that the joints do not feel, and while the finger is
+    /// not in the stage `Running`.
     pub stiffness: [[f64; 3]; 3],
     /// Force on the touched object in the finger's frame, N, without the friction, weight and acceleration of the
     /// finger, and without constant errors of the gauges: from the momentum observer of docs/contact.md. It is zero

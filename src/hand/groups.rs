@@ -128,10 +128,10 @@ impl Hand {
     /// threads serve the fingers. The period begins at most two periods after the call. Either every command is sent,
     /// or none is. A single command takes effect in the next cycle of its finger.
     ///
-    /// If a servo is so late that it skips this period, its fingers follow in their next cycle. With
-    /// `hand.clock = "board"` the periods of the threads follow different clocks, and the difference between two of
-    /// these clocks changes slowly. In the time in which it changes by one period, at most about one group takes effect
-    /// one period later in a finger than in the other fingers.
+    /// If a servo is so late that it skips this period, its fingers follow in their next cycle. With `hand.clock` set
+    /// to "board", the cycles of a thread follow the clock of its board, but the periods are counted by the host's
+    /// clock. So the cycles skip or repeat a period now and then, and a group may then take effect one period later in
+    /// the fingers of this thread.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if a finger has two commands, if a finger refuses its command, if a

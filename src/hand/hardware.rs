@@ -86,7 +86,8 @@ impl Hardware {
 fn fit(gauge: &mut ConfiguredGauge, unit: f64) -> Result<(), Unusable> {
     if TensionScale::new(unit).is_none() {
         let reason = format!(
-            "the tension_unit of the hardware that the program provides is {unit} N: set it to a finite number above 0"
+            "the hardware that the program provides has the tension_unit {unit} N: set it, in struct sun2xp_io or \
+             IoProperties, to a finite number above 0"
         );
         return Err(Unusable { key: "gauge.newton_per_count", reason });
     }
@@ -128,8 +129,8 @@ pub(super) fn warn_of_lost_zero(number: FingerNumber, finger: &ConfiguredFinger,
     }
 }
 
-/// Prints a notice if hardware of the program, which was opened without a reference for its encoder counts, still has
-/// none when it starts for a recovery. The library cannot see whether the hardware has continued its counts.
+/// Prints the notice for hardware of the program that was opened without a reference for its encoder counts, and still
+/// has none when it starts for a recovery. The library cannot see whether the hardware has continued its counts.
 pub(super) fn warn_of_doubtful_zero(number: FingerNumber) {
     print_notice(&format!(
         "the hardware of finger {number} starts again without a reference for its encoder counts \

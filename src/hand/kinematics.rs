@@ -110,7 +110,7 @@ fn finite(admission: &Admission, joints: [f64; 3]) -> Result<Vector3<f64>, HandE
     Ok(Vector3::from(joints))
 }
 
-/// Returns `rows[row][column]`.
+/// Returns the matrix as an array of its rows.
 pub(super) fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
     matrix.transpose().into()
 }

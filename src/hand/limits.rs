@@ -69,7 +69,8 @@ mod tests {
         assert!(hand.limits(4).is_err());
     }
 
-    /// Most of the time of an adjustment lies between its beginning and its change of the bound of Kx.
+    /// A read that did not wait for the whole adjustment could read one value from before it and the other from after
+    /// it. Most such reads would find the old bound of Kx, because an adjustment changes the bound near its end.
     #[test]
     fn limits_that_are_read_during_an_adjustment_belong_to_one_moment() {
         let mut configuration = Configuration::default();

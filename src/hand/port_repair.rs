@@ -240,7 +240,8 @@ impl KnownBoard {
         if status.has(Status::ZERO_VALID) {
             return Ok(configured);
         }
-        // Hardware of the program that has lost its counts since it was opened is not *configured*.
+        // If hardware of the program has lost its counts since open, the bit *configured* of its status is 0, even
+        // after a successful `agree`.
         if self.zero_valid || self.restarts > 0 || self.has_io && !status.has(Status::CONFIGURED) {
             return Err(self.faulted(Fault::of(FaultKind::ZeroLost, f64::from(status.0))));
         }

@@ -2,10 +2,10 @@
 //! when the hand is opened.
 //!
 //! The servo releases its link when every finger on it has faulted and all Stop frames are sent, because opening a port
-//! and shaking hands take too long for a servo. A recovery call opens the port and shakes hands on an ordinary
-//! thread. If `finger.reconnect` is set, a separate thread already tries to open a failed port before the call. Only a
-//! recovery call configures boards, because that ends a hold. If another finger of the port runs, the servo keeps the
-//! link and relays the handshake of the recovering finger.
+//! and shaking hands take too long for a servo. A recovery call opens the port and shakes hands on an ordinary thread.
+//! If `finger.reconnect` is set, a separate thread already tries to open a failed port before the call. Only a recovery
+//! call configures boards, because a Configure ends the end state "hold" of a board. If another finger of the port
+//! runs, the servo keeps the link and relays the handshake of the recovering finger.
 
 use crate::finger::{FingerReport, Mailbox, Stage, StopCounts, stop_calls};
 use crate::hand::reconnection::RepairablePort;

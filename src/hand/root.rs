@@ -227,14 +227,15 @@ impl Hand {
         self.simulated.with_finger(finger, push).ok_or(HandError::NotSimulated(finger))
     }
 
-    /// Requests the end state of every finger. Like [`Hand::end`], this function takes no lock and frees no memory.
+    /// Requests the end state of every finger. Like [`Hand::end`], this function waits for no lock and frees no
+    /// memory.
     pub(crate) fn request_end(&self) {
         self.dispatcher.members().iter().for_each(|member| member.mailbox.close());
     }
 
     /// Requests the end state of every finger, and waits until all fingers have reached it or the time limit is over.
-    /// This function takes no lock and frees no memory, so it can be called when the process is about to end, even in
-    /// a signal handler. The hand cannot be used afterwards.
+    /// This function waits for no lock and frees no memory, so it can be called when the process is about to end, even
+    /// in a signal handler. The hand cannot be used afterwards.
     pub fn end(&self) {
         self.request_end();
         let members = self.dispatcher.members();

@@ -14,7 +14,7 @@ impl Hand {
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if an angle is NaN, infinite or beyond a joint limit, or if the
-    /// finger is faulted.
+    /// finger is faulted. With `hand.out_of_range = "clamp"`, a value outside its limits is clamped instead.
     pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;
@@ -24,8 +24,9 @@ impl Hand {
         sent.map_err(|fault| HandError::Faulted { finger, fault })
     }
 
-    /// Sends desired joint angles as [`Hand::send_position`] does. They are valid for the time `valid`; none for the
-    /// configured time. If nothing else is sent within this time, the finger reacts as `[finger.motion]` says.
+    /// Sends desired joint angles as [`Hand::send_position`] does. They are valid for the time `valid`, or for the
+    /// configured time if `valid` is none. If nothing else is sent within this time, the finger reacts as
+    /// `[finger.motion]` says.
     ///
     /// # Errors
     /// Returns the errors of [`Hand::send_position`].
@@ -58,7 +59,8 @@ impl Hand {
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if the stiffness has
     /// an entry that is NaN or infinite, is not symmetric, has a negative eigenvalue, is above the bound, or is too
-    /// high for the damping that was sent last.
+    /// high for the damping that was sent last. With `hand.out_of_range = "clamp"`, a value outside its limits is
+    /// clamped instead.
     pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, (Replaced::Stiffness, Validity::default()), |admission| {
@@ -101,7 +103,8 @@ impl Hand {
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if the stiffness is
     /// above the bound, or is too high for the damping that was sent last. A rotational stiffness k, N cm/rad, counts
-    /// as k / l2^2 N/cm, because the last joint moves the tip by l2, the length of the last link, per rad.
+    /// as k / l2^2 N/cm, because the last joint moves the tip by l2, the length of the last link, per rad. With
+    /// `hand.out_of_range = "clamp"`, a value outside its limits is clamped instead.
     pub fn send_contact(&self, finger: i32, contact: Contact) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, (Replaced::Stiffness, Validity::default()), |admission| {
@@ -121,7 +124,8 @@ impl Hand {
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if the stiffness has
     /// an entry that is NaN or infinite, is not symmetric, has a negative eigenvalue, is above the bound, or is too
-    /// high for the damping that was sent last.
+    /// high for the damping that was sent last. With `hand.out_of_range = "clamp"`, a value outside its limits is
+    /// clamped instead.
     pub fn send_joint_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, (Replaced::Stiffness, Validity::default()), |admission| {
@@ -139,7 +143,8 @@ impl Hand {
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a torque is NaN or
-    /// infinite, or more than the tendons can make.
+    /// infinite, or more than the tendons can make. With `hand.out_of_range = "clamp"`, a value outside its limits is
+    /// clamped instead.
     pub fn send_joint_torque(&self, finger: i32, torque: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, (Replaced::Other, Validity::default()), |admission| {
@@ -157,7 +162,8 @@ impl Hand {
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if the ratio is NaN,
-    /// infinite or outside the range for the stiffness that was sent last.
+    /// infinite or outside the range for the stiffness that was sent last. With `hand.out_of_range = "clamp"`, a value
+    /// outside its limits is clamped instead.
     pub fn send_damping(&self, finger: i32, ratio: f64) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, (Replaced::Other, Validity::default()), |admission| {

@@ -63,7 +63,7 @@ impl Hand {
             torque_scale: report.cycle.torque_scale,
             stiffness_scale: report.cycle.stiffness_scale,
             calibration: match report.calibration {
-                // A fault ends a calibration without another verdict.
+                // If a fault ends a calibration, its verdict stays `InProgress`. So the stage is checked too.
                 Some(Verdict::InProgress(progress)) if report.stage == Stage::Calibrating => progress.part,
                 _ => 0.0,
             },

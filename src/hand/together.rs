@@ -9,8 +9,8 @@ use crate::model::FingerNumber;
 use crate::model::configuration::FINGERS;
 use std::time::Duration;
 
-/// A path for a finger: the number of the finger, the poses, and how long the path stays valid after its end; none for
-/// the configured time.
+/// A path for a finger: the number of the finger, the poses, and how long the path stays valid after its end (`None`:
+/// for the configured time).
 pub(super) type PathOfFinger<'a> = (i32, &'a [PathPose], Option<Duration>);
 
 /// What one finger is to get.
@@ -136,7 +136,7 @@ impl Hand {
     }
 
     /// Sends commands and paths that were admitted. `changes` are the changes that the commands make to the set points.
-    /// No planner can change the fingers between the first check and the last sending.
+    /// No planner can change a finger between its check and the last sending, and no limit can change meanwhile.
     fn send_admitted<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
         &self,
         wanted: &[Wanted<'_>; FINGERS],
@@ -150,7 +150,8 @@ impl Hand {
             let index = number.index();
             let faulted = |fault| HandError::Faulted { finger: number, fault };
             let command = wanted[index].command.zip(changes[index].take());
-            // The fault of a later finger is reported instead of a refusal, as for a command of a single finger.
+            // A fault has precedence over a refusal, as for a command of a single finger. So a refusal is returned only
+            // after all fingers were prepared.
             if let Some(AdmittedPath { plan, when, damping }) = &plans[index] {
                 let mailbox = &self.dispatcher.member(number)?.mailbox;
                 let command = command.map(|(command, change)| (command.replaced(), change));

@@ -28,7 +28,10 @@ pub struct Contact(Matrix6<f64>);
 #[non_exhaustive]
 pub enum ContactError {
     /// K, the normal, the selection S or the product S^T K S contains NaN or infinity.
-    #[error("an entry of the stiffness or of the normal is {0}: every entry must be a finite number")]
+    #[error(
+        "an entry of the stiffness, of the normal, of the selection S or of S^T K S is {0}: every entry must be a \
+         finite number, and small enough for a finite product"
+    )]
     NotFinite(f64),
     /// `K[row][column]` and `K[column][row]` differ.
     #[error(

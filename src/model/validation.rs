@@ -267,7 +267,7 @@ impl ConfiguredFinger {
                 unusable(
                     key,
                     format!(
-                        "joint {joint}: a stop at {stop:.1} degrees is inside the limit of {limit:.1}: set it at the \
+                        "joint {joint}: a stop at {stop:.4} degrees is inside the limit of {limit:.4}: set it at the \
                          limit or beyond"
                     ),
                 )

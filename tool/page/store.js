@@ -33,7 +33,7 @@ export class Samples {
     return this.values[place * this.width + column];
   }
 
-  /// Returns how many samples are newer than `time`. This is the age of the newest sample that is not newer.
+  /// Returns the age of the newest sample that is not newer than `time`, or of the oldest sample if all are newer.
   ageAt(time) {
     let [low, high] = [0, this.count - 1];
     while (low < high) {

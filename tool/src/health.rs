@@ -16,7 +16,8 @@ use sun2xp::model::FingerNumber;
 ///
 /// The finger moves through its whole workspace, which must be free. The measurements take two to three minutes.
 ///
-/// Exit status: 0 if nothing has changed beyond its limit, 1 if something has, 2 for wrong usage.
+/// Exit status: 0 if nothing has changed beyond its limit, 1 if something has or if the measurement failed, 2 for wrong
+/// usage.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file, for example hand.toml. The file hand.commission.json beside it then has the results of
@@ -26,8 +27,9 @@ pub struct Arguments {
     /// The finger.
     #[arg(long, value_name = "N", default_value = "1", value_parser = crate::commission::finger)]
     finger: FingerNumber,
-    /// Do not wait for Enter. Use this only if the space around the finger is free, or if a jig holds the finger in its
-    /// zeroing pose.
+    /// Do not wait for Enter. Use this only if the space around the finger is free. If the finger is zeroed at a pose,
+    /// a machine must hold the finger in this pose when the tool asks for it, and let it go when the tool asks for
+    /// that.
     #[arg(long)]
     yes: bool,
     /// Print one JSON object with `healthy` and `findings`, for other programs. Implies --yes.

@@ -129,6 +129,6 @@ fn confirm(configuration: &Configuration, arguments: &Arguments) -> Result<(), F
     io::stdin().read_line(&mut answer)?;
     match answer.trim() {
         "yes" => Ok(()),
-        _ => Err("not confirmed, and nothing has moved".into()),
+        _ => Err("not confirmed, and nothing has moved: type yes, or run the tool with --yes".into()),
     }
 }

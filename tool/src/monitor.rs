@@ -41,7 +41,8 @@ pub struct Arguments {
     address: web::Address,
 }
 
-/// Shows the hand until a key ends it. Waits for a hand if there is none.
+/// Shows the hand until a key or a signal ends the view, or, with `--web`, until a signal ends the program. Waits for a
+/// hand if there is none.
 ///
 /// # Errors
 /// Returns an error if there is no terminal, if the terminal fails, if several hands are open and none is named, or if

@@ -1,8 +1,8 @@
 //! Recordings: MCAP files with the telemetry of a hand. Each file can be read by itself.
 //!
 //! `/finger1/cycle` to `/finger3/cycle` have the samples, for every MCAP reader that supports ROS 2. `/finger1/replay`
-//! and so on have the messages of telemetry with every bit, from which this program reads the cycles again. The other
-//! channels are JSON. docs/recordings.md describes the format.
+//! and so on have exact copies of the telemetry messages. This program reads the cycles back from these copies. The
+//! other channels are JSON. docs/recordings.md describes the format.
 
 mod altered;
 mod black_box;

@@ -27,7 +27,7 @@ pub struct Arguments {
     /// `hand.black_box` is set.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Print one JSON object with `pass` and the contents of the file, for other programs.
+    /// Print one JSON object with `pass` and the results of every finger, for other programs.
     #[arg(long)]
     json: bool,
 }

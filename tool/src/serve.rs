@@ -37,7 +37,7 @@ fn not_started(program: &Path, error: &io::Error) -> String {
     let remedy = "install sun2xp-serve beside sun2xp (cargo build -p sun2xp-serve builds it)";
     match error.kind() {
         io::ErrorKind::NotFound => format!("{shown} is missing: {remedy}"),
-        _ => format!("{shown} cannot be started ({error}): {remedy}"),
+        _ => format!("{shown} cannot be started ({error}): make it executable, or {remedy}"),
     }
 }
 

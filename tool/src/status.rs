@@ -90,7 +90,7 @@ fn state(name: Option<&str>) -> Result<HandState, Failure> {
         if let Err(end) = received {
             // The other error, a damaged shared memory, has a text that names the remedy.
             let remedy = if end == Ended::Closed { ". Open it again, and repeat the command" } else { "" };
-            return Err(format!("the hand \"{}\" ended while it was read: {end}{remedy}", tracker.state.name).into());
+            return Err(format!("cannot read the hand \"{}\" any more: {end}{remedy}", tracker.state.name).into());
         }
     }
     Ok(tracker.state)

@@ -9,7 +9,8 @@ pub fn is_virtual(root: &Path) -> bool {
         let mut flags = text.lines().filter(|line| line.starts_with("flags"));
         flags.any(|line| line.split_whitespace().any(|flag| flag == "hypervisor"))
     };
-    // On Intel and AMD processors, a guest has this flag. On other processors, a guest has one of the two paths.
+    // On Intel and AMD processors, a guest has this flag. On other processors, some guests have one of the two paths. A
+    // guest without them is not detected.
     read_to_string(root.join("proc/cpuinfo")).is_ok_and(has_flag)
         || ["sys/hypervisor/type", "proc/device-tree/hypervisor"].iter().any(|path| root.join(path).exists())
 }

@@ -3,8 +3,8 @@
     timing.py stm32f405.elf stm32f405.bin
 
 Fails if the upper bound of the time from a Command to its Reply is longer than the protocol allows, if the computed
-time on an otherwise idle line leaves less than the required margin, or if a pass of the main loop takes longer than the
-core requires."""
+time on an otherwise idle line leaves less than the required margin, or if a pass of the main loop takes longer than
+the protocol core (firmware/core) permits."""
 
 import sys
 
@@ -30,7 +30,7 @@ VALUES = [
 
 
 class Bench:
-    """A board that runs, in one of the two models of the flash."""
+    """A running board, either with the cache of the flash (`cached`) or without it, for the upper bound (see Board)."""
 
     def __init__(self, cached, constants=(23400,) * 4):
         self.board = Board(sys.argv[1], open(sys.argv[2], "rb").read(), cached)
@@ -40,8 +40,8 @@ class Bench:
         assert self.board.ask(configure(constants=constants, watchdog_ms=1000), BAUD)[0] == 0xA1
 
     def reply_time(self, torques, wait, followers=0):
-        """Cycles from the last byte of a Command, which arrives after `wait`, to the first byte of its Reply, and the
-        instructions between them. `followers` more Commands follow without a gap."""
+        """Sends a Command after `wait` cycles. Returns the cycles from the arrival of its last byte to the first byte
+        of its Reply, and the instructions between these two. `followers` more Commands follow without a gap."""
         board, wire = self.board, command(torques)
         arrived = board.send(wire * (1 + followers), BAUD, int(wait)) - followers * len(wire) * BYTE
         self.registers.sent.clear()
@@ -58,7 +58,7 @@ class Bench:
 
 
 def at_any_phase(cached, followers):
-    """The longest time that is found over all phases of the main loop and all torques and constants of VALUES."""
+    """The longest time that is found over 24 phases of the main loop and all torques and constants of VALUES."""
     longest = (0, 0)
     for torques, constants in VALUES:
         bench = Bench(cached, constants)

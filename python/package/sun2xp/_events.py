@@ -26,7 +26,7 @@ class Events(_sun2xp.Queue):
 
     async def next(self, timeout: Optional[float] = None) -> Optional[Event]:
         """Waits for an event in asyncio, and takes it. Returns None if no event comes within `timeout` s, or if the
-        hand is closed. Without a timeout, waits without a limit."""
+        hand is closed or being closed. Without a timeout, waits without a limit."""
         loop = asyncio.get_running_loop()
         deadline = None if timeout is None else loop.time() + timeout
         while (event := self.take()) is None and not self.closed:

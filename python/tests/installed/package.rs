@@ -13,7 +13,7 @@ fn the_wheel_works_in_an_empty_environment() {
     let mut pytest = Command::new(environment.python());
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", concat!(env!("CARGO_MANIFEST_DIR"), "/tests")]);
     pytest.current_dir(&environment.folder).env("PYTHONDONTWRITEBYTECODE", "1").env_remove("SUN2XP_CONFIG");
-    // Cargo builds the C library with the dependencies of this test.
+    // This test depends on the package sun2xp, so Cargo has built the C library into the folder of the test.
     let here = std::env::current_exe().expect("the path of this test");
     pytest.env("SUN2XP_LIBRARY", here.with_file_name("libsun2xp.so"));
     pytest.env("SUN2XP_SERVE", server());

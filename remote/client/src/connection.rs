@@ -60,7 +60,7 @@ fn session_configuration(configuration: &RemoteConfiguration) -> zenoh::Result<C
 
 /// Returns the text of an error. The location in Zenoh's sources at its end is left out, because a planner cannot use
 /// it.
-fn short(error: &zenoh::Error) -> String {
+pub(crate) fn short(error: &zenoh::Error) -> String {
     let text = error.to_string();
     text.split(" at /").next().unwrap_or_default().trim_end_matches(['.', '!']).into()
 }

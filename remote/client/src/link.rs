@@ -27,7 +27,7 @@ const NEXT_STATE: Duration = Duration::from_millis(200);
 /// What the callbacks, the sending thread and the planner share.
 pub struct Shared {
     exchange: Mutex<Exchange>,
-    /// Notified when there is something to send, when something was received, and at the end.
+    /// Notified when there is something to send, when a State, a Status or a refusal was received, and at the end.
     changed: Condvar,
     /// Whether the sending thread must end. The flag is set under the lock of the exchange, so that the thread cannot
     /// miss it.
@@ -80,11 +80,18 @@ impl Link {
         });
         let (session, keys) = (connection::open(configuration)?, HandKeys::new(hand));
         let mut link = Self { session, shared, sender: None, configuration: configuration.clone(), client, keys };
-        link.subscribe().map_err(|error| link.not_connected(&error.to_string()))?;
+        link.subscribe().map_err(|error| link.undeclared(&error))?;
         link.first_status()?;
         link.sender = Some(link.start_sender()?);
         link.wait_for_records()?;
         Ok(link)
+    }
+
+    /// The error if Zenoh refuses a subscription or a key.
+    fn undeclared(&self, error: &zenoh::Error) -> RemoteError {
+        let reason = connection::short(error);
+        let remedy = "Open the hand again. If this happens again, please report this defect";
+        self.not_connected(&format!("{reason}. {remedy}"))
     }
 
     fn not_connected(&self, reason: &str) -> RemoteError {
@@ -154,7 +161,7 @@ impl Link {
 
     fn start_sender(&self) -> Result<JoinHandle<()>, RemoteError> {
         let key = KeyExpr::try_from(self.keys.target(&self.client));
-        let key = key.map_err(|error| self.not_connected(&error.to_string()))?;
+        let key = key.map_err(|error| self.undeclared(&error))?;
         let (shared, session) = (self.shared.clone(), self.session.clone());
         let thread = std::thread::Builder::new().name("sun2xp targets".into());
         let started = thread.spawn(move || send(&shared, &session, &key));

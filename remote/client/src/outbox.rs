@@ -20,7 +20,7 @@ const RESTARTED: u64 = 10_000_000_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ownership {
     pub epoch: u64,
-    /// The number of the epoch.
+    /// The public number of the epoch. (`epoch` itself is random, and a secret of the owner.)
     pub number: u64,
     /// The time of the Answer that gave the epoch, ns, server's clock.
     since: u64,
@@ -99,7 +99,8 @@ impl Outbox {
     pub fn heard(&mut self, time: u64, owner: u64, continued: bool) {
         if let Ok(Ownership { number, since, .. }) = self.ownership {
             // A State that is not later than the Answer may show an earlier owner. It may also be the first State of a
-            // server that was started again and has given this epoch.
+            // server that was started again and then gave this epoch: `continued` is false then, but this epoch has
+            // not ended.
             let lost = if time > since { owner != number } else { since - time > RESTARTED };
             match (lost, continued) {
                 (false, _) => {}
@@ -120,7 +121,8 @@ impl Outbox {
         self.slots[finger.index()].is_applied()
     }
 
-    /// Notes that the server has refused a Target. Its values are not sent again.
+    /// Notes that the server has refused a Target. Values of it that no record has confirmed are not put into a new
+    /// Target.
     pub fn refused(&mut self, answer: &Answer) {
         self.seen = self.seen.max(answer.time);
         if self.ownership.is_ok_and(|ownership| ownership.epoch == answer.epoch) {
@@ -128,7 +130,8 @@ impl Outbox {
             if answer.number > self.reported {
                 self.refusal = Some(answer.text.clone());
                 // Every Target that was sent after the refused one repeated its values, so the server refuses it too.
-                // Such a refusal is not reported, unless its Target also had a change that is kept.
+                // Such a refusal is not reported, unless its Target also contained a later change, which the slots have
+                // not dropped.
                 let others = self.slots.iter().filter_map(Slot::first_unconfirmed).min();
                 self.reported = others.map_or(self.sequence, |first| first - 1).max(answer.number);
             }

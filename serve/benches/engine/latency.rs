@@ -80,7 +80,7 @@ fn round_trips(arguments: &Arguments, link: &mut dyn Link) -> Result<Vec<u64>, F
         let sent = Instant::now();
         link.round_trip(&message)?;
         times.push(sent.elapsed().as_nanos() as u64);
-        // A late answer delays the next message, so that two are never under way.
+        // After a late answer, the messages that were missed are not made up for.
         next = (next + period).max(Instant::now());
     }
     Ok(times)

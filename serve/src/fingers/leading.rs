@@ -90,8 +90,9 @@ impl Fingers {
     }
 
     /// Returns the joint angles, rad, that the hand uses if `joints` are sent: they are within the limits. Returns none
-    /// if the hand refuses `joints`. The check is the hand's own. If it were stricter, angles that only the hand admits
-    /// would be sent without the bound of the lead.
+    /// if the hand refuses `joints`. The check is the hand's own. Angles that it refuses are sent to the hand without
+    /// the bound of the lead, because the hand refuses them with the reason. If this check were stricter than the
+    /// hand's, the hand would follow some of these angles.
     pub(super) fn within_limits(
         &self,
         finger: FingerNumber,

@@ -35,7 +35,8 @@ pub(super) fn run<R: Reply>(
     reply: R,
     body: impl FnOnce(&Shared) -> Answer + Send + 'static,
 ) -> Option<(R, Answer)> {
-    // The end of the server sets `ending` before it takes this lock, so it waits for every thread that starts here.
+    // The code that ends the server sets `ending` before it takes this lock, so it waits for every thread that starts
+    // here.
     let mut threads = shared.requests.lock();
     if shared.ending.load(Ordering::Acquire) {
         shared.busy.store(false, Ordering::Release);

@@ -13,10 +13,10 @@ pub(super) const POLLED: Duration = Duration::from_millis(2);
 
 /// Recovers every finger for a client that has just acquired the hand. `stops` is as for [`recover`].
 ///
-/// Right after the end of the previous ownership, a finger may still run. Its servo measures the silence of the
-/// previous owner itself, so the set point of the finger may expire only after the recovery has begun. A second
-/// recovery then recovers this finger too. During the second recovery no other set point expires, because the desk
-/// keeps the set points of running fingers valid while an acquire recovers fingers.
+/// Right after the end of the previous ownership, a finger may still run. The servo of this finger, not the desk,
+/// measures the silence of the previous owner. So the set point can expire when the recovery has already begun. A
+/// second recovery then recovers this finger too. During the second recovery no other set point expires, because the
+/// desk keeps the set points of running fingers valid while an acquire recovers fingers.
 pub(super) fn recover_for_new_owner(shared: &Shared, stops: &Stops) -> Result<(), HandError> {
     recover(shared, None, stops).or_else(|error| match error {
         HandError::Faulted { fault, .. } if fault.kind == FaultKind::SetPointExpired => recover(shared, None, stops),

@@ -130,7 +130,7 @@ fn check_continuous_torque(
     let held = motor_torque.tensions(&Vector4::from(finger.motor.continuous_torque).component_div(&tendons.radius));
     let Some(motor) = (0..4).find(|&motor| held[motor] < at_rest[motor]) else { return Ok(()) };
     let reason = format!(
-        "is too low: with friction against it, motor {} can hold only {:.2} N in its tendon, but state feedback needs \
+        "is too low: against friction, motor {} can hold only {:.2} N in its tendon, but state feedback needs \
          {:.2} N in this tendon even at zero joint torque: raise motor.continuous_torque, or lower tendon.minimum",
         motor + 1,
         held[motor],

@@ -51,8 +51,8 @@ impl TensionDistribution {
         if let Some(tendon) = (0..4).find(too_low) {
             let reason = format!(
                 "is too low: tendon {} may have at most {:.2} N, and already has {:.2} N at zero joint torque (state \
-                 feedback keeps a distance from both limits). Raise tendon.maximum or motor.torque_limit, or lower \
-                 tendon.minimum",
+                 feedback keeps a margin to both bounds of the tension, which lowers the first value and raises the \
+                 second). Raise tendon.maximum or motor.torque_limit, or lower tendon.minimum",
                 tendon + 1,
                 maximum[tendon],
                 at_rest[tendon]

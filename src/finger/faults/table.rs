@@ -50,8 +50,8 @@ faults! {
         "the motor or its gear is jammed, its wires are broken, or its driver is off",
         "With the motor supply off, turn the motor by hand and check its wiring; then recover the finger", [Recover];
     9 OverheatedMotor "OVERHEATED_MOTOR" Fault Motor Share "overheated motor",
-        "a motor has been at its thermal limit for too long; its heat is computed from the square of its torque over \
-         time",
+        "a motor has been at its thermal limit for too long; its heat is computed as a moving average of its squared \
+         torque",
         "the finger presses or holds more than the motor can carry continuously",
         "Let the motor cool, recover the finger and command less force; check finger.motor.continuous_torque and \
          finger.motor.thermal_time", [Recover];
@@ -145,10 +145,10 @@ faults! {
         "Add the user to the group (usually dialout) and log in again", [];
     30 PortUnusable "PORT_UNUSABLE" Refusal Finger Nothing "port unusable",
         "the port cannot be used as configured",
-        "finger.port is not a serial port, the port cannot run at finger.baud, its adapter or driver has failed, or a \
-         system limit has been reached",
-        "Set finger.port to a serial port and finger.baud to a rate that it supports; check the adapter and its driver \
-         (dmesg); or raise the system limit that the text of the refused call names", [];
+        "finger.port is not a serial port, the port cannot run at finger.baud or is not ready, its adapter or driver \
+         has failed, a sandbox or container forbids the call, or a system limit has been reached",
+        "Correct finger.port or finger.baud; try again after half a minute; check the adapter and its driver (dmesg); \
+         or permit the call or raise the limit, as the text of the refused call says", [];
     31 BoardSilent "BOARD_SILENT" Refusal Finger Time "board silent",
         "no byte came from the board",
         "the board is off, the cable is unplugged, the transmit output of one side is not connected to the receive \

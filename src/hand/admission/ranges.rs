@@ -20,10 +20,11 @@ pub struct Ranges {
 }
 
 impl Ranges {
-    /// Checks desired joint angles, rad, and returns the angles for the servo.
+    /// Checks desired joint angles, rad, and returns the angles for the servo. If `out_of_range` is `Clamp`, an angle
+    /// outside its limits is not refused: the limit is returned.
     ///
     /// # Errors
-    /// Returns an error if an angle is not finite or is outside its limits.
+    /// Returns an error if an angle is not finite, or if it is outside its limits and `out_of_range` is `Refuse`.
     #[inline]
     pub fn joints(&self, joints: [f64; 3]) -> Result<Vector3<f64>, SetPointError> {
         self.finite("Pos", &joints)?;
@@ -46,9 +47,9 @@ impl Ranges {
     /// the bound is returned. The argument is `rows[row][column]`.
     ///
     /// # Errors
-    /// Returns an error if Kx is not finite, is not a spring or is too stiff.
+    /// Returns an error if Kx is not finite or is not a spring, or if it is too stiff and `out_of_range` is `Refuse`.
     pub fn kx(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
-        // nalgebra is column-major. Only this line converts a Kx from the row-major order of C.
+        // nalgebra is column-major, and `rows` is row-major.
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);
         let (symmetric, (smallest, largest)) = spring(&asked).map_err(|error| self.no_spring(error))?;
         let bound = self.stiffness_bound;

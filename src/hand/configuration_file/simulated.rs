@@ -10,7 +10,8 @@ use toml_edit::Value;
 
 impl Configured {
     /// Reads and checks the configuration of a simulated hand with this name and this rate, Hz. `text` has further keys
-    /// of the configuration. Its names, rate, ports, boards and table `remote` are ignored.
+    /// of the configuration. Its keys `simulation.hand`, `hand.rate`, `port` and `board` and its table `remote` have no
+    /// effect.
     ///
     /// # Errors
     /// Returns [`ConfigurationError::Invalid`] if there is no such name or rate, or if the text is wrong.

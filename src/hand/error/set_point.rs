@@ -223,7 +223,8 @@ pub enum SetPointError {
 }
 
 impl SetPointError {
-    /// Returns whether a stiffness was refused because it is not that of a spring.
+    /// Returns whether a stiffness was refused because it is not that of a spring, or because the normal of its contact
+    /// is zero.
     pub(crate) fn is_no_spring(&self) -> bool {
         self.errno() == libc::EDOM
     }

@@ -95,9 +95,9 @@ impl Plan {
 impl Admission {
     /// Computes the path from `reference` through `poses`, and checks it.
     ///
-    /// A slow path that begins in motion may leave the joint limits: an acceleration of 0.1 rad/s^2 that a path changes
-    /// over 30 s moves a joint by several rad. If the path that continues the motion is refused, a path that first
-    /// brakes to rest is tried instead. If it is refused too, the first refusal is returned.
+    /// A slow path that begins in motion may leave the joint limits: if a path takes 30 s to reduce an acceleration of
+    /// 0.1 rad/s^2 to zero, the joint moves by several rad meanwhile. If the path that continues the motion is refused,
+    /// a path that first brakes to rest is tried instead. If it is refused too, the first refusal is returned.
     pub fn path(&self, reference: &Reference, poses: &[PathPose]) -> Result<Plan, PathError> {
         self.direct_path(reference, poses).or_else(|refusal| self.path_after_braking(reference, poses).ok_or(refusal))
     }
@@ -110,8 +110,8 @@ impl Admission {
             return None;
         }
         // The path begins with zero acceleration and jerk. After a step of the set point, the filter of the set point
-        // can give a large acceleration and jerk, which end by themselves. The servo filters the difference between its
-        // reference and the path.
+        // can give a large acceleration and jerk, which end by themselves. So the path does not begin exactly with the
+        // servo's reference, and the servo filters this difference.
         let start = Start { accelerations: Vector3::zeros(), jerk: Vector3::zeros(), ..start };
         // A constant deceleration to rest within BRAKING ends at this place.
         let place = start.place + start.rates * (BRAKING / 2.0);

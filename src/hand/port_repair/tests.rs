@@ -77,14 +77,15 @@ fn only_terms_end_a_hold() {
     assert!(!finger(&mut link).status().has(Status::HOLDING));
 }
 
-/// A board that does not keep its zeros continues the counts that it had at open until it restarts.
+/// Until it restarts, a board that does not keep its zeros continues the counts that it had at open.
 #[test]
 fn a_board_that_does_not_keep_its_zeros_must_not_have_restarted() {
     let (mut link, mut known) = opened(board(), false);
     known.configure(&mut link).expect("its counts have continued");
     finger(&mut link).reset();
     for attempt in 0..2 {
-        // The first attempt has given the board its terms, but not its counts.
+        // The first attempt has given the board its terms again. The second one must be refused too, because the counts
+        // are still lost.
         let error = known.configure(&mut link).expect_err("its counts began again");
         assert_eq!(kind(&error), Some(FaultKind::ZeroLost), "attempt {attempt}: {error}");
     }
@@ -93,7 +94,7 @@ fn a_board_that_does_not_keep_its_zeros_must_not_have_restarted() {
     known.configure(&mut link).expect("it keeps its zeros");
 }
 
-/// A board that keeps its zeros forgets the readings of its tactile elements.
+/// Even a board that keeps its zeros forgets the readings of its tactile elements when it restarts.
 #[test]
 fn a_restart_of_a_board_with_tactile_elements_is_counted() {
     let mut touching = configuration();

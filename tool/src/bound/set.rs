@@ -106,8 +106,8 @@ pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -
     let nominal = plants.first().ok_or(NO_PLANT)?;
     if nominal.uncovered as f64 > USELESS * nominal.samples as f64 {
         return Err(format!(
-            "finger {number}: the controller leaves the finger unstable at every stiffness in {} of {} poses: remove \
-             the gains from the table `controller`, or choose another scheme",
+            "finger {number}: in {} of {} poses the controller leaves the finger unstable even at 1 N/cm: remove the \
+             gains from the table `controller`, or choose another scheme",
             nominal.uncovered, nominal.samples
         )
         .into());
@@ -186,8 +186,7 @@ impl SetBound {
         let Searched { number, rate, .. } = searched;
         writeln!(
             out,
-            "finger {number}, bounds in N/cm; in brackets, the number of samples that are unstable at every \
-             stiffness:\n"
+            "finger {number}, bounds in N/cm; in brackets, the number of samples that are unstable even at 1 N/cm:\n"
         )?;
         write!(out, "{}", self.table().text(screen))?;
         let least = &self.plants[self.limited_by];
@@ -210,7 +209,7 @@ impl SetBound {
         }
         writeln!(
             out,
-            "    {} samples for each plant; in {:.1} % of the poses the servo scales Kx down, at worst by a factor of \
+            "    {} samples of this plant; in {:.1} % of the poses the servo scales Kx down, at worst by a factor of \
              {:.2}",
             least.samples,
             100.0 * least.scaled,
@@ -243,11 +242,11 @@ impl SetBound {
             let walls = member.uncovered_from_wall.map_or(String::new(), |wall| format!(" of {wall:.0} N/cm and more"));
             writeln!(
                 out,
-                "    not covered by the bound: {}, {}{walls}: {} of {} samples, for example {}",
-                member.plant,
-                place(member.walls),
+                "    not covered by the bound: {} of {} samples of {}, {}{walls}, for example {}",
                 member.uncovered,
                 member.samples,
+                member.plant,
+                place(member.walls),
                 example.text()
             )?;
         }

@@ -52,7 +52,8 @@ pub fn encoders(desk: &mut Desk) -> Result<Outcome, Failure> {
         outcome.wrong.retain(|wrong| matches!(wrong, Wrong::MotorBlocked(_)));
         outcome.wrong(Wrong::EncodersUnclear(seen));
     } else if is_exchange(order) && outcome.passed() {
-        // The signs and scales belong to encoders that are not at their motors yet.
+        // The cables are exchanged, so the findings about signs and scales belong to other encoders. The step is
+        // repeated after the cables have been corrected.
         outcome.wrong.clear();
         name_the_exchange(desk, &mut outcome, order)?;
     }

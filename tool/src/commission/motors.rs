@@ -8,8 +8,8 @@ use super::wrong::Wrong;
 use crate::failure::Failure;
 use sun2xp::calibration::{Findings, Obstacle, Task};
 
-/// Carries out the step `motors`. Encoders and gauges are already correct, so every contradiction concerns the motors
-/// or the tendons.
+/// Carries out the step `motors`. The steps before have checked encoders and gauges, so a contradiction usually
+/// concerns the motors or the tendons.
 pub fn motors(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     if !desk.prepare(&mut outcome, Act::HoldStill)? {

@@ -40,7 +40,8 @@ impl Chosen {
     }
 }
 
-/// A finger of a board: the number of the board and the address. Fingers of one board may share its number.
+/// A finger of a board: the unique number and the address. A board may report the same unique number for all of its
+/// fingers, although the protocol demands different ones. Then only the address tells them apart.
 pub type Taken = (BoardNumber, u8);
 
 /// Searches these ports for the board of a finger. `taken` lists the boards and addresses of the other fingers of the

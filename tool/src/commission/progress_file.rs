@@ -96,8 +96,8 @@ impl ProgressFile {
         })
     }
 
-    /// Removes the notes about a finger that is new in its configuration file. They are about an earlier finger with
-    /// this number, whose results are not in the file.
+    /// Removes the notes about a finger that was just added to the configuration file. They are about an earlier finger
+    /// with this number, whose results the configuration file does not contain.
     pub fn forget(path: &Path, finger: i32) -> Result<(), Failure> {
         match Self::read(path)?.fingers.contains_key(&finger) {
             true => Self::update(path, |file| drop(file.fingers.remove(&finger))),

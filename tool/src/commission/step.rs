@@ -70,11 +70,14 @@ impl Step {
             Self::Motors => {
                 "Turns each motor a little, then pulls each tendon with up to twice finger.tendon.minimum. Takes 15 s."
             }
-            Self::Zeros => "Zeros gauges and encoders, then makes the finger a soft spring. Takes up to a minute.",
+            Self::Zeros => {
+                "Zeros gauges and encoders, then makes the finger a spring with stiffness.initial. Takes up to a \
+                 minute."
+            }
             Self::Tendons => {
                 "Moves every joint between its stops and presses against the lower stops, with up to 0.6 of \
                  finger.tendon.maximum. This measures the stretch of the tendons. Then zeros gauges and encoders \
-                 again, with this stretch. Takes two minutes."
+                 again, and takes this stretch into account. Takes two minutes."
             }
             Self::Bound => "Computes the largest stiffness at which the finger is stable. Takes one to two minutes.",
             Self::Computer => "Checks whether this computer runs the finger in time. The motors are off.",

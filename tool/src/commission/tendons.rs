@@ -65,7 +65,7 @@ fn report(outcome: &mut Outcome, found: &Identified) {
     outcome.about("tendon.stiffness", format!("by identification, residual of the motor travel {residual:.1} um rms"));
     outcome.about(
         "gauge.newton_per_count",
-        format!("by identification, scales relative to those before: {}", list(found.gauge_gain.as_slice(), 3)),
+        format!("by identification; new scale / previous scale: {}", list(found.gauge_gain.as_slice(), 3)),
     );
     for key in ["friction.motor_coulomb", "friction.conduit", "friction.pulley", "friction.joint_coulomb"] {
         outcome.about(key, "by identification, in both directions of motion");

@@ -22,8 +22,8 @@ pub struct Terminal {
     yes: bool,
     /// Nothing is printed, because standard output is for other programs.
     pub quiet: bool,
-    /// Number of times, in the rest of this session, that something that has failed is tried again without a question,
-    /// if `yes` is set.
+    /// Retries that are left in this session. With `yes`, what has failed is tried again without a question until this
+    /// number is 0.
     pub retries: u32,
     /// The steps of this session.
     steps: Vec<Step>,

@@ -12,7 +12,7 @@ pub struct Vitals {
     pub gauge_noise: Option<[f64; 4]>,
     pub newton_per_count: Option<[f64; 4]>,
     pub encoder_zero: Option<[i32; 4]>,
-    /// Tensions of the spring at rest, N.
+    /// Tensions of the tendons while the finger is a spring at rest, N.
     pub tensions: Option<[f64; 4]>,
     /// Torques of the motors that hold these tensions, N cm.
     pub torques: Option<[f64; 4]>,

@@ -110,8 +110,8 @@ impl From<HandError> for Refused {
 }
 
 impl Command {
-    /// Returns whether the command ends a push. Such a command moves nothing by itself. It is neither refused nor
-    /// dropped because of other commands, because the push would then go on.
+    /// Returns whether the command ends a push. Such a command moves nothing by itself. Other commands that wait are no
+    /// reason to refuse or drop it: the push would then go on.
     pub fn ends_push(&self) -> bool {
         matches!(self, Self::Push { force: [0.0, 0.0, 0.0], .. })
     }
@@ -242,7 +242,8 @@ fn move_all(
             let mut joints = [0.0; 3];
             for (joint, next) in joints.iter_mut().enumerate() {
                 let target = degrees[joint].to_radians().clamp(low[joint], high[joint]);
-                // The finger may hold a pose beyond its limits. A hand that clamps the angle makes the step larger.
+                // The finger may hold a pose beyond its limits. If the angle is still beyond the limits after one step,
+                // a hand that clamps would move the joint to its limit at once, which is more than one step.
                 let angle = towards(desired[joint], target, most);
                 if !(low[joint]..=high[joint]).contains(&angle) {
                     return Err(Refused::BeyondLimits { finger, joint, angle: desired[joint].to_degrees() });

@@ -18,7 +18,7 @@ const INTERVAL: Duration = Duration::from_millis(66);
 /// What a key has done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pressed {
-    /// The key has an effect on the view, or none at all.
+    /// The key was handled, or has no effect.
     Handled,
     /// The key asks for a snapshot.
     Snapshot,

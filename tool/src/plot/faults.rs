@@ -5,7 +5,7 @@ use super::figure::{Figure, Sign, subtitle};
 use super::palette::{BLUE, Colour, GREEN, INK, ORANGE, PAPER, PURPLE, SKY, SOFT_INK, VERMILION};
 use super::panel::{HEADING, LABEL, Mark, NUMBER, Panel};
 use super::svg::{Anchor, Font, Svg, text_width};
-use super::{LONGEST_PAUSE, Plot, Selection};
+use super::{LONGEST_PAUSE, NO_CYCLE, Plot, Selection};
 use crate::failure::Failure;
 use crate::trace::{Item, Mark as Happened, MarkKind, Row};
 
@@ -76,9 +76,7 @@ impl Plot for Faults {
         let (begin, end) =
             spans().fold((f64::INFINITY, 0f64), |(begin, end), span| (begin.min(span.from), end.max(span.to)));
         if present.is_empty() {
-            return Err("the recording has no cycle of the chosen fingers between --from and --to: change \
-                        --from, --to or --finger"
-                .into());
+            return Err(NO_CYCLE.into());
         }
         let listed = self.listed();
         let left_out = self.happened.len() - listed.len();

@@ -1,5 +1,5 @@
-//! Colours that people with any kind of colour vision can tell apart (M. Okabe and K. Ito, 2008). Curves also differ in
-//! their dashes or their labels.
+//! Colours that people with any kind of colour vision can tell apart (M. Okabe and K. Ito, 2008), and a dark purple.
+//! Most curves also differ in their dashes or their labels.
 
 /// A colour as SVG writes it.
 pub type Colour = &'static str;

@@ -18,7 +18,7 @@ pub struct Svg {
     clips: usize,
 }
 
-/// The part of a text that is at the text's point.
+/// The part of a text that lies at the point which is passed to [`Svg::text`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     Start,

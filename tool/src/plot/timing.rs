@@ -5,7 +5,7 @@ use super::figure::{Figure, Sign, subtitle};
 use super::palette::{BLUE, Colour, GREEN, SOFT_INK, VERMILION};
 use super::panel::{Mark, Panel};
 use super::svg::Stroke;
-use super::{Plot, Selection};
+use super::{NO_CYCLE, Plot, Selection};
 use crate::failure::Failure;
 use crate::trace::Item;
 
@@ -55,9 +55,7 @@ impl Plot for Timing {
             || present.iter().flat_map(|(_, times)| [times.0.first(), times.0.last()]).flatten().map(|one| one.0);
         let (begin, end) = (ends().fold(f64::INFINITY, f64::min), ends().fold(f64::NEG_INFINITY, f64::max));
         if begin > end {
-            return Err("the recording has no cycle of the chosen fingers between --from and --to: change \
-                        --from, --to or --finger"
-                .into());
+            return Err(NO_CYCLE.into());
         }
         let period = 1e6 / self.rate;
         let legend: Vec<(Sign, String)> = present

@@ -1,4 +1,4 @@
-//! The failure of a file with values that no hand records.
+//! The error for a file that has values which no hand records.
 
 use crate::failure::Failure;
 use std::path::Path;

@@ -144,7 +144,9 @@ impl Report {
         let change = match self.configured.fastest.rate {
             Some(fastest) if f64::from(fastest) > self.rate => format!("raise hand.rate to {fastest}"),
             Some(_) => "lower hand.rate".into(),
-            None => "let wake-ups and computations take less time (sun2xp doctor)".into(),
+            None => {
+                "reduce the wake-up latency and the computing time (sun2xp doctor shows what increases them)".into()
+            }
         };
         format!(
             "at {:.0} Hz a deadline may be missed: {change}, raise finger.baud or spread the fingers over cores",

@@ -41,7 +41,7 @@ impl Report {
     }
 }
 
-/// Returns a positive number with three significant digits.
+/// Returns a positive number with at least three significant digits.
 fn three_digits(value: f64) -> String {
     let magnitude = value.abs().max(1e-9).log10().floor() as i32;
     let decimals = usize::try_from(2 - magnitude).unwrap_or(0);

@@ -14,8 +14,8 @@ use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
-/// Largest number of batches that are sent to a page without an acknowledgement. The hand publishes this number in a
-/// second. A page with this many unacknowledged batches gets no further batch until it acknowledges one.
+/// Largest number of batches that are sent to a page without an acknowledgement. The hand publishes this many batches
+/// in a second. A page with this many unacknowledged batches gets no further batch until it acknowledges one.
 const AHEAD: u64 = 20;
 
 /// Largest message from a page, bytes. Commands have some 200.

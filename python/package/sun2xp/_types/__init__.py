@@ -1,4 +1,6 @@
-"""The results of calls. Lengths are in cm, forces in N, torques in N cm, angles in rad, stiffnesses in N/cm.
+"""The results of calls, and the set point of a group.
+
+Lengths are in cm, forces in N, torques in N cm, angles in rad, stiffnesses in N/cm.
 
 An array has no single truth value, so `==` does not compare the values of two results.
 """

@@ -76,8 +76,8 @@ class RemoteHand(Reading):
             recover: whether to recover the fingers that have stopped.
 
         Raises:
-            NotOwner: another client commands the hand, or, without TLS, this client may not command it
-                ([serve.clients] of the server).
+            NotOwner: another client commands the hand, or [serve.clients] of the server does not permit this client to
+                command it. (If the server uses TLS, a client without this permission gets NoAnswer instead.)
             Fault: a finger has a fault whose cause is still there.
         """
         # The server may have been started again with other limits, so its status is read again.

@@ -129,7 +129,8 @@ class Owner:
             self._slots.setdefault(change.finger, Slot()).change(change)
 
     def _renew(self) -> None:
-        """Puts the waiting changes into parts with new command numbers. Changes of a group wait for each other."""
+        """Puts the waiting changes into parts with new command numbers. While one finger's change must wait (see
+        Slot.is_blocked), all changes wait, so that changes which were sent together stay together."""
         if any(slot.is_blocked for slot in self._slots.values()):
             return
         for slot in self._slots.values():

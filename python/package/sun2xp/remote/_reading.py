@@ -136,7 +136,8 @@ class Reading:
         """Returns the name of the fault of a finger, with the affected part and its value; empty if they are not
         known."""
         try:
-            # The text of a fault begins with them, up to the first colon. It is cut, maybe in the middle of a word.
+            # The text of a fault begins with name, part and value, which end at the first colon. The Status contains
+            # only the first 71 bytes of the text, so the colon may be missing.
             name, colon, _ = self._ask_status().fingers[finger].fault_text.partition(": ")
         except NoAnswer:
             # The caller knows the number of the fault from the State.
@@ -145,8 +146,8 @@ class Reading:
 
     def _stopped(self, finger: int) -> Tuple[int, int]:
         """Returns the finger that an Answer concerns, and the number of its fault, or 0 if the fault is not known. If
-        `finger` is 0, the Answer concerns the first finger that has stopped. If no finger has stopped, for example
-        because the finger has been recovered since, the returned finger is 0 too."""
+        `finger` is 0, the Answer concerns the first finger that has stopped. If no such finger has
+        stopped, for example because it has been recovered since, the returned finger is `finger`."""
         try:
             faults = {number: status.fault for number, status in self._ask_status().fingers.items()}
         except NoAnswer:
@@ -167,6 +168,6 @@ class Reading:
 
     def _no_answer(self, asked: str) -> NoAnswer:
         where = f"the client {self._network.client} over {self._network.endpoint}"
-        remedy = "check the names of the hand and of the client, [serve.clients] of the server, and the line"
+        remedy = "check that sun2xp serve runs, and check the names of the hand and the client, and [serve.clients]"
         text = f'the hand "{self.name}" has not answered the request `{asked}` of {where}: {remedy}'
         return NoAnswer(text, number=ErrorNumber.TIMED_OUT)

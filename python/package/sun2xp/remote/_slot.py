@@ -24,8 +24,9 @@ class Slot:
     """What the owner sends to one finger: the part that Targets repeat, and the changes that are not in it yet."""
 
     def __init__(self) -> None:
-        #: The part that Targets repeat; None if there was no command, or if the newest one was refused. An earlier part
-        #: must not come back after a refusal, because the server would take its command number for a new one.
+        #: The part that Targets repeat; None if there was no command, or if the newest one was refused. After a
+        #: refusal an earlier part must not be sent again: its command number differs from the last one, so the server
+        #: would apply it as a new part.
         self.part: Optional[Part] = None
         #: Changes that no Target has yet.
         self._waiting: Optional[Part] = None

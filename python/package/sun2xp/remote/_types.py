@@ -52,8 +52,8 @@ class FingerState:
     set_point: Optional[Array]
     #: Position of the tip in the finger's frame, cm: shape (3,).
     tip: Array
-    #: Force of the tip on what it touches, with friction, weight and inertia of the finger, in the finger's frame, N:
-    #: shape (3,).
+    #: Force of the tip on what it touches, in the finger's frame, N: shape (3,). It includes the effects of friction,
+    #: weight and inertia of the finger.
     force: Array
     #: Tensions of tendons 1 to 4, N: shape (4,).
     tensions: Array
@@ -112,7 +112,7 @@ class FingerStatus:
     skipped_periods: int
     lost_replies: int
     corrupt_replies: int
-    #: Smallest (row 0) and largest (row 1) joint angles, rad: shape (2, 3).
+    #: Joint limits, rad: shape (2, 3). Row 0 has the lower limits, row 1 the upper ones.
     joints: Array
     #: Largest eigenvalue of Kx that the finger admits, N/cm.
     stiffness: float

@@ -29,7 +29,7 @@ impl fmt::Display for Loss {
                  open or reopen the hand"
             }
             Self::TakenOver => {
-                "another client has acquired it. The status names the owner; reopen the hand when it is free"
+                "another client has acquired it. Open or reopen the hand when that client has released it"
             }
             Self::Restarted => "the server was started again. Open or reopen the hand",
             Self::Released => "it has released the hand. Open or reopen the hand",

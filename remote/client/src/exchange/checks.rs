@@ -10,7 +10,7 @@ use sun2xp_remote_protocol::{FINGERS, Finger, FingerStatus, PathPose, Place, Rec
 
 const MS: u64 = 1_000_000;
 
-/// The silence after which a Status is too old, ns. The server sends one each second.
+/// Time without a State after which the newest Status counts as too old, ns.
 const LONGEST_SILENCE: u64 = 3_000_000_000;
 
 impl Exchange {

@@ -12,7 +12,7 @@ const MS: u64 = 1_000_000;
 const SERVER: u64 = 5_000_000 * MS;
 
 fn status(stage: Stage) -> Status {
-    // The beginning of this text that is sent ends in the middle of a word.
+    // Only the first 71 bytes of this text are sent. They end in the middle of a word.
     let lost = "lost replies (17 ms): the board has sent no valid reply for too long; the value is this time";
     let text = if matches!(stage, Stage::Faulted(_)) { lost } else { "" };
     let finger = FingerStatus {

@@ -26,9 +26,9 @@ impl RemoteHand {
 
     /// Stops every finger as [`RemoteHand::stop`] does, for an emergency. No Targets are sent until the server has
     /// confirmed the stop. Without the confirmation, a hand that this client owns goes to its end state by itself,
-    /// because no Targets arrive. The Targets of another owner still arrive, so such a hand stops only with the
-    /// confirmation. If the call returns an error, repeat it until it succeeds. If this client owned the hand, it can
-    /// also end when [`RemoteHand::is_owner`] is false.
+    /// because no Targets arrive. A hand that another client owns still gets the Targets of that client, so it stops
+    /// only if the stop reaches the server. If the hand cannot be reached, and this client has not lost it to another
+    /// one, repeat the call until it succeeds.
     ///
     /// # Errors
     /// Returns an error if the server does not give this client a permission, or if the hand cannot be reached.

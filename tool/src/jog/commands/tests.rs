@@ -92,7 +92,7 @@ fn relative_commands_after_a_recovery_add_up() {
     until("the servo takes the last step", || at_goal(hand.report(1).expect("there").set_point.joints.into()));
 }
 
-/// Otherwise the recovery would undo the stop, and the finger would tighten its tendons after the stop.
+/// A recovery that began after the stop would undo it, and the finger would tighten its tendons.
 #[test]
 fn a_stop_before_a_recovery_begins_prevents_it() {
     let (hand, configuration) = simulated();

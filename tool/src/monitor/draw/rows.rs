@@ -1,4 +1,5 @@
-//! Lines that compete for room: where there are too few lines, the less important ones are left out.
+//! Lines of text that compete for room: if the room does not suffice for all of them, the less important ones are left
+//! out.
 
 use ratatui::text::Line;
 

@@ -154,7 +154,7 @@ fn a_fault_is_shown_with_its_whole_remedy() {
     assert_contains(&picture_of_all, &["fingers 1, 2, 3, fault"]);
     assert_complete(&picture_of_all, &fault.to_string());
 
-    // Texts that are longer than the terminal scroll.
+    // A text that does not fit into the terminal can be scrolled.
     let tracker = attached.view.tracker.as_mut().expect("attached");
     for (finger, word) in tracker.state.fingers.iter_mut().zip(["one", "two", "three"]) {
         let fault = finger.fault.as_mut().expect("faulted");
