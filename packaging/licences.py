@@ -30,7 +30,7 @@ REMOTE_FILE = "third-party-licences-remote.txt"
 
 
 def contained(metadata, owners):
-    """Returns the crates that are linked into these packages, without crates that only run during the build."""
+    """Returns the crates that are linked into these packages, and procedural macros with their dependencies."""
     # The metadata has the crates of all features; the tree has those of the enabled ones.
     command = ["cargo", "tree", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}"]
     command += [argument for owner in owners for argument in ("--package", owner)] + ["--target", TARGET]

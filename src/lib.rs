@@ -11,8 +11,8 @@
 //! # Features
 //!
 //! `internals` exports the modules behind the types of this page, for example the controller, the board protocol, the
-//! simulated boards and the physics. Benchmarks, tools and simulators outside this project use these modules. The
-//! modules may change in any version.
+//! simulated boards and the physics. The benchmarks and tools of this project use these modules. Simulators of other
+//! projects can use them too. The modules may change in any version.
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]

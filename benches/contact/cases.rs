@@ -20,7 +20,7 @@ const NONE: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
 const HOUR: f64 = 3600.0;
 const TEN_MINUTES: f64 = 600.0;
 
-/// The rows of the tables of docs/contact.md.
+/// The cases of docs/contact.md.
 pub const CASES: [Case; 15] = [
     Case { name: "nominal", seconds: HOUR, gravity: NONE, make: |_, _| {} },
     Case { name: "nominal, gravity", seconds: HOUR, gravity: ACROSS, make: |_, _| {} },

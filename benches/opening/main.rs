@@ -18,7 +18,7 @@ use std::time::Instant;
 use sun2xp::hand::{Fingers, Hand, HandError, SimulatedHand, check, find_configuration};
 use sun2xp::realtime::now;
 
-/// Largest permitted median of loading and OpenHand together, ms.
+/// Largest permitted sum of the medians of loading and OpenHand, ms.
 const GOAL: f64 = 150.0;
 
 #[derive(Parser)]

@@ -80,8 +80,8 @@ pub struct OverLimit {
     pub scale: f64,
 }
 
-/// Commands a set point far beyond the mechanical stop of joint 1, with the report's law. The joint then presses
-/// against the stop with more torque than the tension limits permit.
+/// Commands a set point far beyond the mechanical stop of joint 1, with the report's law. The law then
+/// requires more torque against the stop than the tension limits permit.
 pub fn over_limit(case: &Case) -> OverLimit {
     let all = each(&case.poses(), |_, pose| {
         let mut pose = *pose;
@@ -89,7 +89,7 @@ pub fn over_limit(case: &Case) -> OverLimit {
         let mut finger = ClosedLoop::at(case, &pose, Friction::Default, &(Matrix3::identity() * case.bound()));
         finger.set_point.law = Law::Report;
         finger.set_point.joints[1] += 2.0;
-        // Joint 0 swings slowly while most of the torque is outside the limits.
+        // While the tension limits take away most of the required torque, joint 0 swings slowly.
         finger.run(3.0);
         let most_on_the_way = finger.most_true;
         finger.reset_extremes();

@@ -1,4 +1,4 @@
-//! Measures whether fingers come to rest at both ends of the range of damping ratios that SendDamping admits.
+//! Measures whether fingers come to rest at both ends of the range of damping ratios that `Hand::send_damping` admits.
 
 use crate::Arguments;
 use crate::cases::{Case, Friction, direction, has_room};

@@ -49,11 +49,12 @@ struct Arguments {
     /// Seed of the poses, of Kx and of the noise.
     #[arg(long, default_value_t = 20261121)]
     seed: u64,
-    /// Rates in Hz, separated by commas. The default is 500,1000,2000, or 1000 with --quick.
+    /// Rates in Hz, separated by commas. The default is 500,1000,2000, or 1000 with --quick. With --truths, --damping
+    /// and --search, only the first rate is used, and the default is 1000.
     #[arg(long, value_delimiter = ',')]
     rates: Option<Vec<f64>>,
     /// Tendon controllers, as in the configuration, separated by commas. Figure 10 is always measured first, as the
-    /// reference.
+    /// reference. With --truths, --damping and --search, only the last controller is measured.
     #[arg(long, value_delimiter = ',', value_parser = named::<Scheme>)]
     #[arg(default_values = ["figure 10", "state feedback"])]
     controllers: Vec<Scheme>,
@@ -72,7 +73,7 @@ struct Arguments {
     #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..))]
     seeds: u64,
     /// With --truths: instead of the table, measures whether each finger comes to rest at both ends of the range of
-    /// damping ratios that SendDamping admits.
+    /// damping ratios that `Hand::send_damping` admits.
     #[arg(long)]
     damping: bool,
     /// With --truths: no walls and no bumps.

@@ -49,7 +49,8 @@ pub fn steps(case: &Case, stiffness: f64, loss: f64) -> Steps {
     steps_of(case, stiffness, loss, |_| {})
 }
 
-/// Does the same as [`steps`], for fingers that `differ` makes different from the configuration of their controllers.
+/// Does the same as [`steps`], but first changes each finger with `differ`. Its controller has the unchanged
+/// configuration.
 pub fn steps_of(case: &Case, stiffness: f64, loss: f64, differ: impl Fn(&mut ConfiguredFinger) + Sync) -> Steps {
     let kx = Matrix3::identity() * stiffness;
     let all = each(&case.poses_and_directions(ROOM), |_, (pose, direction)| {

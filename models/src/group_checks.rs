@@ -1,4 +1,4 @@
-//! Checks of `src/finger/group_gate.rs` and `src/finger/mailbox/groups.rs` with one planner and two servos.
+//! Checks of `src/finger/group_gate.rs` and `src/finger/mailbox/groups.rs` with one planner and up to two servos.
 
 use super::group_gate::GroupGate;
 use super::mailbox::mailbox;

@@ -24,7 +24,8 @@ pub fn a_stop_call_during_a_recovery_is_not_lost() -> (Option<FaultKind>, Option
     (at_once, signal.pending())
 }
 
-/// A fault stops the fingers that stop together with the faulted one. It is passed on once and does not return.
+/// A fault stops the fingers that stop together with the faulted one. It is passed on once: the companion does
+/// not pass it back.
 pub fn a_fault_stops_the_companion_once() {
     let first = StopSignal::new(true, stop_calls());
     let mut second = first.clone();
@@ -32,7 +33,7 @@ pub fn a_fault_stops_the_companion_once() {
         first.raise(FaultKind::SlackTendon);
         first
     });
-    // The second finger faults when it notices the signal. The signal of a companion is not passed on.
+    // The second finger faults when it notices the signal. A fault of the kind `Companion` is not passed on.
     if let Some(kind) = second.pending() {
         assert_eq!(kind, FaultKind::Companion);
         second.raise(kind);

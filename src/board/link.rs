@@ -28,7 +28,8 @@ pub struct LinkCounters {
     pub damaged: u64,
     /// Undamaged frames that were not expected, or that this library cannot read.
     pub foreign: u64,
-    /// Writes that the port accepted only in part or not at all. The board received a damaged frame or none.
+    /// Writes that the port accepted only in part or not at all. The last frame that the board received may be
+    /// damaged, and later ones are missing.
     pub unsent: u64,
 }
 

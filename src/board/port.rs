@@ -39,8 +39,8 @@ impl Port {
         &self.path
     }
 
-    /// Returns the latency timer of an FTDI bridge, ms, or `None` if the port has none. A value above 1 delays every
-    /// reply by this time.
+    /// Returns the latency timer of an FTDI bridge, ms, or `None` if the port has none. A value above 1 delays
+    /// replies by up to this time.
     pub fn latency_timer_ms(&self) -> Option<u32> {
         // Ports are often opened through a link in /dev/serial/by-id.
         let device = std::fs::canonicalize(&self.path).ok()?;
@@ -110,8 +110,8 @@ impl Transport for Port {
                 1.. => return Ok(taken as usize),
                 _ => match self.descriptor.error() {
                     error if error.kind() == io::ErrorKind::Interrupted => {}
-                    // A driver that announces bytes and has none must neither delay the caller past the deadline nor
-                    // occupy a processor.
+                    // A driver that announces bytes but has none must not occupy a processor, and must not delay the
+                    // caller by more than NOTHING_TO_READ after the deadline.
                     error if error.kind() == io::ErrorKind::WouldBlock => sleep(NOTHING_TO_READ),
                     error => return Err(error.into()),
                 },

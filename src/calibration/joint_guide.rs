@@ -44,7 +44,7 @@ impl JointGuide {
         self.joints += (joints - self.joints) * gain;
     }
 
-    /// Moves the anchor of one joint toward `target`, rad, by at most `step`.
+    /// Moves the anchor of one joint toward `target`, rad, by at most `step`, and keeps it near the joint.
     pub fn advance(&mut self, joint: usize, target: f64, step: f64) {
         let farthest = self.limit / HOLDING_STIFFNESS;
         let anchor = self.anchor[joint] + (target - self.anchor[joint]).clamp(-step, step);

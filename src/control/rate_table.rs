@@ -13,7 +13,7 @@ pub(super) type Row<Numbers> = (f64, Numbers);
 /// Below the first row and above the last row the numbers are constant.
 ///
 /// The nearest row cannot be used instead: the gains of a higher rate are too large for the longer delay of a lower
-/// rate. With them, the loop was unstable in every pose tried.
+/// rate. With them, the loop of Figure 10 was unstable in every pose tried.
 pub(super) fn at<Numbers: Tuned>(table: &[Row<Numbers>], rate: f64) -> Numbers {
     let above = table.iter().position(|row| row.0 >= rate).unwrap_or(table.len() - 1);
     let ((low, lower), (high, upper)) = (table[above.saturating_sub(1)], table[above]);

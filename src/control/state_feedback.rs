@@ -130,8 +130,8 @@ pub(super) struct StateFeedbackState {
     /// cycle must not persist.
     transition: BumplessTransfer,
     reference: ReferenceState,
-    /// Outputs of the filter stages for a reference that equals the set point of the last cycle. `None` if that set
-    /// point was at rest.
+    /// The outputs that the filter stages of the reference would have if the reference were equal to the set point of
+    /// the last cycle. `None` if that set point was at rest.
     #[serde(default)]
     along: Option<ReferenceState>,
     /// Joint rates minus the rates of the reference, low-pass filtered, rad/s.

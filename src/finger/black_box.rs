@@ -47,8 +47,8 @@ pub struct BlackBox {
     /// Number of the controller that the servo will use when a calibration begins. The source of this controller is
     /// kept although no record names the controller yet.
     awaited: Option<u32>,
-    /// The servo holds this controller or a newer one. It resumes this controller after a calibration that is longer
-    /// than the kept records, so the source is kept even if no record names it.
+    /// The servo holds this controller or a newer one. After a calibration it resumes this controller. If the
+    /// calibration was longer than the kept records, no record names the controller any more, but its source is needed.
     held: u32,
     /// Whether a fault arrived that [`BlackBox::faulted`] has not reported yet.
     faulted: bool,

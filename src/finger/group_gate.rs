@@ -59,7 +59,8 @@ impl GroupGate {
     /// - A servo reads the time after it has seen the posted group. If another servo begins a cycle without seeing it,
     ///   that cycle is in the present period or an earlier one.
     /// - A servo that sees the posted group cannot leave the period undecided. If the first servo is preempted before
-    ///   it decides, the next servo that sees the group decides. So no servo passes the period before it is decided.
+    ///   it decides, the next servo that sees the group decides. So the period
+    ///   is decided before any servo that has seen the group begins a later cycle.
     pub(super) fn period(&self, group: u64, now: impl FnOnce() -> u64) -> Option<u64> {
         let state = self.state(group).load(Ordering::Acquire);
         // The difference of the tags, as a signed number.

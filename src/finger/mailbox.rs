@@ -2,8 +2,8 @@
 //! neither side waits for the other.
 //!
 //! Both directions use wait-free triple buffers of whole values. A lock without priority inheritance would let a
-//! planner stop a servo. A channel is not lock-free when a real-time thread shares a core with a preempted sender. A
-//! lock exists only among the planners. The set points of groups are in a ring instead, because each group must take
+//! planner stop a servo. A receiver of a channel may have to wait for a sender that was preempted. A lock
+//! exists only among the planners. The set points of groups are in a ring instead, because each group must take
 //! effect in all of its fingers, even if a newer set point follows.
 
 mod adjustments;
@@ -166,8 +166,8 @@ impl Mailbox {
 
     /// Changes the last set point and sends it as a whole, unless the finger is faulted. A path in progress ends. If no
     /// set point was sent in the present spring phase ([`FingerReport::springs`]), the change starts from the set point
-    /// that the servo holds. The new set point is valid for this phase only: if the finger faults before the servo
-    /// takes the set point, it is discarded.
+    /// that the servo holds. The new set point belongs to this phase: if the finger faults before the servo takes the
+    /// set point, it is discarded. See [`FingerReport::springs`] for a phase that ends because its set point expires.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. Nothing is sent in that case.
@@ -215,7 +215,7 @@ impl Mailbox {
     }
 
     /// Returns the newest report, and whether the set point that was sent last is in force in it. A set point that was
-    /// discarded because it was sent in an earlier spring phase does not count.
+    /// discarded because it was sent in an earlier spring phase counts as not sent.
     pub fn newest_in_force(&self) -> (bool, FingerReport) {
         let planners = &mut *self.planners.lock();
         let report = *planners.reports.read();

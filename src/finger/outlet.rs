@@ -4,8 +4,8 @@ use crate::control::State;
 use crate::finger::CycleRecord;
 use std::collections::TryReserveError;
 
-/// Capacity, s. The records are taken out twenty times a second. Between these times, calls of planners may collect
-/// records too.
+/// Capacity, s. The records are taken out twenty times a second. In between, the thread that collects and the
+/// calls of planners add records.
 const CAPACITY: f64 = 1.0;
 
 /// The controller's state before a cycle.

@@ -2,9 +2,9 @@
 //!
 //! The servo sends at most one relayed request in a period, after the Commands, so the boards answer it after the
 //! Replies of that period. The finger of the request gets no Command, which leaves room for the answer. The longest
-//! answer, Configured, has 38 bytes more than a Reply. If it does not end before the next Command, it delays the
-//! Replies of the next period by at most 32 bytes. They still arrive in time, because the recovering finger does not
-//! use its part of that period.
+//! answer, Configured, has 38 bytes more than a Reply. It may end after the first Command of the next period, and then
+//! delays the Replies of that period. They still arrive in time, because the recovering finger does not use its part of
+//! that period.
 
 use crate::board::protocol::{Decoder, MAX_WIRE, Message, WireFrame};
 use crate::board::{PortError, Transport};

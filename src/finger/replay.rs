@@ -147,7 +147,7 @@ impl Controllers<'_> {
     }
 }
 
-/// Returns whether two controllers computed the same result, to the last bit.
+/// Returns whether two controllers computed the same result: torques to the last bit, and equal reports.
 fn same(one: &ControlRecord, other: &ControlRecord) -> bool {
     bits(&one.command.motor_torques) == bits(&other.command.motor_torques) && one.report == other.report
 }

@@ -21,10 +21,10 @@ pub struct FingerReport {
     pub period: u64,
     /// Number of the spring phase: a time in which the fingertip behaves as a spring and follows set points without an
     /// interruption. A new phase begins when the finger enters the stage `Running`: at open, and after a fault or a
-    /// calibration. It also begins when a set point expires, when a reflex reacts, and at the end of the inhibition:
-    /// the time after the reaction in which the finger does not follow its planner. Changes that planners send in the
-    /// new phase start from the set point that the servo holds then. Set points that were sent in an earlier phase are
-    /// discarded, except those of a phase that ended because its set point expired.
+    /// calibration. It also begins when a set point expires, when a reflex reacts, and when the inhibition ends. The
+    /// inhibition is the time after a reaction in which the finger does not follow its planner. Changes that planners
+    /// send in the new phase start from the set point that the servo holds then. Set points that were sent in an
+    /// earlier phase are discarded, except those of a phase that ended because its set point expired.
     pub springs: u32,
     /// Whether the finger holds its pose because its set point has expired, and has not followed another one since.
     pub expired: bool,

@@ -60,7 +60,8 @@ pub struct FingerServo {
     events: EventOutput,
     /// The black box record of this cycle; none if the finger was already faulted or closed.
     record: Option<CycleRecord>,
-    /// Whether the last cycle was recorded.
+    /// Whether the finger was under control at the end of the last cycle. The next cycle is then recorded, even if the
+    /// finger stops in it.
     recording: bool,
     report: FingerReport,
     address: u8,

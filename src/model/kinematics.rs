@@ -67,7 +67,8 @@ impl Links {
 
     /// Returns the rotation of the last link in the finger's frame. The link's own z axis points from joint 2 to the
     /// tip. Joint 0 turns about y. Joints 1 and 2 turn about the x axis as rotated by joint 0. The result is a
-    /// quaternion and not a matrix, because rounding hides the angle of a small rotation in the trace of a matrix.
+    /// quaternion and not a matrix: the angle of a matrix is computed from its trace, in which rounding loses a small
+    /// angle.
     pub fn tip_rotation(&self, theta: &Vector3<f64>) -> UnitQuaternion<f64> {
         UnitQuaternion::from_axis_angle(&Vector3::y_axis(), theta[0])
             * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), theta[1] + theta[2])

@@ -37,9 +37,9 @@ pub struct Tendons {
 }
 
 impl Tendons {
-    /// Adds the ghost row to R and inverts it. Without `ghost` the null vector of R is used. If all tendons have the
-    /// same stiffness, the stretch of the tendons by a change of the pretension then changes no joint angle of eq. 29.
-    /// Eq. 20 gives the same tensions with any ghost row.
+    /// Adds the ghost row to R and inverts it. Without `ghost` the null vector of R is used. A change of the pretension
+    /// stretches the tendons. With the null vector, and if all tendons have the same stiffness, this stretch changes no
+    /// joint angle that eq. 29 gives. Eq. 20 gives the same tensions with any ghost row.
     pub fn new(r: Matrix3x4<f64>, radius: Vector4<f64>, ghost: Option<RowVector4<f64>>) -> Result<Self, TendonsError> {
         let ghost = ghost.or_else(|| null_vector(&r)).ok_or(TendonsError::Singular(0.0))?;
         let mut with_ghost = Matrix4::zeros();

@@ -15,7 +15,8 @@ use super::elasticity::Elasticity;
 /// compliance is on the motor's side of the conduit friction. The sections in the finger are short.
 const SHARES: [f64; 3] = [0.5, 0.3, 0.2];
 
-/// Largest number of sweeps over the two points. Each sweep reduces the error to a third or less.
+/// Largest number of sweeps over the two points. With usual friction, each sweep reduces the error to a third
+/// or less.
 const SWEEPS: usize = 40;
 /// Motion of a point, m, below which the sweeps end.
 const NEGLIGIBLE: f64 = 1e-13;

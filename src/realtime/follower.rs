@@ -52,8 +52,8 @@ impl Follower {
     /// a count. `periods` is the number of periods until the next cycle: 1, or more if some are skipped.
     ///
     /// The counter wraps. A reading is therefore assumed to be within 32 ms of the expected count. If the other clock
-    /// jumps, for example because the board has restarted, the phase and the rate of the loop stay as they are. They
-    /// also stay if there was no reading for more than 30 ms, because the count then does not show a jump.
+    /// jumps, for example because the board has restarted, the phase of the loop stays as it is. If there was no
+    /// reading for more than 30 ms, phase and rate stay, because the count then does not show a jump.
     pub fn correction(&mut self, reading: Option<u16>, periods: u64) -> i64 {
         let bound = MOST * self.period;
         let mut wanted = 0.0;

@@ -82,7 +82,7 @@ mod tests {
         let mut memory = LockedMemory::default();
         memory.add(&room);
         let before = locked_kilobytes();
-        memory.lock().expect("a mebibyte is within every usual limit");
+        memory.lock().expect("one mebibyte is within the limit of locked memory (ulimit -l)");
         // No other test of this process locks or unlocks.
         assert_eq!(locked_kilobytes(), before + 1024);
         drop(room);

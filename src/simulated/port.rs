@@ -2,8 +2,8 @@
 //!
 //! Each wake-up of the board's thread advances the time of the simulated board by at most 2 ms, so this time stops
 //! while the machine does not run the thread. Otherwise a pause of a virtual machine for 50 ms, which also stops the
-//! host's servo, would trip a watchdog that no real board would trip. The finger would also move for 50 ms without its
-//! controller.
+//! host's servo, would trip the watchdog of the simulated board, and the finger would move for 50 ms without its
+//! controller. A simulated hand must not stop for this reason.
 
 use crate::realtime::{self, Mutex, Priority, spawn};
 use crate::simulated::board::SimulatedBoard;

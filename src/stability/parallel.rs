@@ -5,8 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 /// Returns `measure` of every item, in order. It uses as many threads as there are cores. A thread takes the next item
-/// when it has finished one. This balances the load, because an unstable sample takes a fraction of the time of a slow
-/// one.
+/// when it has finished one. This balances the load, because items can take very different times.
 pub(super) fn in_parallel<Item: Sync, Found: Send>(
     items: &[Item],
     measure: impl Fn(&Item) -> Found + Sync,

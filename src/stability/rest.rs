@@ -36,8 +36,8 @@ pub struct Rest {
 pub struct Wall {
     /// Stiffness, N/cm.
     pub stiffness: f64,
-    /// The outward normal has the direction of this vector minus the direction in which the spring pulls the tip. The
-    /// length of this vector is below 1, so the tip presses against the wall.
+    /// The outward normal is parallel to tilt - d, where d is the unit vector along the pull of the spring at the tip.
+    /// The length of `tilt` is below 1, so the tip presses against the wall.
     pub tilt: Vector3<f64>,
 }
 

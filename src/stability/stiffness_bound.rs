@@ -61,8 +61,8 @@ pub struct NearAxis {
 /// The reason for a bound.
 #[derive(Clone, Debug)]
 pub enum Limit {
-    /// With a larger bound the finger is unstable in this sample. The sample has the stiffness for the next larger
-    /// bound.
+    /// With a larger bound the finger is unstable in this sample. Its stiffness is the one that it has
+    /// at the next larger bound.
     Unstable(Box<Rest>),
     /// With a larger bound this pose (joint angles, rad) supports less than half of that bound.
     Scaled(Vector3<f64>),
@@ -75,8 +75,8 @@ impl Search {
     ///
     /// The samples are poses within the joint limits, with hard and soft fingers, stiffnesses with random axes and
     /// eigenvalues from 1 N/cm to the bound, either law, and loads that deflect the tip by up to 2 mm. If walls of 30
-    /// to 1000 N/cm supply the loads, there are frictionless points too. The relative damping is the smallest
-    /// admissible one, 1, or the largest admissible one. As in the servo, Kx is scaled down where the tendons of a pose
+    /// to 1000 N/cm supply the loads, the contact can also be a frictionless point. The relative damping is 1, or the
+    /// smallest or the largest admissible one. As in the servo, Kx is scaled down where the tendons of a pose
     /// support less.
     ///
     /// # Errors
@@ -146,8 +146,9 @@ struct Lowered {
     uncovered: Vec<Rest>,
 }
 
-/// Returns the largest bound up to `most` at which the covered samples are stable. The covered samples are those that
-/// are stable at the smallest bound.
+/// Returns a bound up to `most` at which the covered samples are stable. If every sample that is stable at a bound is
+/// also stable at all lower bounds, the result is the largest such bound. The covered samples are those that are stable
+/// at the smallest bound.
 fn lower_until_stable(trial: &Trial, samples: &[Sample], most: f64) -> Lowered {
     let least = (SOFTEST / GRID).min(most);
     let mut covered: Vec<&Sample> = samples.iter().collect();

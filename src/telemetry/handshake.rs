@@ -1,5 +1,5 @@
-//! What a reader and a hand say to each other when the reader attaches. Afterwards the hand sends one byte for each
-//! batch, so that the reader can wait for it.
+//! What a reader and a hand say to each other when the reader attaches. Afterwards the hand sends one byte
+//! after each batch of messages, so that the reader can wait for the next batch.
 
 use super::message::Description;
 use serde::{Deserialize, Serialize};

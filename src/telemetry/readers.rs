@@ -45,7 +45,7 @@ impl Readers {
     }
 
     /// Accepts connections, and drops those that have ended. Returns the sockets of readers that wait for their answer.
-    /// Allocates nothing if there are none.
+    /// Allocates nothing if no connection is answered or refused.
     pub fn serve(&mut self) -> Vec<Socket> {
         self.accept();
         // A reader that sends anything after its request does not keep to the protocol.

@@ -17,9 +17,9 @@ pub struct Sample {
     /// Stage of the finger at the end of the cycle.
     pub stage: Stage,
     /// Whether the controller ran in this cycle. If it did not, for example because the finger has just faulted, most
-    /// values below are those of the last cycle in which it ran, or 0. The exceptions are the contact and the stiffness
-    /// of the tip, which are 0 unless the finger is in the stage `Running`, and the times `wake_up` and `whole` of this
-    /// cycle.
+    /// values below are those of the last cycle in which it ran. If it has not run yet, most of them are 0. The contact
+    /// and the stiffness of the tip are 0 unless the finger is in the stage `Running`. The times `wake_up` and `whole`
+    /// are those of this cycle.
     pub computed: bool,
     /// Measured joint angles.
     pub joints: [f64; 3],

@@ -93,8 +93,8 @@ int main(void)
     PAUSE_MS(100);
     Later = look();
     /*
-     * The periods that were skipped must be counted only once. A period counts as a cycle if its cycle had almost ended
-     * when the thread was held.
+     * The periods that were skipped must be counted only once. A period that was counted as skipped while the thread
+     * was held can count as a cycle afterwards, if its cycle had almost ended when the thread was held.
      */
     CHECK(Later.cycles > Held.cycles);
     CHECK(Later.skipped_periods + Later.cycles >= Held.skipped_periods + Held.cycles);

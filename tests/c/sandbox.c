@@ -1,6 +1,6 @@
-/* A sandbox (seccomp) refuses the planner one system call that the library needs. OpenHand is refused with the errno of
-   the sandbox, and its text names the sandbox as the cause. Each case runs in a process of its own. Exits with 77 where
-   the system permits no sandbox. */
+/* A sandbox (seccomp) refuses the planner one or two system calls that the library needs. OpenHand is refused with the
+   errno of the sandbox, and its text names the sandbox as the cause. Each case runs in a process of its own. Exits with
+   77 where the system permits no sandbox. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>
@@ -27,7 +27,7 @@ struct refusal {
     const char *cannot;
     /* The refused system calls. */
     long calls[2];
-    /* 1: the fingers have a real port. */
+    /* 1: the fingers have ports that are named by their paths. */
     int real_port;
 };
 

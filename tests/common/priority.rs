@@ -1,5 +1,5 @@
-//! Gives the boards of the tests the priority that simulated boards have in the library. A busy computer then delays
-//! these boards no more than it delays a real microcontroller.
+//! Gives the boards of the tests the priority that simulated boards have in the library. A busy computer then does not
+//! delay these boards, as it does not delay a real microcontroller.
 
 use std::os::unix::process::CommandExt;
 use std::process::Command;

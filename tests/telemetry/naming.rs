@@ -1,4 +1,4 @@
-//! The names of hands, and which processes may attach.
+//! The names of hands, and the errors for hands to which a reader cannot attach.
 
 use crate::support::{OtherProcess, configuration, name, open, read_for, reader};
 use std::os::linux::net::SocketAddrExt;

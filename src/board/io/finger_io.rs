@@ -10,8 +10,8 @@ use std::ops::{BitOr, BitOrAssign};
 /// The hardware of one finger, for example drives and load cells on a field bus. A program implements this trait and
 /// opens the hand with [`Hand::open_with_io`](crate::Hand::open_with_io).
 ///
-/// The library calls [`start`](Self::start), then [`exchange`](Self::exchange) once a cycle, then
-/// [`stop`](Self::stop). Every start that succeeds is followed by a stop that succeeds, or by stops that fail. A
+/// The library calls [`start`](Self::start), then [`exchange`](Self::exchange) once a cycle, then [`stop`](Self::stop).
+/// After a start that has succeeded, the library calls `stop` until it succeeds, or gives up after several failures. A
 /// recovery stops the hardware if necessary and starts it again. No two calls for a finger overlap, but they may come
 /// from different threads. Calls for different fingers may overlap. If the fingers share a servo thread, their
 /// exchanges do not overlap, but a start, or the stop of a recovery, may overlap with the exchange of another finger.
@@ -104,7 +104,8 @@ pub struct IoCommand {
     pub number: u64,
     /// False: the motors are off, and the torques are zero.
     pub enable: bool,
-    /// Torques of motors 1 to 4, N cm. A positive torque has the direction that `motor.sign` gives.
+    /// Torques of motors 1 to 4, N cm. The library has already applied `motor.sign`: a positive torque pulls
+    /// the tendon if the sign of its motor is 1, and pays it out if the sign is -1.
     pub torques: Vector4<f64>,
     /// Time by which the exchange should return, ns of CLOCK_MONOTONIC. All fingers of a servo thread get the same
     /// deadline in a cycle, and a later one in the next cycle. So the first exchange of a cycle is the one with a new

@@ -98,8 +98,8 @@ impl Hardware {
         self.properties.in_step
     }
 
-    /// Returns the status of a Reply. If the flag *zero valid* is clear from opening on, it cannot show a later loss of
-    /// the counts. *Configured* is therefore clear after a loss, as on a serial board that restarts.
+    /// Returns the status of a Reply. If the flag *zero valid* is clear from opening on, it cannot show that the zero
+    /// is lost again later. *Configured* is therefore clear after a loss, as on a serial board that restarts.
     pub fn status(&self) -> Status {
         let configured = if self.lost_since_open { Status::default() } else { Status::CONFIGURED };
         let state = match self.state {

@@ -1,6 +1,6 @@
 //! Limits how long and how much one receive reads, so that a board that sends without end cannot block its reader.
 
-/// The largest number of bytes that one receive reads. It is about ten times the number of bytes of the Replies of 15
+/// A receive begins no read after this number of bytes. It is about ten times the number of bytes of the Replies of 15
 /// fingers, and more than a line at 12 Mbaud carries in the longest period.
 const MOST_BYTES: usize = 4096;
 
@@ -16,8 +16,8 @@ pub struct Allowance {
 }
 
 impl Allowance {
-    /// Creates the allowance for the Replies of one period: until `deadline` (ns on the transport's clock), and at most
-    /// 4096 bytes.
+    /// Creates the allowance for the Replies of one period: until `deadline` (ns on the transport's clock), and no
+    /// read after 4096 bytes.
     pub fn for_replies(deadline: u64) -> Self {
         Self { bytes: Some(MOST_BYTES), ..Self::until(deadline) }
     }

@@ -11,7 +11,7 @@ use std::fmt;
 /// | 4..6 | detail, see [`Reason`] |
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Refused {
-    /// Type of the refused frame, 0 to 15.
+    /// Type of the refused frame, 0 to 7.
     pub request: u8,
     /// Why the board refused.
     pub reason: Reason,

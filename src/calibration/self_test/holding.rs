@@ -53,7 +53,7 @@ pub(super) struct Holding {
     read: Average,
     late: Average,
     responses: Responses,
-    /// Place of the motor at the beginning of its pulse, cm.
+    /// Place, cm, of the motor of the present [`Phase::Pulse`] when this phase began.
     began: Option<f64>,
 }
 

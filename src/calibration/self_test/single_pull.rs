@@ -3,9 +3,9 @@
 //! the next motor follows. If the encoder of another motor moves first, or if the motor's own encoder moves backward,
 //! [`Stage::Pulling`] begins: the motor pulls with the constant force [`PULL`]. This stage ends when a gauge responds,
 //! when the time [`LONGEST`] is over, or when an encoder has moved by [`FARTHEST`] from its mean reading in
-//! [`Stage::Resting`]. There is one exception: if the encoder of another motor moves backward first, and the pulling
-//! motor's own gauge has already responded, the pulling motor's own encoder is dead, and the test ends at once. The
-//! unit t_min of some forces is `tendon.minimum`.
+//! [`Stage::Resting`]. [`Stage::Pulling`] does not begin if the encoder of another motor moves backward first, and the
+//! pulling motor's own gauge has already responded: the pulling motor's own encoder is dead then, and the test ends at
+//! once. The unit t_min of some forces is `tendon.minimum`.
 
 use super::readings::Readings;
 use crate::calibration::average::Average;

@@ -7,8 +7,8 @@ use crate::model::LinkDynamics;
 use nalgebra::{Vector3, Vector4};
 
 /// All rises are compared as fractions of the expected rise. The usual rise is the mean of the middle two of the four
-/// gauges. A gauge is dead if its rise is less than this part of the usual rise. If the usual rise itself is less than
-/// this value, most gauges are dead, and this value replaces the usual rise in the comparison.
+/// gauges. A gauge is dead if its rise is less than this part of the usual rise. The usual rise
+/// counts as at least this value, so that dead gauges are also found if most gauges are dead.
 const DEAD: f64 = 0.12;
 /// For each of two motors, take the response of the other motor's gauge minus the response of its own gauge, both
 /// divided by the largest response to this motor. The two gauges count as swapped if the sum of both differences
@@ -70,8 +70,8 @@ fn swapped_pair(responses: &[Vector4<f64>; 4]) -> Option<(usize, usize)> {
 
 /// Returns whether the tendons of a swapped pair are swapped, and not their gauges. If the gauges are swapped, each of
 /// them shows the rise of the other tendon. The two rises differ unless both tendons have the same pretension. With the
-/// same pretension, the pulses show which tendon a motor has pulled: the joints that it moves slacken or stretch the
-/// other tendons.
+/// same pretension, the pulses show which tendon a motor has pulled: each tendon moves the joints in its own way, and
+/// this motion slackens some of the other tendons and stretches others.
 fn tendons_are_swapped(
     responses: &Responses,
     (one, other): (usize, usize),

@@ -73,8 +73,8 @@ impl Zeroing {
         let none = Vector4::zeros();
         let at_rest = reading.joints(instruments, &none);
         // The new zeros correct the error that the joint angles had during the swing. `reading` contributes only the
-        // common travel by which the motors have wound in all tendons. At the pretension this travel does not depend
-        // on the stiffness.
+        // common travel by which the motors have wound in all tendons. Stretch is counted from the pretension, at
+        // which the finger is now, so an error of the configured tendon stiffness does not change this travel.
         let too_far = joints - self.pose;
         let zeros = reading.zeros(instruments, &none, &(at_rest - too_far), self.configured);
         Ok(Break(self.findings(instruments, zeros, too_far, None)))

@@ -121,7 +121,8 @@ impl Zeroing {
         }
         // The instruments have already subtracted the offsets of the gauges.
         let none = Vector4::zeros();
-        // A wrong stiffness shifts the two stops of a joint in opposite directions, so their mean is correct.
+        // A wrong `tendon.stiffness` shifts the computed angles of the two stops of a joint in opposite directions, so
+        // their mean is correct.
         let too_far = (self.stops_found.0 + self.stops_found.1 - self.stops.0 - self.stops.1) * 0.5;
         let joints = reading.joints(instruments, &none) - too_far;
         let zeros = reading.zeros(instruments, &none, &joints, self.configured);

@@ -13,7 +13,8 @@ pub struct ContactEstimate {
     /// singular pose, the component in the direction that causes no joint torques is reduced toward zero.
     pub force: Vector3<f64>,
     /// Whether the finger touches something. A contact begins when the force, and the torque at one or more joints,
-    /// exceed their thresholds. It ends when the force, or the torque at every joint, falls below the lower threshold.
+    /// exceed their thresholds. Each threshold is lower while the finger touches something. A contact ends when the
+    /// force, or the torque at every joint, falls below its lower threshold.
     pub touching: bool,
     /// Speed of the tip perpendicular to the force, cm/s, while the finger touches something. A speed above 0 means
     /// that the tip slides on the object, or moves it.

@@ -95,8 +95,8 @@ impl Controller {
 
     /// Writes to the report the factor, 0 to 1, by which the stiffness must be scaled. With this factor the pose
     /// supports the sum of the scaled stiffness of both springs and the stiffness of the soft limits. `k_theta` is the
-    /// stiffness of the tip's spring, N cm/rad. Returns the shares of the tendons' stiffness that the springs, without
-    /// the factor, and the soft limits use.
+    /// stiffness of the tip's spring, N cm/rad. Returns the shares of the tendons' stiffness that the unscaled springs
+    /// and the soft limits use.
     fn limit_stiffness(
         &self,
         report: &mut Report,

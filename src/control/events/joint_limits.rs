@@ -6,7 +6,8 @@ use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 
-/// A joint must move away from its limit by this angle before the detector observes it again, rad (0.5 degrees).
+/// A joint must move away from its limit by the margin plus this angle before the detector observes it again, rad (0.5
+/// degrees).
 const HYSTERESIS: f64 = 0.0087;
 
 /// Detects a joint that comes within a margin of its limit.

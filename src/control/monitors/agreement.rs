@@ -32,8 +32,8 @@ use nalgebra::{Matrix3x4, Vector3, Vector4};
 pub(crate) const SHARE_OF_FRICTION: f64 = 0.4;
 
 /// Errors of the moment arms cause a difference in proportion to the motion of a joint. This is the expected size of
-/// that difference, as a fraction of the largest possible size. The largest size occurs only if the errors of all
-/// moment arms have the signs of these moment arms.
+/// that difference, as a fraction of the largest possible size. The largest size occurs only if the errors of the four
+/// moment arms at this joint, in cm and not as fractions, all have the same sign.
 const TYPICAL: f64 = 0.75;
 
 /// Fraction of t_min below which a tendon may hang slack. The encoders then show a negative stretch, so the difference

@@ -38,15 +38,15 @@ const LEAST_REPEATS: f64 = 0.2;
 /// often has no noise, or its converter is slow.
 const MOST_REPEATS: f64 = 0.7;
 
-/// Lowest fraction of samples in which a gauge that is known to flicker reverses its direction. Noise reverses the
-/// direction in about half of the samples, and motion hardly ever. So a gauge without noise that comes to rest is not
-/// taken for a dead one.
+/// A gauge is known to flicker if it reverses its direction in more than this fraction of the samples, or if its counts
+/// have enough bends (see [`LEAST_BENDS`]). Noise reverses the direction in about half of the samples, and motion
+/// hardly ever. So a gauge without noise that comes to rest is not taken for a dead one.
 const LEAST_REVERSALS: f64 = 0.15;
 
-/// Lowest fraction of samples with a bend in the counts of a gauge that is known to flicker. At a bend, the second
-/// difference of the counts changes its sign. While the dither of the tensions changes a tension by several counts in a
-/// sample, noise hardly ever reverses the direction. The noise still changes the sign of the second difference, which a
-/// smooth tension does not.
+/// A gauge is also known to flicker if its counts have a bend in more than this fraction of the samples. At a bend, the
+/// second difference of the counts changes its sign. While the dither of the tensions changes a tension by several
+/// counts in a sample, noise hardly ever reverses the direction. The noise still changes the sign of the second
+/// difference, which a smooth tension does not.
 const LEAST_BENDS: f64 = 0.05;
 
 /// Smallest second difference that counts as a bend, counts. The second difference of a quantised smooth tension is

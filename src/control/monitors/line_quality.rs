@@ -1,7 +1,6 @@
-//! Fraction of the recent periods that failed: their reply was lost or damaged, or they were skipped.
+//! Fraction of the recent cycles that failed: their reply was lost or damaged, or the servo skipped periods after them.
 
-/// The mean of the failed fractions of the periods. Old periods fade: after one window, the weight of a period has
-/// fallen to 1/e.
+/// The weighted fraction of failed cycles. Old cycles fade: after one window, the weight of a cycle has fallen to 1/e.
 #[derive(Clone, Copy, Debug)]
 pub struct LineQuality {
     gain: f64,
@@ -9,12 +8,12 @@ pub struct LineQuality {
 }
 
 impl LineQuality {
-    /// Constructs a mean with a window of `window` periods, or of one period if `window` is smaller.
+    /// Constructs a mean with a window of `window` cycles, or of one cycle if `window` is smaller.
     pub fn new(window: f64) -> Self {
         Self { gain: 1.0 / window.max(1.0), share: 0.0 }
     }
 
-    /// Records one period and the fraction of it that failed, 0 to 1. Returns the failed fraction of the window.
+    /// Records one cycle: 1 if it failed, 0 if not. Returns the weighted fraction of failed cycles.
     pub fn note(&mut self, wrong: f64) -> f64 {
         self.share += (wrong - self.share) * self.gain;
         self.share

@@ -58,7 +58,7 @@ pub(super) const DEVIATIONS: f64 = 2.0;
 /// Duration of the blocks, s. Samples are compared with what was known one or two blocks before.
 const BLOCK: f64 = 0.5;
 
-/// Disagreement, divided by the tolerated one, from which a block is doubtful.
+/// A block is doubtful if the disagreement, divided by the tolerated one, reaches this value in one of its samples.
 const DOUBTFUL: f64 = 0.7;
 
 /// What is known of the mismatch of a finger.

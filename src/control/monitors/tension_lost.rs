@@ -23,10 +23,10 @@ const LOW: f64 = 0.3;
 /// Fraction of t_min below which the tension of a tendon is gone.
 const GONE: f64 = 0.1;
 
-/// Rise of the missing tension from which the tension of a low tendon counts as missing, as a fraction of t_min. The
-/// missing tension is the tension that the stretch indicates minus the tension that the gauge shows. Its rise is
-/// measured from its mean before any tendon became low. This mean is not zero on a finger with friction along its
-/// tendons or with inexact parameters.
+/// The missing tension is the tension that the stretch indicates minus the tension that the gauge shows. The tension of
+/// a low tendon counts as missing if the missing tension has risen by this fraction of t_min. Its rise is measured from
+/// its mean before any tendon became low. This mean is not zero on a finger with friction along its tendons or with
+/// inexact parameters.
 const MISSED: f64 = 0.3;
 
 /// If the mean of the missing tension (see [`MISSED`]) is positive, the rise from which tension counts as missing is
@@ -35,10 +35,10 @@ const MISSED: f64 = 0.3;
 const INEXACT: f64 = 0.5;
 
 /// A low tendon that shows some tension does not count as slipping if another tendon became low within this time before
-/// or after it, s. The tendons of a finger whose clamp slips lose their tension one after the other. Two tendons of an
-/// intact finger lose their tension together in a push if the controller commands small pulls because the configuration
-/// is not exact. With a condition on the pull of the motor instead of this time, a slipping tendon was reported only
-/// after 56 ms.
+/// or after it, s. The tendons of a finger whose clamp slips lose their tension one after the other. If the
+/// configuration is not exact, the controller may command small pulls. Two tendons of an intact finger can then lose
+/// their tension together in a push. With a condition on the pull of the motor instead of this time, a slipping tendon
+/// was reported only after 56 ms.
 const TOGETHER: f64 = 0.004;
 
 /// Time constant of the mean of the missing tension before any tendon became low, s.
@@ -53,7 +53,7 @@ const TOO_LONG: f64 = 0.5;
 /// Time for which the tension of a tendon must be gone before a warning is given, s.
 const NOTICED: f64 = 0.003;
 
-/// A gauge that flickered is dead if it has shown one count since its tendon became low, in at least this number of
+/// A gauge that flickered is dead if its count has not changed since its tendon became low, in at least this number of
 /// samples. Fewer samples are not enough: if the range of a gauge ends at zero tension, only half of its noise is
 /// visible, and the gauge of a torn tendon occasionally repeats a count too.
 const CERTAIN: u32 = 15;

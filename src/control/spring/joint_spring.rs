@@ -23,9 +23,10 @@ impl JointSpring {
     /// eigenvalue of K_theta divided by the square of `lever`, the length of the last link, cm.
     ///
     /// Joint 2 moves the tip by this lever in every pose, so a Kx of this size gives joint 2 the same stiffness. The
-    /// levers of joints 0 and 1 are longer in most poses, and Kx gives these joints more stiffness than joint 2. But
-    /// K_theta stays the same when the finger is folded. The levers and the inertia of joints 0 and 1 are then small.
-    /// So the lever of joint 2, the shortest one in most poses, is used for all joints.
+    /// levers of joints 0 and 1 are longer in most poses, and Kx gives these joints more stiffness than joint 2. When
+    /// the finger is folded, the levers and the inertia of joints 0 and 1 are small. Kx then gives these joints little
+    /// stiffness, but K_theta gives them as much as before. So the lever of joint 2, the shortest one in most poses, is
+    /// used for all joints.
     pub fn equivalent(&self, lever: f64) -> f64 {
         self.k_theta.symmetric_eigenvalues().max() / (lever * lever)
     }

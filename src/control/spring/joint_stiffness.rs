@@ -14,9 +14,9 @@ const REFERENCE_STIFFNESS: f64 = 3.0;
 const LIMP_DAMPING: f64 = 0.2;
 
 /// Minimum lever of joint 0, cm. With the tip on the axis of joint 0, no stiffness of the tip holds the joint. With the
-/// tip near the axis, a force on the tip can turn the joint away: a force that compresses the spring by d toward the
-/// axis reduces the joint's stiffness k r^2 by k d r. With a minimum lever of 5 mm, the joint is held at deflections of
-/// up to 5 mm.
+/// tip near the axis, a force on the tip can turn the joint out of its pose. A spring of stiffness k at the lever r
+/// gives the joint the stiffness k r^2. A force that moves the tip by d toward the axis reduces it by k d r. With a
+/// minimum lever of 5 mm, the joint is held at deflections of up to 5 mm.
 const LEAST_LEVER: f64 = 0.5;
 
 /// Angle of joint 2, rad, within which the finger counts as straight. It is below the lower limit of joint 2 of the
@@ -133,8 +133,8 @@ fn k_theta(jacobian: &Matrix6x3<f64>, stiffened: &Matrix6x3<f64>, hold: f64) -> 
 }
 
 /// Returns the position of the tip, cm, from the Jacobian of its motion, which already contains the sines of the pose.
-/// Joint 0 turns the tip about the y axis, so column 0 contains x and z of the tip. For each radian, joint 1 moves the
-/// tip away from the y axis by the height of the tip, which is y.
+/// Joint 0 turns the tip about the y axis, so column 0 contains x and z of the tip. The derivative of the
+/// distance of the tip from the y axis with respect to the angle of joint 1 is y of the tip, its height.
 fn tip(jacobian: &Matrix6x3<f64>) -> Vector3<f64> {
     let (cosine, sine) = (jacobian[(3, 1)], -jacobian[(5, 1)]);
     let height = sine * jacobian[(0, 1)] + cosine * jacobian[(2, 1)];
@@ -192,7 +192,8 @@ impl PosedSpring<'_> {
         torques
     }
 
-    /// Returns J^T K d, N cm, with the deflection d of the tip from its pose at `desired`, rad, before any scaling.
+    /// Returns J^T K d, N cm, without `scale`. d is the displacement from the present pose of the tip to its pose at
+    /// the joint angles `desired`, rad.
     fn force_torques(&self, desired: &Vector3<f64>) -> Vector3<f64> {
         // K is symmetric: J^T K d = (K J)^T d.
         let translation = self.of.links.tip(desired) - self.tip;

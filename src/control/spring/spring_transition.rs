@@ -48,9 +48,10 @@ impl Spring {
     }
 }
 
-/// Two equal first-order stages in series. With one stage the torque would have a kink. With two stages, the finger
-/// still follows a planner that sends a new spring in every cycle. The stages act on the spring and not on its torque:
-/// if two springs are within the bound of the stiffness, every spring between them is within this bound too.
+/// Two equal first-order stages in series. With one stage the torque would have a kink. Unlike a ramp that starts again
+/// with every command, the stages also follow a planner that sends a new spring in every cycle. The stages act on the
+/// spring and not on its torque: if two springs are within the bound of the stiffness, every spring between them is
+/// within this bound too.
 #[derive(Clone, Debug)]
 pub(crate) struct SpringTransition {
     /// Fraction of the remaining difference by which a stage moves in a cycle.

@@ -121,10 +121,10 @@ impl Drives {
     }
 
     /// Returns the factors on alpha and on c, which is `relative_damping`, for the common component of the tensions.
-    /// The joints do not move with this component. With its own alpha and c, the stretch x of the tendons obeys
-    /// m x'' + c x' + alpha k x = 0. The factors give this motion a frequency and a damping ratio that do not depend on
-    /// the mass m of the rotors. With factors that did not depend on m, the tensions of fingers with rotors of 2.5
-    /// times the inertia were low for up to 287 ms after a bump.
+    /// The joints do not move with this component. With alpha and c multiplied by the factors, the stretch x of the
+    /// tendons in this component obeys m x'' + c x' + alpha k x = 0. The factors give this motion a frequency and a
+    /// damping ratio that do not depend on the mass m of the rotors. With factors that did not depend on m, the
+    /// tensions of fingers with rotors of 2.5 times the inertia were low for up to 287 ms after a bump.
     fn common_factors(&self, numbers: &Numbers, relative_damping: f64) -> CommonFactors {
         let (mass, stiffness) = (self.mass.mean(), self.stiffness.mean());
         let frequency = numbers.common_frequency;
@@ -161,9 +161,9 @@ fn link_dynamics(finger: &ConfiguredFinger) -> Result<LinkDynamics, Unusable> {
     Ok(LinkDynamics::new(finger.links(), finger.links.masses, finger.links.radii, Vector3::zeros()))
 }
 
-/// Returns the dither of the tensions. `highest` is the largest tension of each tendon, N. `lowest` is the lowest
-/// desired tension in a burst, N. It is t_min plus the largest amplitude that the dither of the joints has in a
-/// tension. No distance for the noise is added, because a burst is short.
+/// Returns the dither of the tensions. `highest` is the largest tension of each tendon, N. The dither of a burst lowers
+/// no desired tension to less than `lowest`, N. `lowest` is t_min plus the largest amplitude by which the dither of the
+/// joints changes a tension. It contains no reserve for the noise of the gauges, because a burst is short.
 fn tension_dither(
     finger: &ConfiguredFinger,
     numbers: &Numbers,

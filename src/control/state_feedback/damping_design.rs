@@ -8,11 +8,10 @@ use nalgebra::Matrix3;
 /// K is the stiffness of the spring, W the inertia on which it acts, and H the inertia of the links alone. sym is the
 /// symmetric part.
 ///
-/// W # K = W (W^-1 K)^(1/2) is the geometric mean. In one dimension, without f and lag, D is 2 zeta sqrt(W K). In
-/// general, D gives every mode of the pair (W, K) the same damping ratio zeta. Because of the lowest frequency f, a
-/// finger is also damped if it has no stiffness, or if K does not have full rank. The tensions lag behind the desired
-/// ones by `lag`. The share H W^-1 of the spring's torque acts on the links. The second term compensates the lag of
-/// that share.
+/// W # K = W (W^-1 K)^(1/2) is the geometric mean. Without f and lag, D gives every mode of the pair (W, K) the damping
+/// ratio zeta; in one dimension D is 2 zeta sqrt(W K). Because of the lowest frequency f, a finger is also damped if it
+/// has no stiffness, or if K does not have full rank. The tensions lag behind the desired ones by `lag`. The share H
+/// W^-1 of the spring's torque acts on the links. The second term compensates the lag of that share.
 #[derive(Clone, Debug)]
 pub(crate) struct DampingDesign {
     /// zeta: damping ratio.

@@ -28,7 +28,8 @@ pub(in crate::control) struct Decision {
     pub torque_scale: f64,
 }
 
-/// The motion of all tendons and joints, predicted for `sample_offset` relative to the next sample, SI units.
+/// The motion of all tendons and joints in SI units, predicted for the moment `sample_offset` after the next sample, or
+/// before it if the offset is negative.
 struct FingerMotion {
     tensions: Vector4<f64>,
     motor_speeds: Vector4<f64>,
@@ -59,8 +60,8 @@ impl StateFeedback {
     /// Returns the pulls that act from the next sample on. They give the fingertip the spring `spring`, and the joints
     /// the spring `joint_spring`. The anchor of both springs has the motion `motion`. If `begins` is true, the springs
     /// start without deflection. `pose` has the sines of the joint angles in `state`. `gravity` is the compensation,
-    /// with the gravity that planners have set, m/s^2. `used` is what the springs and the soft joint limits use of the
-    /// stiffness of the tendons.
+    /// with the gravity that planners have set, m/s^2. `used` has the shares of the tendons' stiffness that the
+    /// springs and the soft joint limits use.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,

@@ -20,9 +20,9 @@ pub(super) const SLOW: f64 = 0.2;
 /// bursts of fingers with rotors of half the inertia caused motions of 2 mm.
 const HELD: f64 = 0.1;
 
-/// Time constant with which the envelope rises, s. The tensions are still low directly after a motion. With 0.01 s, the
-/// first oscillation is therefore so large that a tension falls to 3.8 N after a reach of 30 mm. With 0.025 s, "worn"
-/// and "sheathed" fingers settle later. These names are values of `simulation.hand`.
+/// Time constant with which the envelope rises, s. Directly after a motion the tensions are still low. With 0.01 s, the
+/// dither is already large at that time: after a reach of 30 mm, a tension fell to 3.8 N, below t_min of 5 N. With
+/// 0.025 s, "worn" and "sheathed" fingers settle later. These names are values of `simulation.hand`.
 const RISING: f64 = 0.02;
 /// Value from which the envelope counts as risen.
 const RISEN: f64 = 0.8;
@@ -75,8 +75,8 @@ impl DitherBurst {
     }
 
     /// Returns whether a fast motion has ended and its burst cannot begin: something stopped the finger, or a tendon is
-    /// almost slack. `rates` are the joint rates of the reference, rad/s. The result is valid while the envelope is
-    /// small, because the burst also counts as awaited while the envelope rises.
+    /// almost slack. `rates` are the joint rates of the reference, rad/s. Call it only while the envelope is small.
+    /// While the envelope rises, `awaited` is still true, so the result would be true although the burst has begun.
     pub fn waits(&self, state: &DitherBurstState, rates: &Vector3<f64>) -> bool {
         state.awaited && rates.amax() < SLOW && self.can_wait
     }

@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 const FIRMNESS: f64 = 2.0;
 
 /// Like [`FIRMNESS`], but for the firmness of a joint while the other joints are free, 1/rad. This firmness is small if
-/// the finger is nearly straight. With 0.2, the amplitude is smallest if joint 2 is bent by 32 degrees or more, and the
-/// factor is 1 at 21 degrees.
+/// the finger is nearly straight. With 0.2, at 3 N/cm the amplitude is smallest if joint 2 is bent by 32 degrees or
+/// more, and the factor is 1 at 22 degrees.
 const FREE_FIRMNESS: f64 = 0.2;
 
-/// Range of the factor on the amplitude. With a factor of up to 2.5 the softest poses are more exact, but they creep
-/// for up to 0.76 s after a step.
+/// Range of the factor on the amplitude. With a factor of up to 2.5, the finger is more exact in the softest poses,
+/// but creeps there for up to 0.76 s after a step.
 const FACTORS: [f64; 2] = [0.7, 2.0];
 
 /// Additional factor on the amplitude of a finger that touches something. At walls the dither moves the tip.
@@ -22,11 +22,11 @@ const TOUCHING: f64 = 0.7;
 /// Time constant with which the factor [`TOUCHING`] begins and ceases to act, s.
 const CHANGING: f64 = 0.05;
 
-/// Pulleys on which the dither keeps the tendons sliding act like viscous friction. A finger that was pushed therefore
-/// approaches its rest position with a time constant that is inversely proportional to the stiffness of the joints and
-/// to the amplitude of the dither. In a pose in which the tip is close to the axis of a joint, this joint is soft. A
-/// nearly straight finger is soft along its links. In both cases the amplitude is larger. In poses with stiff joints a
-/// smaller amplitude suffices, and the tip, which has a long lever, moves less.
+/// If the dither keeps a tendon sliding on its pulleys, their friction acts like viscous friction. A finger that was
+/// pushed therefore approaches its rest position with a time constant that is inversely proportional to the stiffness
+/// of the joints and to the amplitude of the dither. In a pose in which the tip is close to the axis of a joint, this
+/// joint is soft. A nearly straight finger is soft along its links. In both cases the amplitude is larger. In poses
+/// with stiff joints a smaller amplitude suffices, and the tip, which has a long lever, moves less.
 #[derive(Clone, Debug)]
 pub(super) struct DitherScale {
     /// For each joint, 1 / the sum of the magnitudes of the torques of the four tendons at the pretension, 1/(N cm).
@@ -34,7 +34,7 @@ pub(super) struct DitherScale {
     changing: f64,
 }
 
-/// How far the factor for a finger that touches something acts, from 0 to 1.
+/// The degree to which the factor [`TOUCHING`] acts: from 0 without contact to 1 in lasting contact.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(super) struct DitherScaleState(f64);
 

@@ -3,8 +3,9 @@
 //!
 //! The masses follow from the configured rotor inertias. The gains of the observers follow from the size of a count of
 //! the encoders and of the gauges, and from a bandwidth. The other numbers are tuned. Most of them are dimensionless,
-//! or their unit is cycles or radians per cycle. They were found by a search on the eigenvalues of the exact one-cycle
-//! map of the default finger. No number was tuned for a single pose. `cargo bench --bench stiffness -- --search`
+//! or their unit is cycles or radians per cycle. Many were found by a search on the eigenvalues of the exact
+//! one-cycle map of the default finger and of fingers that differ from it; the comments and docs/stiffness.md give the
+//! reasons for the others. No number was tuned for a single pose. `cargo bench --bench stiffness -- --search`
 //! searches for the numbers of a set of fingers. A name in quotes, such as "worn", is a value of
 //! `simulation.hand`. An identified finger uses the values that a calibration has found.
 
@@ -56,7 +57,7 @@ pub struct Numbers {
     /// Smallest amplitude of the dither of the tensions as a fraction of the tension. 0: no dither of the tensions.
     pub tension_dither: f64,
     /// Amplitude to which the dither of the tensions rises after a motion of the reference, as a fraction of the
-    /// tensions of a finger without joint torque whose lowest tension is t_min.
+    /// tensions at zero joint torque, of which the lowest is t_min.
     pub dither_burst: f64,
     /// The part of the motors' friction that is fed forward.
     pub friction_share: f64,
@@ -117,8 +118,8 @@ const TENSION_DITHER: f64 = 0.06;
 /// during most of a dither period, so that the finger settles within some periods after a push or a step.
 const PULLEY_EXCESS: f64 = 5.0;
 
-/// See [`Numbers::dither_reserve`]. More pretension has a second effect: the ratios of each tendon's tension to its
-/// entry of the null vector of R then differ less from each other.
+/// See [`Numbers::dither_reserve`]. A larger reserve raises the pretension. Besides making room for the dither, this
+/// makes the tensions more nearly proportional to the null vector of R.
 const DITHER_RESERVE: f64 = 16.0 / 3.0;
 
 /// See [`Numbers::dither_rise`].

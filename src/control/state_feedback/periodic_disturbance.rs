@@ -29,8 +29,8 @@ const LARGEST_LEAD: f64 = 3.0;
 /// Finds d = mean + Re(D e^(j omega t)) in the disturbance of each motor as the observer estimates it, and returns the
 /// difference between the oscillation that will act in the next period and the estimated one.
 ///
-/// A factor above 1 on the difference would reduce the motion at walls, but the pull of a motor that is held would
-/// oscillate more and more.
+/// If the returned difference were multiplied by a factor above 1, the joints would move less while the tip presses
+/// against a wall. But the pull of a motor whose rotor is held would oscillate more and more.
 #[derive(Clone, Debug)]
 pub(super) struct PeriodicDisturbance {
     /// Real and imaginary part of e^(j omega T) / H - 1 for each motor. H is the phasor of the estimate divided by the

@@ -11,9 +11,9 @@ use nalgebra::Vector4;
 /// makes steps overshoot.
 ///
 /// w is the observed speed of the tendon, low-pass filtered, while the reference is at rest. A finger that was pushed
-/// or has ended a step creeps toward its rest position, because pulleys on which the dither keeps the tendons sliding
-/// act like viscous friction. The second term compensates a part of this viscous friction. It is small, because it is a
-/// negative damping if the friction is smaller than configured.
+/// or has ended a step creeps toward its rest position, because the dither keeps the tendons sliding on the pulleys,
+/// whose friction then acts like viscous friction. The second term compensates a part of this viscous friction. It is
+/// small, because it is a negative damping if the friction is smaller than configured.
 #[derive(Clone, Debug)]
 pub(crate) struct PulleyFeedForward {
     /// p s.

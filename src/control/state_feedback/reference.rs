@@ -161,7 +161,7 @@ mod tests {
     }
 
     /// Runs a reference whose set point is at rest, then moves along the path for 0.3 s, and then is at rest again. The
-    /// first set point is `offset`, rad, away from the beginning of the path.
+    /// reference starts `offset`, rad, away from the beginning of the path.
     fn run(offset: f64) -> Vec<ReferenceMotion> {
         let (filter, slew) = (Reference::new(0.008, RATE), Slew::new(5.0, RATE));
         let (mut anchor, mut along) = (Vector3::x() * offset, None);

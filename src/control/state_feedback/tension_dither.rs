@@ -59,7 +59,7 @@ pub(crate) struct TensionDither {
     most: Vector4<f64>,
     /// Tension below which the amplitude falls quickly, N.
     low: f64,
-    /// Lowest desired tension in a burst, N.
+    /// The dither of a burst lowers no desired tension to less than this, N.
     lowest: f64,
     measuring: f64,
     adjusting: f64,
@@ -90,8 +90,8 @@ pub(crate) struct TensionDitherState {
 
 impl TensionDither {
     /// Constructs the dither. `common` is n. `pulley` is the friction of the pulleys. `torques` has, for each joint,
-    /// the sum of the magnitudes of the torques of the four tendons at the pretension, N cm. `lowest` is the lowest
-    /// desired tension in a burst, `most` is the largest tension of each tendon, and `minimum` is t_min, N.
+    /// the sum of the magnitudes of the torques of the four tendons at the pretension, N cm. `lowest` and `most`
+    /// are the members with these names, and `minimum` is t_min, N.
     pub fn new(
         common: Vector4<f64>,
         numbers: &Numbers,

@@ -21,7 +21,7 @@ const MOST_NOISE: f64 = 0.05;
 /// If more than this fraction of all samples equals the lowest sample, the converter clips the noise below zero
 /// tension.
 const CLIPPED: f64 = 0.3;
-/// Standard deviation of Gaussian noise, divided by the standard deviation of its positive part.
+/// Standard deviation of Gaussian noise, divided by the standard deviation of its positive part: 1.71, rounded up.
 const UNCLIPPED: f64 = 1.75;
 /// If the clipped fraction of the samples is not above [`CLIPPED`], the standard deviation of the samples is multiplied
 /// by 1 plus this multiple of the fraction. The product is the standard deviation of the Gaussian noise.
@@ -39,7 +39,8 @@ pub(super) struct Gauge {
     lowest: f64,
     /// Number of samples that equal `lowest`.
     at_lowest: f64,
-    /// Mean tension before the motor moved. It is the error of the gauge's zero if the tendon was slack.
+    /// Mean tension before the motor moved, lowered since then if the smoothed tension has fallen (see [`LOWER`]). It
+    /// is the error of the gauge's zero if the tendon was slack.
     pub tare: f64,
     /// Root-mean-square noise.
     pub noise: f64,

@@ -22,9 +22,9 @@ const SLACK: f64 = 0.2;
 /// low-pass filter makes g follow t / pull. In this quotient, pull is the pull that acted when the tension t was
 /// measured.
 ///
-/// Only the conversion from tension to torque is adapted. In (RM)^-T the letter M stands for geometry. An estimate of
-/// that M would change the measured joint angles, the angles would change the tensions, and the tensions would change
-/// the estimate.
+/// Only the conversion from tension to torque is adapted. The block (RM)^-T of Figure 9, which computes joint angles
+/// from motor angles, contains an M too. That M is not adapted, because it stands for geometry: an estimate would
+/// change the measured joint angles, the angles would change the tensions, and the tensions would change the estimate.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure11 {
     /// Fraction of the remaining difference by which the estimate changes in a cycle.

@@ -113,8 +113,8 @@ fn random_part(path: &Path) -> u64 {
     u64::from_str_radix(digits, 16).expect("hexadecimal digits")
 }
 
-/// A counter, the number of a process and the time leave some bits of the names constant. A generator with a constant
-/// seed makes the same names in every process.
+/// Names made from a counter, the number of the process or the time would have bits that never change. A generator with
+/// a constant seed would make the same names in every process.
 #[test]
 fn every_bit_of_a_temporary_name_is_random() {
     if let Some(folder) = env::var_os(CREATES_IN) {

@@ -17,8 +17,8 @@ pub(super) struct LastPath {
 }
 
 /// Makes a change of a set point that leaves the stiffness as it is. If `path` changes the stiffness, the set point has
-/// the stiffest spring of the path during the change. A check in `change` thus holds for the whole path, because the
-/// range of the damping narrows as the stiffness grows.
+/// the stiffness of the stiffest spring of the path while `change` runs. A check in `change` thus holds for the whole
+/// path, because the range of the damping narrows as the stiffness grows.
 pub(super) fn change_along<E>(
     path: Option<PathExtent>,
     set_point: &mut SetPoint,

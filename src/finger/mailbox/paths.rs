@@ -114,7 +114,8 @@ impl PreparedPath<'_> {
 }
 
 impl PlannersEnd {
-    /// Like [`Mailbox::path_ahead`], after the set point that was sent last has been brought up to date.
+    /// Does the same as [`Mailbox::path_ahead`], but does not bring the set point that was sent last up to date. The
+    /// caller must have done so.
     fn path_ahead(&mut self) -> Option<PathExtent> {
         self.extent_ahead(self.sent.path)
     }
@@ -137,14 +138,15 @@ impl PlannersEnd {
         self.reports.read().set_point_number.wrapping_sub(self.path.set_point).cast_signed() >= 0
     }
 
-    /// Returns the stiffness with which a path that comes after `sent` begins, and the same stiffness again if the
-    /// servo must take it from the path. The servo need not do so if the stiffness in force is changing along an
-    /// earlier path. Without the stiffness in the path, a stiffness that was sent just before the path would never come
-    /// into force, because the servo takes only the newest set point. The path would then begin with an older
-    /// stiffness, for which the damping was not checked.
+    /// Returns the stiffness with which a path that comes after `sent` begins, and the stiffness that the path must
+    /// bring to the servo. The second value is the first one, or none: if the stiffness in force is changing along an
+    /// earlier path, the servo begins with the stiffness in force, and the path need not bring one. Without the
+    /// stiffness in the path, a stiffness that was sent just before the path would never come into force, because the
+    /// servo takes only the newest set point. The path would then begin with an older stiffness, for which the damping
+    /// was not checked.
     fn begin_of_stiffness(&mut self, sent: &SentSetPoint) -> (Matrix6<f64>, Option<Matrix6<f64>>) {
         let changing = sent.path.is_some_and(|path| path.stiffness) && self.extent_ahead(sent.path).is_some();
-        // The set point that was sent has the stiffness of the end of the earlier path.
+        // While an earlier path changes the stiffness, `sent` already has the stiffness of the end of that path.
         let begin = if !changing {
             Some(sent.set_point.stiffness)
         } else if self.is_path_taken() {
@@ -155,8 +157,9 @@ impl PlannersEnd {
         (begin.unwrap_or_else(|| self.reports.read().set_point.stiffness), begin)
     }
 
-    /// Returns the extent of the path that the finger follows after a change that replaces `replaced`, if the path may
-    /// still change the stiffness.
+    /// Returns the extent of the path that the finger still follows after the part `replaced` of the set point has been
+    /// replaced. Returns none after a new place, which ends the path, and after a new stiffness, which ends its change
+    /// of the stiffness.
     pub(super) fn path_kept_by(&mut self, replaced: Replaced) -> Option<PathExtent> {
         match replaced {
             Replaced::Other => self.path_ahead(),

@@ -34,7 +34,7 @@ impl ServoEnd {
         self.requests.closing.load(Ordering::Acquire)
     }
 
-    /// Returns whether a planner has requested to stop the finger.
+    /// Returns whether a planner has requested a stop of the finger that no recovery has answered yet.
     pub fn stop_requested(&self) -> bool {
         self.requests.stops.load(Ordering::Acquire) != self.requests.answered_stops.load(Ordering::Acquire)
     }

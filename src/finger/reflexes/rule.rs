@@ -74,9 +74,9 @@ pub enum Reaction {
     Soften(Matrix3<f64>),
     /// The anchor of the spring moves to these joint angles, rad.
     Retract(Vector3<f64>),
-    /// The tip presses harder in one direction. If the component of its spring's force in this direction is below 0.05
-    /// N, the anchor stays where it is, whether or not `direction` is zero. The anchor also stays if Kx, or the
-    /// Jacobian at the anchor, has no inverse.
+    /// The tip presses harder in one direction: `direction`, or, if that is zero, the direction in which the spring
+    /// presses now. If the spring presses with less than 0.05 N in this direction, the anchor stays where it is. The
+    /// anchor also stays if Kx, or the Jacobian at the anchor, has no inverse.
     Grip {
         /// The direction in the finger's frame, for example the inward normal of the object at the tip. Its length does
         /// not matter. If it is zero, the direction in which the spring presses now is used.

@@ -32,7 +32,8 @@ pub struct ContinuousReplay {
     keyframe: Option<(u64, State)>,
     /// Number of the next cycle; none before the first.
     next: Option<u64>,
-    /// Whether the finger was faulted in the last cycle. The servo records no cycles while the finger is faulted.
+    /// Whether the finger faulted in the last cycle that arrived. The servo records this cycle, and then none until the
+    /// finger recovers.
     faulted: bool,
 }
 

@@ -1,4 +1,5 @@
-//! Texts about recordings: nobody can follow the remedy of a configuration error there.
+//! Texts of errors about recordings. They leave out the remedy of a configuration error, because nobody can change the
+//! configuration in a recording.
 
 /// Returns the reason why a configuration cannot be used, without its remedy, which is for a person who writes the
 /// configuration. The remedy is the second sentence. If there is only one sentence, the remedy is the part after its

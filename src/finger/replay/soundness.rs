@@ -12,8 +12,8 @@ use serde::Serialize;
 use serde_json::Value;
 use std::ops::RangeInclusive;
 
-/// Largest number of controller cycles that a replay computes, including those for skipped periods: a hundred for every
-/// cycle of two seconds at the highest rate. The computation takes some seconds.
+/// Largest number of controller cycles that a replay computes, including those for skipped periods: a hundred times
+/// the number of cycles in two seconds at the highest rate. The computation takes some seconds.
 const MOST_COMPUTED: u64 = 1_000_000;
 
 /// Largest permitted size of a number. It is larger than any quantity of a finger in any unit, and small enough that
@@ -97,8 +97,8 @@ pub(super) struct InputLimits<'a> {
 
 impl<'a> InputLimits<'a> {
     pub fn new(hand: &'a ConfiguredHand) -> Self {
-        // A built-in simulated finger waits for its servo and never skips a period, so the limit for real fingers is
-        // used for all fingers.
+        // A built-in simulated finger waits for its servo and never skips a period, so it is within every limit. The
+        // limit for real fingers can therefore be used for all.
         Self { hand, most_skipped: u64::from(LinkWatch::new(hand, false).fault_at()) }
     }
 

@@ -65,7 +65,7 @@ impl FingerServo {
         self.report.expired_phase = None;
         self.motion.renewal = None;
         self.enter(before.stage);
-        // A path that was sent together with the order to calibrate has not begun.
+        // A path that was sent together with the order to calibrate has not begun, and must not begin now.
         self.end_motion();
         (before.adjustable.number != self.adjustable.number).then_some(before.adjustable)
     }

@@ -3,8 +3,8 @@
 use crate::finger::Stage;
 use crate::finger::{Adjustable, CalibrationRun};
 
-/// A calibration. `before` is the state of the finger before the calibration. The finger stays in this state until the
-/// routine gives its first activity. Afterwards `before` is none.
+/// A calibration. `before` is what the finger had before the calibration. Except for the stage, the finger keeps it
+/// until the routine gives its first activity. Afterwards `before` is none.
 pub(super) struct Calibrating {
     pub run: CalibrationRun,
     pub before: Option<Before>,

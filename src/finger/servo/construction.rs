@@ -23,8 +23,9 @@ use nalgebra::{Matrix3, Vector3};
 /// `Running`, s.
 const TENSION_SETTLED: f64 = 0.02;
 
-/// No joint can be this far beyond its soft limits, rad. Its mechanical stops are closer, and the errors of measured
-/// angles are smaller.
+/// Distance of a joint from its soft limits, rad, beyond which its measured pose counts as impossible. In the stage
+/// `Running`, a margin is added. The mechanical stops of a hand are usually closer, and the errors of measured angles
+/// are smaller.
 const BEYOND_LIMITS: f64 = 0.5;
 
 /// Time for which a warning is kept after it was last noted, ms.

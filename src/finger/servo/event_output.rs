@@ -64,7 +64,7 @@ impl EventOutput {
         self.detectors.arrival()
     }
 
-    /// Sets the threads that wait for events.
+    /// Sets the counter at which threads wait for events.
     pub fn set_readers(&mut self, readers: SharedPages<EventCount>) {
         self.readers = Some(readers);
     }

@@ -7,7 +7,7 @@ use crate::finger::events::EventLog;
 use crate::realtime::{EventCount, SharedPages};
 
 impl FingerServo {
-    /// Sets the threads that wait for events. All fingers of a hand have the same ones.
+    /// Sets the counter at which threads wait for events. All fingers of a hand have the same counter.
     pub fn with_readers(mut self, readers: SharedPages<EventCount>) -> Self {
         self.memory.add_shared(&readers);
         self.events.set_readers(readers);

@@ -7,9 +7,10 @@ use crate::finger::{Fault, FaultKind, Order, RestoredBoard, Stage};
 use crate::model::Part;
 use nalgebra::Vector4;
 
-/// Additional margin of the pose check in the stage Running, rad. After a blow, a joint whose tendons are slack can
-/// seem to be further beyond its limits than any joint at rest. Of 100 fingers hit by a force of 6 N, one had a joint
-/// that seemed to be 0.55 rad beyond its limits and then returned.
+/// Margin of the pose check in the stage Running, rad, in addition to the 0.5 rad beyond the joint limits that are
+/// always permitted. After a blow, a joint whose tendons are slack can seem to be further beyond its limits than any
+/// joint at rest. Of 100 fingers hit by a force of 6 N, one had a joint that seemed to be 0.55 rad beyond its limits
+/// and then returned.
 const BLOW_MARGIN: f64 = 0.3;
 
 /// If less than this fraction of the scheduled cycles has run in an opening that times out, the fault names the machine
@@ -129,8 +130,9 @@ impl FingerServo {
         self.link.answered();
         self.supervision.recover();
         self.calibration = None;
-        // An order that was given before the fault and was not taken is discarded. New data is kept. The controller
-        // starts with this data, and does not continue from the state of the previous controller.
+        // An order that was given before the fault and was not taken is discarded. A configuration that came with the
+        // order is kept: the controller starts with it, and does not continue from the state of the previous
+        // controller.
         self.report.orders += u32::from(self.mailbox.new_order().is_some());
         if let Some(new) = self.mailbox.new_adjustable() {
             self.adjustable = new.clone();

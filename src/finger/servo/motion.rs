@@ -37,7 +37,8 @@ impl FingerServo {
     }
 
     /// Sets the validity, which begins in the period `begin`. The time that has already passed since `validity.since`
-    /// is deducted from it. A finger that holds its pose after its set point has expired continues to hold this pose.
+    /// is deducted from it. A new validity does not revive a set point that has expired: a finger that already holds
+    /// its pose for this reason continues to hold it.
     fn set_validity(&mut self, begin: u64, validity: &Validity) {
         let (hold, end) = self.adjustable.motion.times(validity);
         let past = validity.since.map_or(0.0, |since| self.report.last.saturating_sub(since) as f64 * 1e-9);

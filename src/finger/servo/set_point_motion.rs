@@ -61,8 +61,8 @@ impl SetPointMotion {
     /// only corrected it. `in_force` is the number of the set point in force.
     pub fn note_planned(&mut self, sent: &SentSetPoint, in_force: u32) -> bool {
         let planned = (sent.spring, sent.planned);
-        // The library can also correct a set point of the servo itself, or one of the previous phase. `sent.planned` is
-        // then the number in force.
+        // The library may also have corrected a set point that the servo set itself, or one of the previous phase. The
+        // correction then started from the set point in force, so `sent.planned` equals `in_force`.
         let new = planned != self.planned && sent.planned != in_force;
         self.planned = planned;
         new

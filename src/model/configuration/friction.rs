@@ -1,5 +1,6 @@
 //! `[finger.friction]`: the controller's model of the friction of a finger. The true values of the simulated finger are
-//! in `[finger.simulation]`. The defaults here equal the defaults there. An experiment with a wrong model sets
+//! in `[finger.simulation]`. The defaults here describe the default finger there; `conduit` corresponds to
+//! `simulation.shaft_friction`. An experiment with a wrong model sets
 //! different values in the two places.
 
 use serde::{Deserialize, Serialize};

@@ -1,5 +1,6 @@
 //! The types of a hand's configuration, with a default for every value. The defaults describe the finger of the report,
-//! with plausible values for what the report omits. Each table of the configuration file has a Rust file here, and each
+//! with plausible values for what the report omits. Each table of the configuration file, except `[serve]` and
+//! `[remote]`, has a Rust file here, and each
 //! key is a field of the table's type. `[finger]` itself is in this file. The layer `hand` reads the values from a
 //! file. `model/validation.rs` checks them.
 

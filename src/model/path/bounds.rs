@@ -4,8 +4,8 @@
 /// rate, acceleration and jerk are given at both ends.
 pub const COEFFICIENTS: usize = 8;
 
-/// The Bernstein coefficients of a polynomial. The values of the polynomial over the unit interval lie within their
-/// range.
+/// The Bernstein coefficients of a polynomial. Over the unit interval, the polynomial lies between the smallest and the
+/// largest of them.
 type Bernstein = [f64; COEFFICIENTS];
 
 /// Bounds are accepted if they are outside the true range by at most this part of its width.

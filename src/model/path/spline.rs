@@ -92,10 +92,12 @@ fn motions_at_inner_knots(start: &Start, knots: &[Knot]) -> Vec<AtKnot> {
             near -= arriving.far * factor;
             constant -= arriving.far * offset;
         }
-        // The matrix is invertible: with the rows (-snap, jerk), the matrix of the whole system has a positive definite
-        // symmetric part. Each piece of degree 5 adds to it the second derivative of half the integral of its squared
-        // jerk, which is symmetric and positive semidefinite. The first and the last piece, of degree 6, add matrices
-        // with positive definite symmetric parts.
+        // `near` is a pivot of the elimination. If the two equations of each knot are written in the order (-snap,
+        // jerk), the matrix of the whole system has a positive definite symmetric part, so every pivot is invertible.
+        // The matrix is a sum over the pieces. For a piece of degree 5, half the integral of its squared jerk is a
+        // quadratic function of the rates and accelerations at its ends, and the piece adds the Hessian of this
+        // function, which is symmetric and positive semidefinite. The first and the last piece, of degree 6, add
+        // matrices with positive definite symmetric parts.
         let inverse = near.try_inverse().unwrap_or_else(Matrix2::zeros);
         offsets.push(inverse * constant);
         factors.push(inverse * -leaving.far);

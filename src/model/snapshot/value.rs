@@ -1,4 +1,5 @@
-//! The copy of a value. Each format writes every such copy with the same small amount of code.
+//! The copy of a value. A format needs code only for this one type, and not for each type of
+//! which there are copies.
 
 use serde::ser::{Error, SerializeStruct, SerializeStructVariant, SerializeTuple};
 use serde::{Serialize, Serializer};

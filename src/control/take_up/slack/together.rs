@@ -18,7 +18,8 @@ const COMPLETE: f64 = 0.1;
 /// Largest excess over the pretension with which the take-up is complete, as a fraction of the pretension. A finger at
 /// its stops has other tensions than the pretension.
 const TOO_HIGH: f64 = 0.5;
-/// Smallest permitted tension of a tendon, as a fraction of t_min. It applies even if the common tension is right.
+/// Tension, as a fraction of t_min, below which a tendon counts as having too little tension. It applies even if the
+/// common tension is right.
 const LEAST: f64 = 0.9;
 
 /// A tendon is not slack if its tension exceeds its tare by more than this fraction of the pretension.
@@ -44,7 +45,7 @@ impl SlackTakeUp {
         let reach = TOGETHER * self.period;
         let together = slack.taut_at + self.stretch * slack.common;
         let steps = Vector4::from_fn(|motor, _| {
-            // A tendon that was taut before its motor moved is not let out.
+            // A tendon below its pretension is not let out beyond `waits_at`.
             let waits = slack.tensions[motor] < self.pretension[motor];
             let wanted = if waits { together[motor].max(slack.waits_at[motor]) } else { together[motor] };
             (wanted - slack.targets.travel[motor]).clamp(-reach, reach)
@@ -65,10 +66,10 @@ impl SlackTakeUp {
         }
     }
 
-    /// Makes the motors of the tendons that seemed to be taut but are slack wind in again.
+    /// Some tendons seemed to be taut but are slack. Makes their motors wind in again.
     fn touch_again(&self, slack: &mut Slack, taut: [bool; 4], travel: &Vector4<f64>) {
         if !slack.gauges.iter().all(Gauge::is_tared) {
-            // All tendons seemed to be taut at the start, so the gauges were not read.
+            // All tendons seemed to be taut at the start, so the tares of the gauges were not measured.
             *slack = Self::taring(*travel, slack.tensions);
             return;
         }
