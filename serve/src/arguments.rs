@@ -11,7 +11,6 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use std::path::PathBuf;
 use sun2xp::hand::find_configuration;
-use sun2xp::model::Shown;
 use sun2xp::realtime::is_ignored;
 use sun2xp::{Configured, Hand};
 use sun2xp_remote_protocol::{ClientName, NameError};
@@ -108,9 +107,7 @@ fn names(
     texts: &[String],
     read: impl Fn(&str) -> Result<ClientName, String>,
 ) -> Result<Vec<ClientName>, ServeError> {
-    let name = |text: &String| {
-        read(text).map_err(|reason| ServeError::Argument { option, text: Shown(text).to_string(), reason })
-    };
+    let name = |text: &String| read(text).map_err(|reason| ServeError::argument(option, text, reason));
     texts.iter().map(name).collect()
 }
 

@@ -13,7 +13,6 @@ use std::fs::{DirBuilder, OpenOptions, remove_dir, remove_file};
 use std::io::{self, Write};
 use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
-use sun2xp::model::Shown;
 use sun2xp_remote_protocol::ClientName;
 use time::{Duration, OffsetDateTime};
 
@@ -149,13 +148,9 @@ fn leaf(
     made: &mut Vec<PathBuf>,
 ) -> Result<(), ServeError> {
     if let Some(address) = addresses.iter().find(|address| CertificateParams::new(vec![(*address).clone()]).is_err()) {
-        return Err(ServeError::Argument {
-            option: "--address",
-            text: Shown(address).to_string(),
-            reason: "a certificate can name only ASCII names and IP addresses: give the ASCII form of the name \
-                     (xn--...), or an IP address"
-                .into(),
-        });
+        let reason = "a certificate can name only ASCII names and IP addresses: give the ASCII form of the name \
+                      (xn--...), or an IP address";
+        return Err(ServeError::argument("--address", address, reason));
     }
     let [certificate, key] = files(folder, name.as_str());
     // A client's certificate must not pass as the certificate of a server. A server may connect to a router, and

@@ -3,6 +3,7 @@
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
+use sun2xp::model::Shown;
 use sun2xp::realtime::with_remedy;
 use sun2xp::{ConfigurationError, HandError};
 use thiserror::Error;
@@ -77,6 +78,11 @@ impl ServeError {
     /// The error for an operation that the system refuses, and that needs a thread or a descriptor.
     pub(crate) fn refused(doing: &'static str, error: &io::Error) -> Self {
         Self::System { doing, reason: with_remedy(error) }
+    }
+
+    /// The error for an argument of the command line. `text` is what was given.
+    pub(crate) fn argument(option: &'static str, text: &str, reason: impl Into<String>) -> Self {
+        Self::Argument { option, text: Shown(text).to_string(), reason: reason.into() }
     }
 
     /// The error for a key that Zenoh refuses to declare.

@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 use sun2xp::ConfigurationError;
 use sun2xp::files::read_regular_file;
 use sun2xp::hand::{Wrong, deserialize};
-use sun2xp::model::Shown;
 use sun2xp_remote_protocol::{ClientName, HandName};
 use toml_edit::{Document, Item};
 
@@ -157,10 +156,10 @@ impl Settings {
         overrides: &Overrides,
         refuse: &dyn Fn(&str, String) -> ServeError,
     ) -> Result<Self, ServeError> {
-        let argument =
-            |option, text: &str, reason| ServeError::Argument { option, text: Shown(text).to_string(), reason };
         let name = match &overrides.name {
-            Some(name) => name.parse::<HandName>().map_err(|error| argument("--name", name, error.to_string()))?,
+            Some(name) => {
+                name.parse::<HandName>().map_err(|error| ServeError::argument("--name", name, error.to_string()))?
+            }
             None => {
                 let name = &table.name;
                 name.parse().map_err(|error| refuse("name", format!("\"{name}\": {error}")))?
@@ -176,7 +175,8 @@ impl Settings {
             ([], None) if connect.is_empty() => endpoints("listen", &[LOOPBACK.into()])?,
             ([], None) => Vec::new(),
             (listen, _) => {
-                let endpoint = |text: &String| text.parse().map_err(|reason| argument("--listen", text, reason));
+                let endpoint =
+                    |text: &String| text.parse().map_err(|reason| ServeError::argument("--listen", text, reason));
                 listen.iter().map(endpoint).collect::<Result<_, _>>()?
             }
         };
@@ -197,7 +197,7 @@ impl Settings {
             endpoint.check(tls.is_some()).map_err(|reason| match reason {
                 Some(reason) if !listen.contains(endpoint) => refuse("connect", reason),
                 Some(reason) if overrides.listen.is_empty() => refuse("listen", reason),
-                Some(reason) => argument("--listen", &endpoint.to_string(), reason),
+                Some(reason) => ServeError::argument("--listen", &endpoint.to_string(), reason),
                 None => ServeError::NotLoopback { endpoint: endpoint.to_string() },
             })?;
         }
