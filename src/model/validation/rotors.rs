@@ -33,15 +33,15 @@ impl ConfiguredFinger {
         let ([key, key_of_stiffness, key_of_viscous], [inertia, stiffness, viscous]) = (keys, values);
         for motor in 0..4 {
             let least = least_inertia(stiffness[motor], self.geometry.motor_radius[motor]);
+            // The margin covers the rounding of the printed value.
+            let advised = 1.01 * inertia_for(viscous[motor], least);
             if inertia[motor] < least {
                 let reason = format!(
                     "{} kg m^2 of motor {} is too little for its {key_of_stiffness}, {key_of_viscous} and \
                      geometry.motor_radius: the computed motion of the rotor would be wrong. The inertia must be at \
-                     least {:.3e}. Check these four values",
+                     least {advised:.3e}. Check these four values",
                     inertia[motor],
-                    motor + 1,
-                    // The margin covers the rounding of the printed value.
-                    1.01 * inertia_for(viscous[motor], least)
+                    motor + 1
                 );
                 return unusable(key, reason);
             }
@@ -49,12 +49,11 @@ impl ConfiguredFinger {
             if viscous[motor] > most {
                 let reason = format!(
                     "{} N m s/rad of motor {} is too much for its {key}: the computed motion of the rotor would be \
-                     wrong. The friction must be at most {:.2e}, or the inertia at least {:.3e} kg m^2. Check both \
-                     values",
+                     wrong. The friction must be at most {:.2e}, or the inertia at least {advised:.3e} kg m^2. Check \
+                     both values",
                     viscous[motor],
                     motor + 1,
-                    0.99 * most,
-                    1.01 * inertia_for(viscous[motor], least)
+                    0.99 * most
                 );
                 return unusable(key_of_viscous, reason);
             }

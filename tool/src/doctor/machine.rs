@@ -54,10 +54,11 @@ fn kernel(version: &str, realtime: bool) -> Finding {
 /// `runtime` us of every `period` us are available to real-time threads.
 fn throttling(runtime: &str, period: &str) -> Finding {
     let subject = "real-time throttling";
-    // 95 % of the period, as in the kernel's default.
-    let usual = period.parse::<i64>().ok().filter(|&period| period > 0).unwrap_or(1_000_000) / 20 * 19;
+    let period = period.parse::<i64>().ok().filter(|&period| period > 0);
+    // The kernel's default is 95 % of the period.
+    let usual = period.unwrap_or(1_000_000) / 20 * 19;
     let remedy = format!("sudo sysctl kernel.sched_rt_runtime_us={usual}");
-    match (runtime.parse::<i64>(), period.parse::<i64>()) {
+    match (runtime.parse::<i64>(), period) {
         (Ok(-1), _) => Finding::new(
             Rating::Warning,
             subject,
@@ -67,7 +68,7 @@ fn throttling(runtime: &str, period: &str) -> Finding {
                  kernel that serve the ports. Switch the throttling on: {remedy}"
             ),
         ),
-        (Ok(runtime), Ok(period)) if period > 0 => {
+        (Ok(runtime), Some(period)) => {
             let share = 100 * runtime / period;
             let found = format!("real-time threads get {share} % of the time, {runtime} of {period} us");
             match share {
