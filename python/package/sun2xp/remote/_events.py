@@ -43,7 +43,7 @@ class RemoteEvents:
         taken: List[Event] = []
 
         def take() -> bool:
-            # Under the lock, so that no other thread takes an event that this one has seen.
+            # This function runs under the lock, so no other thread can take an event that this one has seen.
             if self._queue and not taken:
                 taken.append(self._queue.popleft())
             return bool(taken) or self._closed
