@@ -184,7 +184,7 @@ mod tests {
             ),
             ("shove", "drop, corrupt, delay, duplicate, reorder, stall, commands, good, unplug, replug; see"),
             ("good 1", "does not take these words"),
-            ("quit 1", "quit does not take these words"),
+            ("quit now", "quit does not take these words"),
             ("state", "state needs the number of a finger"),
         ] {
             let error = Order::read(line).unwrap_err();
