@@ -6,24 +6,27 @@
 //! now belong to a file of the planner. The wait for input begins without this check, because it changes no file.
 #![allow(unsafe_code, reason = "the raw descriptor of the port")]
 
+mod input;
 mod opening;
 
 use super::descriptor::Descriptor;
 use super::port_error::PortError;
 use super::transport::Transport;
 use crate::realtime;
+use input::{Event, Input};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::thread::sleep;
 use std::time::Duration;
-
-/// The pause after a driver announced bytes but had none to read.
-const NOTHING_TO_READ: Duration = Duration::from_micros(100);
 
 /// An open serial port: exclusive, raw, eight data bits, no parity, one stop bit, no flow control.
 #[derive(Debug)]
 pub struct Port {
     descriptor: Descriptor,
+    input: Input,
+    /// Whether the next read must not wait for another event: the last read may have left bytes, or the port has hung
+    /// up.
+    unread: bool,
+    hung_up: bool,
     path: PathBuf,
     /// When the port last became readable, ns.
     ready_at: u64,
@@ -55,32 +58,22 @@ impl Port {
         if self.descriptor.is_own() { Ok(()) } else { Err(PortError::Closed) }
     }
 
-    /// Waits for input with an unchanged signal mask. Returns false at the deadline.
+    /// Waits until a read may return bytes or the end of the port. Returns false at the deadline.
     fn wait_for_input(&mut self, deadline: u64) -> Result<bool, PortError> {
-        loop {
-            let left = deadline.saturating_sub(realtime::now());
-            let timeout = libc::timespec {
-                tv_sec: (left / 1_000_000_000) as libc::time_t,
-                tv_nsec: (left % 1_000_000_000) as libc::c_long,
-            };
-            let mut poll = libc::pollfd { fd: self.descriptor.number(), events: libc::POLLIN, revents: 0 };
-            // SAFETY: the pointers refer to one pollfd and one timespec. A null mask leaves the signal mask unchanged.
-            let ready = unsafe { libc::ppoll(&mut poll, 1, &timeout, std::ptr::null()) };
-            match ready {
-                0 => return Ok(false),
-                // The kernel may report a hang-up together with the last bytes. These bytes are read first, and the
-                // next read detects the hang-up again.
-                1 if poll.revents & libc::POLLIN != 0 => {
+        while !self.unread {
+            let left = Duration::from_nanos(deadline.saturating_sub(realtime::now()));
+            match self.input.wait(left) {
+                Ok(Some(event)) => {
                     self.ready_at = realtime::now();
-                    return self.check_own().map(|()| true);
+                    (self.unread, self.hung_up) = (true, event == Event::HangUp);
                 }
-                1 => return Err(self.check_own().err().unwrap_or(PortError::Vanished)),
-                _ => match self.descriptor.error() {
-                    error if error.kind() == io::ErrorKind::Interrupted => {}
-                    error => return Err(error.into()),
-                },
+                Ok(None) if realtime::now() >= deadline => return Ok(false),
+                Ok(None) => {}
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error.into()),
             }
         }
+        self.check_own().map(|()| true)
     }
 }
 
@@ -105,19 +98,18 @@ impl Transport for Port {
         while self.wait_for_input(deadline)? {
             // SAFETY: `buffer` is writable for its length.
             let taken = unsafe { libc::read(self.descriptor.number(), buffer.as_mut_ptr().cast(), buffer.len()) };
-            match taken {
-                0 => return Err(PortError::Vanished),
-                1.. => return Ok(taken as usize),
-                _ => match self.descriptor.error() {
+            match usize::try_from(taken) {
+                Ok(0) => return Err(PortError::Vanished),
+                Ok(taken) => {
+                    self.unread = self.hung_up || taken == buffer.len();
+                    return Ok(taken);
+                }
+                Err(_) => match self.descriptor.error() {
                     error if error.kind() == io::ErrorKind::Interrupted => {}
-                    // A driver that announces bytes but has none must not occupy a processor, and must not delay the
-                    // caller by more than NOTHING_TO_READ after the deadline.
-                    error if error.kind() == io::ErrorKind::WouldBlock => sleep(NOTHING_TO_READ),
+                    error if error.kind() == io::ErrorKind::WouldBlock && !self.hung_up => self.unread = false,
+                    error if error.kind() == io::ErrorKind::WouldBlock => return Err(PortError::Vanished),
                     error => return Err(error.into()),
                 },
-            }
-            if realtime::now() >= deadline {
-                break;
             }
         }
         Ok(0)

@@ -17,6 +17,10 @@
 #include "refused.h"
 
 #define NOT_PERMITTED 77
+/* Some processors have no system call of the older name. */
+#ifndef SYS_epoll_wait
+#define SYS_epoll_wait SYS_epoll_pwait
+#endif
 /* On machines without clone3 in their headers the C library does not use it either. */
 #ifndef SYS_clone3
 #define SYS_clone3 SYS_clone
@@ -34,6 +38,8 @@ struct refusal {
 static const struct refusal refusals[] = {
     {"clock_nanosleep", {SYS_clock_nanosleep, SYS_clock_nanosleep}, 0},
     {"reading or writing the port", {SYS_ppoll, SYS_ppoll}, 0},
+    {"reading or writing the port", {SYS_epoll_wait, SYS_epoll_pwait}, 0},
+    {"cannot open /dev/pts/", {SYS_epoll_create1, SYS_epoll_ctl}, 0},
     {"thread", {SYS_clone, SYS_clone3}, 0},
     {"thread", {SYS_mprotect, SYS_mprotect}, 0},
     {"thread", {SYS_mmap, SYS_mmap}, 0},

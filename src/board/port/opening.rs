@@ -1,6 +1,7 @@
 //! Opens, locks and configures a serial port.
 
 use super::Port;
+use super::input::Input;
 use crate::board::descriptor::{Descriptor, check};
 use crate::board::port_error::PortError;
 use std::ffi::CString;
@@ -15,8 +16,17 @@ impl Port {
     /// Returns an error if `path` is not a serial port, if this user may not open it, or if another program has it
     /// open. Returns an error if the driver does not support `baud` or refuses another setting.
     pub fn open(path: &Path, baud: u32) -> Result<Self, PortError> {
-        let (descriptor, process) = (open(path)?, std::process::id());
-        let mut port = Self { descriptor, path: path.to_owned(), ready_at: 0, process, locked: false };
+        let failed = |source| PortError::at_opening(path, source);
+        let mut port = Self {
+            descriptor: open(path)?,
+            input: Input::new().map_err(failed)?,
+            unread: false,
+            hung_up: false,
+            path: path.to_owned(),
+            ready_at: 0,
+            process: std::process::id(),
+            locked: false,
+        };
         port.lock()?;
         let set_up = |source| PortError::SetUp { path: path.to_owned(), source };
         let offered = port.configure(baud).map_err(set_up)?;
@@ -27,6 +37,8 @@ impl Port {
         port.request_low_latency();
         // SAFETY: the descriptor was opened above.
         check(unsafe { libc::tcflush(port.descriptor.number(), libc::TCIFLUSH) }).map_err(set_up)?;
+        // The new settings would be an event without bytes, and because of it the first wait would poll the port.
+        port.input.watch(&port.descriptor).map_err(failed)?;
         Ok(port)
     }
 
