@@ -1,6 +1,8 @@
 //! The service over lines that fail: two network namespaces with a line between them that loses and delays packets,
 //! or is cut. Tests that need a namespace are listed as skipped where this process may not make one.
 
+#[path = "../../../tests/common/attempts.rs"]
+mod attempts;
 mod bad_line;
 #[path = "../../../tests/common/free_port.rs"]
 mod free_port;
@@ -12,6 +14,9 @@ mod noise_tests;
 mod observer;
 mod outage;
 mod outage_tests;
+#[allow(dead_code)]
+#[path = "../../../tests/common/pauses.rs"]
+mod pauses;
 mod planner;
 mod process;
 mod raw;
