@@ -1,7 +1,7 @@
 //! Every error that docs/faq.md quotes is one that the library reports.
 
 use sun2xp::hand::read_configuration;
-use sun2xp::{Configuration, Hand, RealTime};
+use sun2xp::{Configuration, Hand};
 
 const PAGE: &str = include_str!("../docs/faq.md");
 
@@ -35,9 +35,7 @@ fn errors() -> Vec<String> {
         refused("[finger.1]\nport = \"/dev/ttyUSB7\"\nbaud = 115_200\n[hand]\nfingers = [1]\n"),
         refused("[finger]\nport = \"/dev/ttyUSB7\"\nbaud = 2_000_000\n"),
     ];
-    let mut configuration = Configuration::default();
-    configuration.hand.real_time = RealTime::Ignore;
-    let hand = Hand::open(configuration).expect("the simulated hand opens");
+    let hand = Hand::open(Configuration::default()).expect("the simulated hand opens");
     let stiff = [[20.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 0.0, 20.0]];
     let lopsided = [[3.0, 1.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]];
     errors.extend([

@@ -194,7 +194,7 @@ mod tests {
     use super::*;
     use std::thread::sleep;
     use std::time::{Duration, Instant};
-    use sun2xp::{Configuration, RealTime};
+    use sun2xp::Configuration;
 
     fn record(finger: usize, cycle: u64) -> Record {
         let (finger, stage, none) = (Finger::ALL[finger], SentStage::Running, [0.0; 3]);
@@ -223,9 +223,7 @@ mod tests {
     /// cycle in which the finger faulted.
     #[test]
     fn a_finger_that_stops_has_neither_set_point_nor_force() {
-        let mut configuration = Configuration::default();
-        configuration.hand.real_time = RealTime::Ignore;
-        let hand = Arc::new(Hand::open(configuration).expect("the simulated hand"));
+        let hand = Arc::new(Hand::open(Configuration::default()).expect("the simulated hand"));
         let mut cycles = Cycles::new(hand.clone());
         let begun = Instant::now();
         let mut take = || {

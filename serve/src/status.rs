@@ -57,8 +57,8 @@ mod tests {
     use super::*;
     use std::sync::Arc;
     use std::time::{Duration, Instant};
+    use sun2xp::Configuration;
     use sun2xp::realtime::now;
-    use sun2xp::{Configuration, RealTime};
 
     fn wait_until(what: &str, holds: impl Fn() -> bool) {
         let begun = Instant::now();
@@ -72,7 +72,6 @@ mod tests {
     #[test]
     fn a_status_has_the_number_of_warnings_since_open() {
         let mut configuration = Configuration::default();
-        configuration.hand.real_time = RealTime::Ignore;
         // The stop of joint 0 is close.
         configuration.fingers[0].joints.maximum_degrees[0] = 5.0;
         let hand = Arc::new(Hand::open(configuration).expect("the simulated hand"));

@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use sun2xp::hand::Hand;
 use sun2xp::model::FingerNumber;
-use sun2xp::model::configuration::{Configuration, RealTime};
+use sun2xp::model::configuration::Configuration;
 use sun2xp::telemetry::{Message, Reader};
 
 /// Environment variables of a child process: what it opens, and the name of the hand.
@@ -22,7 +22,6 @@ pub fn name(test: &str) -> String {
 pub fn configuration(name: &str) -> Configuration {
     let mut configuration = Configuration::default();
     configuration.telemetry.name = name.into();
-    configuration.hand.real_time = RealTime::Ignore;
     configuration
 }
 

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::{Mutex, PoisonError};
 use sun2xp::hand::Hand;
-use sun2xp::model::configuration::{Configuration, RealTime};
+use sun2xp::model::configuration::Configuration;
 
 const README: &str = include_str!("../../README.md");
 
@@ -45,7 +45,6 @@ fn the_first_commands_of_readme_work() {
     let name = format!("test-readme-{}", std::process::id());
     let mut configuration = Configuration::default();
     configuration.telemetry.name.clone_from(&name);
-    configuration.hand.real_time = RealTime::Ignore;
     let hand = Hand::open(configuration).expect("the simulated hand");
     hand.send_position(1, [0.1, 0.6, 1.2]).expect("sent");
 

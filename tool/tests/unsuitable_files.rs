@@ -6,7 +6,7 @@ use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 use sun2xp::hand::Hand;
-use sun2xp::model::configuration::{Configuration, RealTime};
+use sun2xp::model::configuration::Configuration;
 
 /// Runs the tool. It must end within a time limit and use less than half a gigabyte of memory.
 fn tool(arguments: &[&str], configuration: Option<&Path>) -> Output {
@@ -70,9 +70,7 @@ fn every_file_that_is_read_is_a_regular_file_of_a_sensible_size() {
 fn a_black_box_with_an_impossible_rate_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);
-    let mut configuration = Configuration::default();
-    configuration.hand.real_time = RealTime::Ignore;
-    let hand = Hand::open(configuration).expect("the simulated hand opens");
+    let hand = Hand::open(Configuration::default()).expect("the simulated hand opens");
     hand.write_black_box(1, &path("good.jsonl")).expect("written");
     drop(hand);
     let text = std::fs::read_to_string(path("good.jsonl")).expect("read");

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::mpsc::{Sender, channel};
 use std::time::{Duration, Instant};
 use sun2xp::motion::Validity;
-use sun2xp::{Configuration, RealTime, Stage};
+use sun2xp::{Configuration, Stage};
 
 /// Longest time until an Answer. The machine of the tests may be busy.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -26,7 +26,6 @@ fn shared() -> Arc<Shared> {
     let settings = Settings::from_text(text, Path::new("s.toml"), &Overrides::default());
     let settings = settings.unwrap_or_else(|error| panic!("{error}"));
     let mut configuration = Configuration::default();
-    configuration.hand.real_time = RealTime::Ignore;
     prepare(&mut configuration, &settings.limits);
     Arc::new(Shared::new(Arc::new(Hand::open(configuration).expect("the simulated hand")), settings))
 }

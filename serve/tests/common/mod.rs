@@ -15,7 +15,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use sun2xp::hand::parse_configuration;
 use sun2xp::model::configuration::NamedHand;
-use sun2xp::{Configuration, Hand, RealTime};
+use sun2xp::{Configuration, Hand};
 use sun2xp_serve::server::{Server, prepare};
 use sun2xp_serve::settings::{Overrides, Settings};
 
@@ -56,7 +56,6 @@ impl Rig {
     fn with_hand(mut configuration: Configuration, text: &str, folder: &Path, endpoint: String) -> Self {
         let settings = Settings::from_text(text, &folder.join("sun2xp.toml"), &Overrides::default());
         let settings = settings.unwrap_or_else(|error| panic!("{error}"));
-        configuration.hand.real_time = RealTime::Ignore;
         prepare(&mut configuration, &settings.limits);
         let hand = Hand::open(configuration).expect("the simulated hand");
         let server = Server::start(hand, settings).unwrap_or_else(|error| panic!("{error}"));

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use sun2xp::finger::FingerReport;
 use sun2xp::nalgebra::Vector3;
 use sun2xp::realtime::now;
-use sun2xp::{Configuration, Hand, RealTime};
+use sun2xp::{Configuration, Hand};
 use sun2xp_remote_protocol::{Answer, ClientName, Finger, Part, PathPose, Place, Target};
 use sun2xp_serve::desk::Desk;
 use sun2xp_serve::server::prepare;
@@ -40,7 +40,6 @@ impl Rig {
         let settings = Settings::from_text(&format!("[serve]\n{text}\n"), Path::new("s.toml"), &Overrides::default());
         let settings = settings.unwrap_or_else(|error| panic!("{error}"));
         let mut configuration = Configuration::default();
-        configuration.hand.real_time = RealTime::Ignore;
         prepare(&mut configuration, &settings.limits);
         let hand = Arc::new(Hand::open(configuration).expect("the simulated hand"));
         let desk = Desk::new(hand.clone(), settings.limits, now());

@@ -4,7 +4,6 @@ use super::free_port::free_port;
 use super::raw::{Files, Raw, joints};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use sun2xp::model::configuration::RealTime;
 use sun2xp::{Configuration, Hand};
 use sun2xp_remote_protocol::{Action, Code, Finger, Request};
 use sun2xp_serve::certificates::{Wanted, make};
@@ -38,7 +37,6 @@ pub fn simulated(name: &str, clients: &str, endpoint: &str, certificates: Option
     let settings = settings.unwrap_or_else(|error| panic!("{error}"));
     let mut configuration = Configuration::default();
     configuration.telemetry.name = format!("net-{}-{name}", std::process::id());
-    configuration.hand.real_time = RealTime::Ignore;
     prepare(&mut configuration, &settings.limits);
     (Hand::open(configuration).unwrap_or_else(|error| panic!("{error}")), settings)
 }

@@ -18,7 +18,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use sun2xp::hand::Hand;
-use sun2xp::model::configuration::{Configuration, ConfiguredObject, RealTime};
+use sun2xp::model::configuration::{Configuration, ConfiguredObject};
 
 fn name(test: &str) -> String {
     format!("record-{}-{test}", std::process::id())
@@ -27,7 +27,6 @@ fn name(test: &str) -> String {
 fn open(name: &str) -> Hand {
     let mut configuration = Configuration::default();
     configuration.telemetry.name = name.into();
-    configuration.hand.real_time = RealTime::Ignore;
     configuration.hand.simulated_object = Some(ConfiguredObject::default());
     Hand::open(configuration).unwrap_or_else(|error| panic!("open: {error}"))
 }
