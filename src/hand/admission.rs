@@ -114,7 +114,7 @@ impl Admission {
             return Ok(*contact.stiffness());
         }
         match self.out_of_range {
-            OutOfRange::Refuse => Err(SetPointError::TooStiff { finger: self.finger, largest, bound }),
+            OutOfRange::Refuse => Err(SetPointError::TooStiffContact { finger: self.finger, largest, bound }),
             OutOfRange::Clamp => Ok(*contact.clamped(bound, lever).stiffness()),
         }
     }

@@ -145,7 +145,9 @@ impl Arguments {
 
     /// What to do after a refusal. `left` are the remaining tasks of this finger; all tasks of the `others` remain.
     fn instructions(&self, finger: i32, left: &[Task], others: &[i32]) -> String {
-        let command = format!("sun2xp calibrate --config {}", ShownPath(&self.config));
+        let kept = [(" --yes", self.yes), (" --dry-run", self.dry_run), (" --json", self.json)];
+        let kept: String = kept.into_iter().filter(|&(_, asked)| asked).map(|(option, _)| option).collect();
+        let command = format!("sun2xp calibrate --config {}{kept}", ShownPath(&self.config));
         let options = |tasks: &[Task]| {
             let option = |task| match task {
                 Task::Signs => " --signs",

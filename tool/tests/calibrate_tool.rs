@@ -112,6 +112,8 @@ fn a_finger_that_nobody_holds_is_refused_with_what_to_do() {
         );
         assert!(!said(&output).contains("\\n"), "{}", said(&output));
         assert_eq!(said(&output).contains("Press Enter"), !input.is_empty());
+        // The command with which to continue keeps the option.
+        assert_eq!(said(&output).contains(" --yes --finger 2 --zero"), input.is_empty(), "{}", said(&output));
         assert!(desk.unchanged());
     }
 }

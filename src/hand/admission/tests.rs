@@ -95,7 +95,8 @@ fn a_torsion_counts_by_the_lever_of_the_last_link() {
     // 96 N cm/rad at 4 cm correspond to 6 N/cm.
     let (refuse, clamp) = (admission(OutOfRange::Refuse), admission(OutOfRange::Clamp));
     assert_eq!(refuse.contact(&contact(96.0)).expect("admissible"), *contact(96.0).stiffness());
-    assert!(matches!(refuse.contact(&contact(97.0)), Err(SetPointError::TooStiff { .. })));
+    let refused = refuse.contact(&contact(97.0)).expect_err("too stiff");
+    assert!(matches!(refused, SetPointError::TooStiffContact { .. }) && refused.to_string().contains("softer contact"));
     let clamped = clamp.contact(&contact(970.0)).expect("clamped");
     assert!((clamped - contact(96.0).stiffness()).amax() < 1e-10, "{clamped}");
 }
@@ -163,7 +164,7 @@ fn a_torsion_at_a_short_link_is_too_stiff_however_large() {
         let (mut refuse, mut clamp) = (admission(OutOfRange::Refuse), admission(OutOfRange::Clamp));
         (refuse.links.0[2], clamp.links.0[2]) = (0.1, 0.1);
         match refuse.contact(&contact) {
-            Err(SetPointError::TooStiff { largest, bound: 6.0, .. }) => {
+            Err(SetPointError::TooStiffContact { largest, bound: 6.0, .. }) => {
                 assert!(largest > 9e4 && largest.is_finite())
             }
             other => panic!("{torsion:e}: {other:?}"),

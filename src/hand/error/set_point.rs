@@ -84,6 +84,20 @@ pub enum SetPointError {
         /// The bound, N/cm.
         bound: f64,
     },
+    /// A contact is stiffer than the bound.
+    #[error(
+        "the largest eigenvalue of the contact stiffness of finger {finger} is {largest:.3} N/cm (its rotational part \
+         is converted with the length of the last link), above the bound of {bound:.3} N/cm: send a softer contact, or \
+         set `hand.out_of_range = \"clamp\"`"
+    )]
+    TooStiffContact {
+        /// The finger.
+        finger: FingerNumber,
+        /// Largest eigenvalue, N/cm.
+        largest: f64,
+        /// The bound, N/cm.
+        bound: f64,
+    },
     /// Kx is not symmetric.
     #[error(
         "Kx of finger {finger} is not symmetric: Kx[{row}][{column}] and Kx[{column}][{row}] differ by \
@@ -238,8 +252,8 @@ impl SetPointError {
             Self::Gravity { .. } => libc::EINVAL,
             Self::GroupsWaiting(_) => libc::EBUSY,
             Self::Contact { source: ContactError::NotFinite(_), .. } => libc::EINVAL,
-            Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
-            Self::TooStiffJoints { .. } | Self::TooMuchTorque { .. } => libc::ERANGE,
+            Self::BeyondJointLimit { .. } | Self::TooMuchTorque { .. } => libc::ERANGE,
+            Self::TooStiff { .. } | Self::TooStiffContact { .. } | Self::TooStiffJoints { .. } => libc::ERANGE,
             Self::OutOfReach { .. } | Self::Damping { .. } => libc::ERANGE,
             Self::SentBeyondJointLimit { .. } | Self::PathBeyondJointLimit { .. } => libc::ERANGE,
             Self::NotSymmetric { .. } | Self::Negative { .. } | Self::Contact { .. } => libc::EDOM,

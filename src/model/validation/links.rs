@@ -47,9 +47,11 @@ impl ConfiguredFinger {
         let largest = |strain| inertias.iter().map(|inertia| share(inertia, strain)).fold(0.0, f64::max);
         let used = largest(&without_friction);
         if used >= STABLE {
+            // The inertia is proportional to all masses together, and one of them is that of the held object.
+            let held = if simulation.held_mass > 0.0 { " and a simulation.held_mass" } else { "" };
             let reason = format!(
-                "are too small for the step of the simulation, which would diverge at a joint's stop: masses {:.2} \
-                 times as large are stable. Raise them, or check simulation.link_radii and geometry.links",
+                "are too small for the step of the simulation, which would diverge at a joint's stop: masses{held} \
+                 {:.2} times as large are stable. Raise them, or check simulation.link_radii and geometry.links",
                 1.01 * largest(&strain) / STABLE
             );
             return unusable("simulation.masses", reason);
@@ -135,6 +137,21 @@ mod tests {
         let (_, ratio) = reason.split_once("masses ").expect("a ratio");
         let ratio: f64 = ratio.split_once(' ').expect("a word").0.parse().expect("a number");
         finger.simulation.masses = finger.simulation.masses.map(|mass| ratio * mass);
+        assert_eq!(finger.check(), Ok(()));
+    }
+
+    #[test]
+    fn the_refusal_of_light_links_with_a_held_object_names_its_mass() {
+        let mut finger = ConfiguredFinger::default();
+        finger.simulation.joint_viscous_friction = [0.0; 3];
+        finger.simulation.masses = finger.simulation.masses.map(|mass| 0.001 * mass);
+        finger.simulation.held_mass = 1e-4;
+        let reason = finger.check().expect_err("refused").reason;
+        let (_, ratio) = reason.split_once("masses and a simulation.held_mass ").expect("both masses");
+        let ratio: f64 = ratio.split_once(' ').expect("a word").0.parse().expect("a number");
+        finger.simulation.masses = finger.simulation.masses.map(|mass| ratio * mass);
+        assert_ne!(finger.check(), Ok(()), "raising the masses of the links alone is not enough");
+        finger.simulation.held_mass *= ratio;
         assert_eq!(finger.check(), Ok(()));
     }
 }

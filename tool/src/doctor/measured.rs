@@ -69,15 +69,27 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
         _ if periods > TOO_LATE => (Rating::Warning, "The worst wake-up is so late that its period is lost."),
         _ => (Rating::Good, ""),
     };
+    let missing = missing_permissions(vec![refusals]).first().map(ToString::to_string);
     if verdict > Rating::Good {
-        let advice = "Something keeps this thread from running, for example other real-time threads, a busy or paused \
-                      virtual machine, or power saving. Isolate a core for it (finger.core), or lower hand.rate";
-        return Finding::new(verdict, subject, found, format!("{consequence} {advice}"));
+        let only_watchdog = late.maximum > watchdog && late.p99 / period <= TOO_LATE;
+        let other = if only_watchdog { "raise hand.watchdog_ms" } else { "lower hand.rate" };
+        let cause = match missing {
+            Some(missing) => missing,
+            None if priority(configuration, thread).fifo == 0 => format!(
+                "This thread has no real-time priority, so every busy program delays it. Set hand.real_time = \"try\" \
+                 and finger.priority to 1 to 99, or {other}"
+            ),
+            None => format!(
+                "Something keeps this thread from running, for example other real-time threads, a busy or paused \
+                 virtual machine, or power saving. Isolate a core for it (finger.core), or {other}"
+            ),
+        };
+        return Finding::new(verdict, subject, found, format!("{consequence} {cause}"));
     }
-    if let Some(missing) = missing_permissions(vec![refusals]).first() {
-        return lacking(configuration, &subject, found, missing.to_string());
+    match missing {
+        Some(missing) => lacking(configuration, &subject, found, missing),
+        None => Finding::good(subject, found),
     }
-    Finding::good(subject, found)
 }
 
 /// `asked` says whether a real-time priority was requested for the thread.
@@ -95,15 +107,19 @@ fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
     if asked && wake_up.refusals.scheduling.is_none() {
         return Finding::good(subject, format!("{found}; does not apply to a real-time thread"));
     }
-    if wake_up.timer_slack.is_err() {
-        let advice = "The kernel may delay each wake-up of this thread by up to its timer slack. Permit prctl if a \
-                      sandbox forbids it, or make the thread real-time (finger.priority)";
-        return Finding::new(Rating::Warning, subject, found, advice);
-    }
-    let advice = "The kernel may delay each wake-up of this thread by up to this time, and the system refused to \
-                  shorten it (prctl, PR_SET_TIMERSLACK). Permit that call if a sandbox forbids it, or make the thread \
-                  real-time (finger.priority)";
-    Finding::new(Rating::Warning, subject, found, advice)
+    // If a real-time priority was requested, the system has refused it.
+    let other = match asked {
+        true => "permit the real-time priority (see the wake-up of this thread)",
+        false => "make the thread real-time (hand.real_time = \"try\" and a finger.priority above 0)",
+    };
+    let advice = match wake_up.timer_slack {
+        Err(_) => "The kernel may delay each wake-up of this thread by up to its timer slack. Permit prctl",
+        Ok(_) => {
+            "The kernel may delay each wake-up of this thread by up to this time, and the system refused to shorten it \
+             (prctl, PR_SET_TIMERSLACK). Permit that call"
+        }
+    };
+    Finding::new(Rating::Warning, subject, found, format!("{advice} if a sandbox forbids it, or {other}"))
 }
 
 #[cfg(test)]
@@ -139,6 +155,29 @@ mod tests {
     }
 
     #[test]
+    fn a_late_thread_gets_the_advice_for_its_cause() {
+        let advice = |p99, worst, refusals, priority| {
+            let mut configuration = Configuration::default();
+            configuration.fingers[0].priority = priority;
+            let mut late = Distribution::default();
+            (late.p99, late.maximum) = (p99, worst);
+            judge(&configuration, 1, WakeUp { late, refusals, timer_slack: Ok(1) }).advice
+        };
+        let (period, watchdog) = (1000.0, 18_000.0);
+        let often = advice(0.6 * period, period, RealtimeRefusals::default(), 80);
+        assert!(often.contains("finger.core") && often.ends_with("lower hand.rate"), "{often}");
+        let once = advice(0.05 * period, 1.1 * watchdog, RealtimeRefusals::default(), 80);
+        assert!(once.contains("finger.core") && once.ends_with("raise hand.watchdog_ms"), "{once}");
+        let both = advice(0.6 * period, 1.1 * watchdog, RealtimeRefusals::default(), 80);
+        assert!(both.ends_with("lower hand.rate"), "{both}");
+        let ordinary = advice(0.6 * period, period, RealtimeRefusals::default(), 0);
+        assert!(ordinary.contains("finger.priority") && !ordinary.contains("finger.core"), "{ordinary}");
+        let scheduling = Some(std::io::Error::from_raw_os_error(libc::EPERM));
+        let refused = advice(0.6 * period, period, RealtimeRefusals { scheduling, ..RealtimeRefusals::default() }, 80);
+        assert!(refused.contains("Periods are lost") && refused.contains("rtprio"), "{refused}");
+    }
+
+    #[test]
     fn timer_slack_counts_for_a_thread_that_is_not_real_time() {
         let judged = |timer_slack, asked, scheduling| {
             let refusals = RealtimeRefusals { scheduling, ..RealtimeRefusals::default() };
@@ -147,8 +186,10 @@ mod tests {
         let refused = || std::io::Error::from_raw_os_error(libc::EPERM);
         assert_eq!(judged(Ok(1), false, None).verdict, Rating::Good);
         assert_eq!(judged(Ok(50_000), true, None).verdict, Rating::Good);
-        assert_eq!(judged(Ok(50_000), true, Some(refused())).verdict, Rating::Warning);
-        assert_eq!(judged(Ok(50_000), false, None).verdict, Rating::Warning);
+        let without_right = judged(Ok(50_000), true, Some(refused()));
+        assert!(without_right.verdict == Rating::Warning && without_right.advice.contains("permit the real-time"));
+        let not_requested = judged(Ok(50_000), false, None);
+        assert!(not_requested.verdict == Rating::Warning && not_requested.advice.contains("hand.real_time"));
         // A sandbox may refuse the query of the timer slack.
         let unknown = judged(Err(refused()), false, None);
         assert!(unknown.verdict == Rating::Warning && unknown.found.starts_with("unknown"), "{unknown:?}");
