@@ -5,6 +5,8 @@
 #[path = "common/tools.rs"]
 mod tools;
 
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::fs::File;
 use std::io::Write;
 use std::os::fd::{AsRawFd, FromRawFd};
@@ -105,5 +107,33 @@ fn a_deadline_is_kept_while_the_kernel_cannot_carry_the_bytes() {
         assert_eq!(taken, 0, "round {round}: the worker has carried the bytes although the processors were busy");
         let taken = port.read_until(&mut buffer, realtime::now() + 5000 * MS).expect("no error");
         assert_eq!(&buffer[..taken], b"reply");
+    }
+}
+
+/// The wait is edge-triggered: if a read left bytes and the next read waited for another event, these bytes would stay
+/// until more arrive. Each chunk is therefore sent only after all bytes of the one before were read.
+#[test]
+fn no_byte_stays_behind_whatever_the_sizes_of_chunks_and_buffers() {
+    let (mut board_end, path) = pseudo_terminal();
+    let mut port = Port::open(&path, 1_000_000).unwrap_or_else(|error| panic!("{error}"));
+    let mut random = Pcg64::seed_from_u64(7);
+    let (mut buffer, mut sent, mut read) = ([0; 5000], 0_u8, 0_u8);
+    for _ in 0..5000 {
+        // The input buffer of a terminal is a ring of 4096 bytes.
+        let chunk: Vec<u8> = (0..random.next_u32() % 4999 + 1).map(|place| sent.wrapping_add(place as u8)).collect();
+        sent = sent.wrapping_add(chunk.len() as u8);
+        board_end.write_all(&chunk).expect("written");
+        let mut left = chunk.len();
+        while left > 0 {
+            let size = 1 + random.next_u32() as usize % buffer.len();
+            let taken = port.read_until(&mut buffer[..size], realtime::now() + 20_000 * MS).expect("no error");
+            assert!(taken > 0, "{left} of {} bytes stay behind", chunk.len());
+            for &byte in &buffer[..taken] {
+                assert_eq!(byte, read);
+                read = read.wrapping_add(1);
+            }
+            left -= taken;
+        }
+        assert_eq!(port.read_until(&mut buffer, 0).expect("no error"), 0, "nothing is left");
     }
 }
