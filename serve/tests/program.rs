@@ -66,7 +66,7 @@ fn send_signal(child: &Child, signal: i32) {
 
 fn table(port: u16) -> String {
     format!(
-        "[hand]\nreal_time = 'ignore'\n[finger]\nport = 'simulated'\n[serve]\nname = 'cell'\n\
+        "[finger]\nport = 'simulated'\n[serve]\nname = 'cell'\n\
          listen = ['tcp/127.0.0.1:{port}']\n[serve.clients]\nalice = 'command'\n"
     )
 }

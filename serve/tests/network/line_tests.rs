@@ -118,7 +118,9 @@ fn packets_pass_the_line_and_a_cut_stops_one_direction_or_both() {
     let before = line.counts(Direction::Right);
     left.send(b"lost").expect("sent");
     wait_for(&line, Direction::Right, before.0, 1);
-    assert_eq!(line.counts(Direction::Right), (before.0 + 1, before.1 + 1));
+    // The kernel may send packets of its own. During the cut all packets are lost.
+    let after = line.counts(Direction::Right);
+    assert_eq!(after.0 - before.0, after.1 - before.1, "{before:?}, {after:?}");
     line.set_both(Conditions::default());
     // Nothing that was sent during the cut arrives later.
     assert!(passes(&left, &right, &mut bytes), "{bytes:?}");

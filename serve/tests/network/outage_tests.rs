@@ -4,10 +4,15 @@
 use super::outage::{CATCH_GOAL, CATCH_MS, END_GOAL, Failure, Rig};
 use super::permitted_line;
 use super::process::Resources;
+use crate::attempts::attempts;
+use crate::pauses::Part;
 use std::time::{Duration, Instant};
 
 /// Repetitions of each failure.
 const REPETITIONS: usize = 3;
+
+/// The goal for the catch allows this much more than `catch_ms`.
+const TOLERATED_PAUSE: Duration = Duration::from_millis(20);
 
 /// Longest time in which the server notices that the connection of a lost client is over.
 const LEASE: Duration = Duration::from_secs(14);
@@ -23,12 +28,15 @@ fn every_failure_is_caught_and_the_next_planner_gets_the_hand() {
     let before = settled(&rig, None);
     for failure in Failure::ALL {
         for repetition in 0..REPETITIONS {
-            let outcome = rig.fail(failure);
-            let (pause, lost) = (outcome.pause, outcome.lost);
-            println!("{failure:?} {repetition}: {outcome:?}; a pause of {pause:.0} ms, {lost} cycles are missing");
-            assert!(outcome.caught <= CATCH_GOAL, "{failure:?}, repetition {repetition}: {outcome:?}");
-            assert!(outcome.ended <= END_GOAL, "{failure:?}, repetition {repetition}: {outcome:?}");
-            assert!(outcome.distance < 0.01, "the finger is not held where it is: {outcome:?}");
+            attempts(&format!("{failure:?}, repetition {repetition}"), TOLERATED_PAUSE, |watch| {
+                watch.also(rig.served.process(), Part::Servo);
+                let outcome = rig.fail(failure);
+                let (pause, lost) = (outcome.pause, outcome.lost);
+                println!("{failure:?} {repetition}: {outcome:?}; a pause of {pause:.0} ms, {lost} cycles are missing");
+                let in_time = outcome.caught <= CATCH_GOAL && outcome.ended <= END_GOAL;
+                // The finger is held where it is.
+                if in_time && outcome.distance < 0.01 { Ok(()) } else { Err(format!("{outcome:?}")) }
+            });
         }
     }
     let after = settled(&rig, Some(before));

@@ -141,13 +141,12 @@ fn run(wanted: &Wanted, news: &SyncSender<News>, ended: &AtomicBool) -> Result<(
 mod tests {
     use super::*;
     use sun2xp::Hand;
-    use sun2xp::model::configuration::{Configuration, RealTime};
+    use sun2xp::model::configuration::Configuration;
 
     /// Opens a hand, and starts a source that reads it. Returns after two seconds, in which nobody has taken the news.
     fn watched(name: &str) -> (Hand, Source) {
         let mut configuration = Configuration::default();
         configuration.telemetry.name = format!("source-{}-{name}", std::process::id());
-        configuration.hand.real_time = RealTime::Ignore;
         let wanted = Wanted::Named(Some(configuration.telemetry.name.clone()));
         let hand = Hand::open(configuration).expect("the simulated hand opens");
         let source = Source::start(wanted).expect("a thread");

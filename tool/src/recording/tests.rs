@@ -9,18 +9,18 @@ use std::path::Path;
 use std::time::{Duration, Instant, UNIX_EPOCH};
 use sun2xp::hand::Hand;
 use sun2xp::model::FingerNumber;
-use sun2xp::model::configuration::{Configuration, RealTime};
+use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{clock_offset, now};
 use sun2xp::telemetry::{Message, Reader};
 
 fn open(name: &str) -> Hand {
     let mut configuration = Configuration::default();
     configuration.telemetry.name = format!("recording-{}-{name}", std::process::id());
-    configuration.hand.real_time = RealTime::Ignore;
     Hand::open(configuration).unwrap_or_else(|error| panic!("open: {error}"))
 }
 
-/// Reads from a simulated hand for this time. Returns its reader, for the description, and the messages.
+/// Reads from a simulated hand for this time. Returns the messages, and the reader, which has the description of the
+/// hand.
 fn messages(name: &str, time: Duration) -> (Reader, Vec<Message>) {
     let hand = open(name);
     let mut reader = Reader::attach(Some(&format!("recording-{}-{name}", std::process::id()))).expect("attached");
@@ -104,6 +104,8 @@ fn a_recording_in_another_version_of_the_format_is_refused_with_the_library_to_u
     assert!(refusal.contains("has format version 0,") && refusal.ends_with(remedy), "{refusal}");
 }
 
+/// The usual error tells the author of a configuration file what to write. A person who opens a recording is not this
+/// author, so the error says that the file was altered.
 #[test]
 fn altered_configurations_are_refused_without_the_remedy_for_their_authors() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -29,9 +29,8 @@ pub enum Way {
     Path,
 }
 
-/// The configuration of the hand. The planner's process and the server use the same one. It does not request real time,
-/// because other programs need the machine too.
-const HAND: &str = "[hand]\nreal_time = \"ignore\"\n[finger]\nport = \"simulated\"\n";
+/// The configuration of the hand. The planner's process and the server use the same one.
+const HAND: &str = "[finger]\nport = \"simulated\"\n";
 
 /// The name of the hand.
 const NAME: &str = "left";
