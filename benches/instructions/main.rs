@@ -81,7 +81,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
         std::fs::write(RECORD, text)?;
     }
-    let recorded: Record = toml_edit::de::from_str(&std::fs::read_to_string(RECORD)?)?;
+    let unusable = |error: &dyn Error| format!("{RECORD} cannot be used ({error}): {HOW_TO_RECORD}");
+    let text = std::fs::read_to_string(RECORD).map_err(|error| unusable(&error))?;
+    let recorded: Record = toml_edit::de::from_str(&text).map_err(|error| unusable(&error))?;
     compare(&now, &recorded)
 }
 
@@ -117,8 +119,10 @@ fn count(scheme: &str) -> Result<f64, Box<dyn Error>> {
     if !run.status.success() {
         return Err(format!("valgrind: {}", String::from_utf8_lossy(&run.stderr)).into());
     }
-    let text = std::fs::read_to_string(file)?;
-    let total = text.lines().find_map(|line| line.strip_prefix("totals: ")).ok_or("callgrind counted nothing")?;
+    let text = std::fs::read_to_string(&file)?;
+    let total = text.lines().find_map(|line| line.strip_prefix("totals: ")).ok_or_else(|| {
+        format!("the output of callgrind, {}, has no line \"totals:\": check the version of valgrind", file.display())
+    })?;
     Ok(total.trim().parse::<f64>()? / CYCLES as f64)
 }
 
@@ -157,6 +161,8 @@ const HOW_TO_RECORD: &str =
     "run cargo bench --bench instructions -- --record, and commit benches/instructions/recorded.toml";
 
 fn first_line(program: &str) -> Result<String, Box<dyn Error>> {
-    let output = Command::new(program).arg("--version").output().map_err(|error| format!("{program}: {error}"))?;
+    let output = Command::new(program).arg("--version").output().map_err(|error| {
+        format!("cannot run `{program} --version`, which names what built the counted program ({error}): install it")
+    })?;
     Ok(String::from_utf8_lossy(&output.stdout).lines().next().unwrap_or_default().into())
 }

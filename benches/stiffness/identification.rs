@@ -81,16 +81,16 @@ impl UnknownFinger {
         }
         let mut calibration = Calibration::new(task, belief, self.rate).expect("the default finger");
         let mut report = Report::default();
-        // Zeroing leaves the finger under its own controller at first.
-        let mut own = Activity::TakeUpSlack;
+        // Zeroing returns no activity at first. Until then the finger continues to take up slack.
+        let mut newest = Activity::TakeUpSlack;
         loop {
             let feedback = self.read();
             let sample = Sample { feedback: &feedback, report: &report, zero_valid: true };
             let (activity, verdict) = calibration.cycle(&sample);
             match verdict {
                 Verdict::InProgress(_) => {
-                    own = activity.unwrap_or(own);
-                    report = self.advance(&controller, &mut state, &feedback, &own);
+                    newest = activity.unwrap_or(newest);
+                    report = self.advance(&controller, &mut state, &feedback, &newest);
                 }
                 Verdict::Found(findings) => {
                     findings.apply(belief);

@@ -46,8 +46,8 @@ impl Pending {
         Self { counted: AtomicBool::new(true), generation: fork::generation() }
     }
 
-    /// Returns whether the opening may go on, because the interpreter is not ending. If so, the end of the interpreter
-    /// waits for this opening from now on.
+    /// Returns whether the opening may go on. It may unless the interpreter is ending. If it may go on, the end of the
+    /// interpreter waits for this opening from now on.
     pub fn goes_on(&self) -> bool {
         let mut state = state();
         if !state.ending && !self.counted.swap(true, Ordering::Relaxed) {
@@ -72,7 +72,7 @@ pub fn end_openings() {
     state().ending = true;
 }
 
-/// Waits until no hand is opening or closing.
+/// Waits until no hand is closing, and until no opening is left for which the end of the interpreter waits.
 pub fn wait() {
     let mut state = state();
     while state.count > 0 {

@@ -9,7 +9,8 @@ use sun2xp_remote_protocol::ClientName;
 /// Largest number of Requests of one client that may wait.
 const OF_CLIENT: usize = 8;
 
-/// Largest number of gets of the Status that may wait. Their keys do not name a client.
+/// Largest number of gets of the Status that may wait, of all clients together. The Zenoh key of the Status does not
+/// contain the name of a client.
 const OF_STATUS: usize = 64;
 
 /// The number of waiting queries of each client. The entry without a name counts the waiting gets of the Status.

@@ -1,5 +1,5 @@
 //! The handover of a link between a servo and the thread that repairs its port. Opening a port and shaking hands take
-//! too long for a servo. Each direction is a ring, and neither side waits.
+//! too long for a servo. The links pass through rings, and neither side waits.
 //!
 //! While other fingers of the port run, the servo keeps the link. The repairing thread then shakes hands with the board
 //! of one finger over the [`Relay`].
@@ -34,8 +34,8 @@ pub struct RestoredBoard {
     pub configured: Configured,
     /// The numbers of requests to stop that were made before the recovery began.
     pub stops: StopCounts,
-    /// Number of restarts of the board that recoveries have found since open. Only boards that lose their zeros or the
-    /// readings of tactile elements at a restart are examined.
+    /// Number of restarts of the board since open that recoveries have detected. A recovery looks for a restart only if
+    /// the board loses its zeros or the readings of tactile elements at a restart. For other boards the number is 0.
     pub restarts: u32,
 }
 

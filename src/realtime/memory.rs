@@ -32,7 +32,8 @@ impl LockedMemory {
         self.0.extend_from_slice(&other.0);
     }
 
-    /// Returns the ranges. They do not overlap, and each is mapped as long as its value exists.
+    /// Returns the ranges. Each is mapped as long as its value exists. A range occurs several times if several fingers
+    /// have added the same shared value.
     pub fn ranges(&self) -> &[Range<usize>] {
         &self.0
     }

@@ -41,7 +41,7 @@ fn motor_constants_a_fifth_off_do_not_matter() {
 
 #[test]
 fn a_jammed_motor_does_not_wind_up_the_integral() {
-    // A tendon is held at 5 N for a long time while 20 N are wanted, and is then released.
+    // For 5 s all gauges show 5 N, although the set point demands more. Then one gauge shows 20 N more than desired.
     let mut finger = ConfiguredFinger::default();
     // A motor that never becomes too warm.
     finger.motor.continuous_torque = finger.motor.torque_limit;

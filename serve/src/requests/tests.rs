@@ -185,8 +185,8 @@ fn a_request_for_which_no_thread_can_be_started_is_answered() {
     join(&shared);
 }
 
-/// With the code of the interrupted calibration in place of [`Code::Closed`], the client would be told to calibrate the
-/// finger again.
+/// The text of an interrupted calibration tells the client to calibrate the finger again. That does not help if the
+/// server has ended, so the Answer has the code [`Code::Closed`].
 #[test]
 fn a_calibration_that_the_end_of_the_server_interrupts_is_answered_with_closed() {
     let shared = shared();

@@ -41,7 +41,8 @@ impl MergedEvents {
     pub fn next(&mut self, now: u64) -> Next {
         for finger in &mut self.fingers {
             if finger.next.is_none() {
-                // The horizon is read first, so no event that is published later is earlier than the horizon.
+                // The horizon is read before the log. So an event that this `take` does not find is not earlier than
+                // the horizon.
                 finger.horizon = finger.reader.horizon();
                 finger.next = finger.reader.take();
             }
@@ -135,7 +136,8 @@ mod tests {
                 let longest = if draw(20) == 0 { 3 * PERIOD / 2 } else { PERIOD * 4 / 10 };
                 let ended = began + draw(longest);
                 cycles.push(Cycle { finger, number, scheduled, began, ended, events: draw(4) as usize });
-                // A cycle that ends late delays the next one, as in the schedule of a servo.
+                // A cycle that ends late delays the next one. A servo skips whole periods too, but does not move its
+                // schedule by the rest.
                 scheduled += PERIOD;
                 scheduled += ended.saturating_sub(scheduled) / PERIOD * PERIOD;
                 if ended > scheduled {

@@ -26,7 +26,8 @@ const NUMBER: usize = 6;
 /// Number of lines inside the frame of a compact finger.
 pub const COMPACT: u16 = 10;
 
-/// Largest number of lines inside the frame of a finger. All its values with the empty lines between them need 21.
+/// Largest number of lines inside the frame of a finger: 21 for all its values with the empty lines between them, and
+/// two empty lines below them.
 pub const COMPLETE: u16 = 23;
 
 /// Draws a finger into its column.
@@ -60,7 +61,8 @@ pub fn draw(frame: &mut Frame, area: Rect, palette: &Palette, finger: &FingerSta
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-/// Returns the lines that replace the values of a finger while no cycle is known in which its controller ran.
+/// Returns the lines that are shown in place of the values of a finger until a cycle arrives in which the controller of
+/// the finger ran.
 pub fn no_cycle(palette: &Palette, finger: &FingerState) -> Vec<Line<'static>> {
     let reason = match finger.known {
         true => ["controller has not run", "since this view began"],
