@@ -104,8 +104,11 @@ fn a_deadline_is_kept_while_the_kernel_cannot_carry_the_bytes() {
             port.read_until(&mut buffer, realtime::now() + 5 * MS).expect("no error")
         });
         assert!(in_time, "round {round}: the read waited for the worker");
-        assert_eq!(taken, 0, "round {round}: the worker has carried the bytes although the processors were busy");
-        let taken = port.read_until(&mut buffer, realtime::now() + 5000 * MS).expect("no error");
+        // If this process may use only some of the processors, the worker may have carried the bytes on another one.
+        let taken = match taken {
+            0 => port.read_until(&mut buffer, realtime::now() + 5000 * MS).expect("no error"),
+            taken => taken,
+        };
         assert_eq!(&buffer[..taken], b"reply");
     }
 }
