@@ -1,9 +1,12 @@
 //! The serial port and the simulated board over a real pseudo-terminal, in real time.
 
-use std::ffi::CStr;
+#[path = "common/pseudo_terminal.rs"]
+mod pseudo_terminal;
+
+use pseudo_terminal::pseudo_terminal;
 use std::io::{Read, Write};
-use std::os::fd::{AsRawFd, FromRawFd, OwnedFd};
-use std::path::{Path, PathBuf};
+use std::os::fd::AsRawFd;
+use std::path::Path;
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::*;
 use sun2xp::board::*;
@@ -125,21 +128,6 @@ fn exclusive(path: &Path) -> bool {
     // SAFETY: the descriptor is open, and the request writes one int.
     assert_eq!(unsafe { libc::ioctl(file.as_raw_fd(), libc::TIOCGEXCL, &mut exclusive) }, 0);
     exclusive != 0
-}
-
-/// Returns the controlling end of a new pseudo-terminal, and the path of the other end.
-fn pseudo_terminal() -> (OwnedFd, PathBuf) {
-    // SAFETY: takes no pointers.
-    let control = unsafe { libc::posix_openpt(libc::O_RDWR | libc::O_NOCTTY | libc::O_CLOEXEC) };
-    assert!(control >= 0, "a pseudo-terminal");
-    let mut name = [0; 64];
-    // SAFETY: the descriptor is open, and `name` has the size that the call gets.
-    unsafe {
-        assert_eq!((libc::grantpt(control), libc::unlockpt(control)), (0, 0));
-        assert_eq!(libc::ptsname_r(control, name.as_mut_ptr(), name.len()), 0);
-        let path = CStr::from_ptr(name.as_ptr()).to_str().expect("a path");
-        (OwnedFd::from_raw_fd(control), PathBuf::from(path))
-    }
 }
 
 /// The system refuses to open a port that is marked for exclusive use, except to root. Root is refused by the lock.

@@ -1,22 +1,22 @@
 //! A port keeps its deadlines while the machine is so busy that the kernel's worker cannot carry the bytes.
-#![allow(unsafe_code, reason = "scheduling, and the raw descriptor of a pseudo-terminal")]
 
+#[path = "common/pseudo_terminal.rs"]
+mod pseudo_terminal;
 #[allow(dead_code)]
 #[path = "common/tools.rs"]
 mod tools;
 
+use pseudo_terminal::pseudo_terminal;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::fs::File;
 use std::io::Write;
-use std::os::fd::{AsRawFd, FromRawFd};
-use std::path::PathBuf;
-use std::sync::Barrier;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Barrier};
 use std::thread;
 use std::time::{Duration, Instant};
 use sun2xp::board::{Port, Transport};
-use sun2xp::realtime;
+use sun2xp::realtime::{self, Priority, spawn};
 
 const MS: u64 = 1_000_000;
 
@@ -24,91 +24,66 @@ const MS: u64 = 1_000_000;
 /// after almost a second.
 const BUSY_AT_MOST: Duration = Duration::from_millis(400);
 
-/// Gives the calling thread this SCHED_FIFO priority. Returns whether that is permitted.
-fn run_at(priority: libc::c_int) -> bool {
-    let parameters = libc::sched_param { sched_priority: priority };
-    // SAFETY: the parameters outlive the call.
-    unsafe { libc::sched_setscheduler(0, libc::SCHED_FIFO, &parameters) == 0 }
-}
-
-/// Binds the calling thread to this processor.
-fn run_on(processor: usize) {
-    // SAFETY: all zeros are an empty set of processors, and the set outlives the calls.
-    unsafe {
-        let mut only: libc::cpu_set_t = std::mem::zeroed();
-        libc::CPU_SET(processor, &mut only);
-        libc::sched_setaffinity(0, size_of_val(&only), &only);
-    }
-}
-
-/// Opens a pseudo-terminal. Returns the board's end and the path of the host's end.
-fn pseudo_terminal() -> (File, PathBuf) {
-    let mut name = [0u8; 64];
-    // SAFETY: the calls take a new descriptor, and `name` is writable for its length.
-    let board_end = unsafe {
-        let board_end = libc::posix_openpt(libc::O_RDWR | libc::O_NOCTTY | libc::O_CLOEXEC);
-        assert!(board_end >= 0 && libc::grantpt(board_end) == 0 && libc::unlockpt(board_end) == 0);
-        assert_eq!(libc::ptsname_r(board_end, name.as_mut_ptr().cast(), name.len()), 0);
-        File::from_raw_fd(board_end)
-    };
-    assert!(board_end.as_raw_fd() > 2);
-    let name = std::ffi::CStr::from_bytes_until_nul(&name).expect("a name");
-    (board_end, PathBuf::from(name.to_str().expect("text")))
+/// Opens a port. Returns the board's end of its line too.
+fn line() -> (File, Port) {
+    let (board_end, path) = pseudo_terminal();
+    (File::from(board_end), Port::open(&path, 1_000_000).unwrap_or_else(|error| panic!("{error}")))
 }
 
 /// Lets threads of a low real-time priority occupy every processor while `work` runs at a higher priority, for at most
 /// [`BUSY_AT_MOST`]. Returns the result of `work`, and whether `work` has ended while the processors were still busy.
-fn on_a_busy_machine<T: Send>(work: impl FnOnce() -> T + Send) -> (T, bool) {
+fn on_a_busy_machine<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> (T, bool) {
     let processors = thread::available_parallelism().expect("a number").get();
     // Every thread has its priority before the first one is busy. An ordinary thread would not run any more.
-    let (ready, ended, too_late) = (Barrier::new(processors + 1), AtomicBool::new(false), AtomicBool::new(false));
-    thread::scope(|scope| {
-        for processor in 0..processors {
-            let (ready, ended, too_late) = (&ready, &ended, &too_late);
-            scope.spawn(move || {
-                run_on(processor);
-                assert!(run_at(1), "permitted before");
-                ready.wait();
-                let begun = Instant::now();
-                while !ended.load(Ordering::SeqCst) {
-                    if begun.elapsed() > BUSY_AT_MOST {
-                        too_late.store(true, Ordering::SeqCst);
-                        break;
-                    }
-                }
-            });
-        }
-        let working = scope.spawn(|| {
-            assert!(run_at(50), "permitted before");
+    let ready = Arc::new(Barrier::new(processors + 1));
+    let (ended, too_late) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
+    let start = |core| {
+        let (ready, ended, too_late) = (ready.clone(), ended.clone(), too_late.clone());
+        let busy = spawn("busy", Priority { fifo: 1, core: Some(core) }, move |_| {
             ready.wait();
-            thread::sleep(Duration::from_millis(2));
-            let result = work();
-            ended.store(true, Ordering::SeqCst);
-            (result, !too_late.load(Ordering::SeqCst))
+            let begun = Instant::now();
+            while !ended.load(Ordering::SeqCst) {
+                if begun.elapsed() > BUSY_AT_MOST {
+                    too_late.store(true, Ordering::SeqCst);
+                    break;
+                }
+            }
         });
-        working.join().expect("no panic")
-    })
+        busy.expect("a thread")
+    };
+    let busy: Vec<_> = (0..processors).map(start).collect();
+    let working = spawn("working", Priority { fifo: 50, core: None }, move |_| {
+        ready.wait();
+        thread::sleep(Duration::from_millis(2));
+        let result = work();
+        ended.store(true, Ordering::SeqCst);
+        (result, !too_late.load(Ordering::SeqCst))
+    });
+    let result = working.expect("a thread").join().expect("no panic");
+    busy.into_iter().for_each(|busy| busy.join().expect("no panic"));
+    result
 }
 
 #[test]
 fn a_deadline_is_kept_while_the_kernel_cannot_carry_the_bytes() {
-    if !thread::spawn(|| run_at(1)).join().expect("no panic") {
+    let permitted = spawn("permitted", Priority { fifo: 1, core: None }, |refusals| refusals.scheduling.is_none());
+    if !permitted.expect("a thread").join().expect("no panic") {
         return tools::not_permitted("a busy machine", "this process may not use SCHED_FIFO (run the tests as root)");
     }
-    let (mut board_end, path) = pseudo_terminal();
-    let mut port = Port::open(&path, 1_000_000).unwrap_or_else(|error| panic!("{error}"));
-    let mut buffer = [0; 64];
+    let (mut board_end, mut port) = line();
     for round in 1..=2 {
-        let (taken, in_time) = on_a_busy_machine(|| {
+        let mut buffer = [0; 64];
+        let (mut taken, in_time);
+        ((board_end, port, buffer, taken), in_time) = on_a_busy_machine(move || {
             board_end.write_all(b"reply").expect("written");
-            port.read_until(&mut buffer, realtime::now() + 5 * MS).expect("no error")
+            let taken = port.read_until(&mut buffer, realtime::now() + 5 * MS).expect("no error");
+            (board_end, port, buffer, taken)
         });
         assert!(in_time, "round {round}: the read waited for the worker");
         // If this process may use only some of the processors, the worker may have carried the bytes on another one.
-        let taken = match taken {
-            0 => port.read_until(&mut buffer, realtime::now() + 5000 * MS).expect("no error"),
-            taken => taken,
-        };
+        if taken == 0 {
+            taken = port.read_until(&mut buffer, realtime::now() + 5000 * MS).expect("no error");
+        }
         assert_eq!(&buffer[..taken], b"reply");
     }
 }
@@ -117,8 +92,7 @@ fn a_deadline_is_kept_while_the_kernel_cannot_carry_the_bytes() {
 /// until more arrive. Each chunk is therefore sent only after all bytes of the one before were read.
 #[test]
 fn no_byte_stays_behind_whatever_the_sizes_of_chunks_and_buffers() {
-    let (mut board_end, path) = pseudo_terminal();
-    let mut port = Port::open(&path, 1_000_000).unwrap_or_else(|error| panic!("{error}"));
+    let (mut board_end, mut port) = line();
     let mut random = Pcg64::seed_from_u64(7);
     let (mut buffer, mut sent, mut read) = ([0; 5000], 0_u8, 0_u8);
     for _ in 0..5000 {
