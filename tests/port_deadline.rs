@@ -80,7 +80,8 @@ fn a_deadline_is_kept_while_the_kernel_cannot_carry_the_bytes() {
             (board_end, port, buffer, taken)
         });
         assert!(in_time, "round {round}: the read waited for the worker");
-        // If this process may use only some of the processors, the worker may have carried the bytes on another one.
+        // Normally no byte has arrived yet, because all processors that this process may use were busy. The bytes have
+        // arrived if the machine has another processor, on which the worker has run.
         if taken == 0 {
             taken = port.read_until(&mut buffer, realtime::now() + 5000 * MS).expect("no error");
         }

@@ -1,7 +1,7 @@
 //! Measures the detection of contacts without tactile sensors: which forces simulated fingers detect, how fast they
 //! detect them, and how many false alarms there are.
 //!
-//!     cargo bench --bench contact                       all tables of docs/contact.md
+//!     cargo bench --bench contact                       all tables of docs/contact.md except that of slipping
 //!     cargo bench --bench contact -- nominal            the hands with this word in their name
 //!     cargo bench --bench contact -- --minutes 1        shorter runs for false alarms
 //!     cargo bench --bench contact -- --alarms           only the table of false alarms
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if arguments.after {
         return after(&cases, &contact, arguments.seeds);
     }
-    println!("| hand | simulated time, min | false alarms | first, s | part of the time |\n|---|---|---|---|---|");
+    println!("| hand | simulated time, min | false alarms | first, s | share in contact |\n|---|---|---|---|---|");
     let alarms = parallel::each(&cases, |_, case| {
         let seconds = case.seconds.min(arguments.minutes * 60.0);
         false_alarms::count(case, &contact, seconds, 1).map_err(|error| error.to_string())

@@ -162,7 +162,7 @@ const HOW_TO_RECORD: &str =
 
 fn first_line(program: &str) -> Result<String, Box<dyn Error>> {
     let output = Command::new(program).arg("--version").output().map_err(|error| {
-        format!("cannot run `{program} --version`, which names what built the counted program ({error}): install it")
+        format!("cannot run `{program} --version` ({error}): install {program}, whose version is a part of the record")
     })?;
     Ok(String::from_utf8_lossy(&output.stdout).lines().next().unwrap_or_default().into())
 }

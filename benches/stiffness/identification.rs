@@ -71,7 +71,7 @@ impl UnknownFinger {
         let controlled = Calibration::controlled(belief, self.rate);
         let controller = Controller::new(&controlled, self.rate).expect("the default controller");
         let mut state = controller.start(&self.read());
-        // If the finger is not under tension after 10 s, the routine refuses it.
+        // A finger that is not under tension after 10 s is left to the routine, which tightens the tendons itself.
         for cycle in 0..(10.0 * self.rate) as usize {
             let feedback = self.read();
             let report = self.advance(&controller, &mut state, &feedback, &Activity::TakeUpSlack);
@@ -81,7 +81,7 @@ impl UnknownFinger {
         }
         let mut calibration = Calibration::new(task, belief, self.rate).expect("the default finger");
         let mut report = Report::default();
-        // Zeroing returns no activity at first. Until then the finger continues to take up slack.
+        // In its first cycles, zeroing returns no activity. In these cycles the finger continues to take up slack.
         let mut newest = Activity::TakeUpSlack;
         loop {
             let feedback = self.read();

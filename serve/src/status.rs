@@ -72,7 +72,7 @@ mod tests {
     #[test]
     fn a_status_has_the_number_of_warnings_since_open() {
         let mut configuration = Configuration::default();
-        // The stop of joint 0 is close.
+        // With this limit, the pushes below move joint 0 to its mechanical stop, which causes a warning.
         configuration.fingers[0].joints.maximum_degrees[0] = 5.0;
         let hand = Arc::new(Hand::open(configuration).expect("the simulated hand"));
         let limits = Limits { catch_ms: 100, end_ms: 1000, soft_stiffness: 1.0, lead_force: 10.0 };

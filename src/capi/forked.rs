@@ -9,8 +9,9 @@ static BEFORE_OPENING: AtomicU8 = AtomicU8::new(OWN);
 static IN_CHILD: AtomicU8 = AtomicU8::new(0);
 
 /// Points to the mark of this process. The first call that opens a hand moves the mark to a byte that the system sets
-/// to 0 in every child, before any handler of pthread_atfork runs. The system does so whether fork, _Fork or a raw
-/// system call has created the child. Reading the mark takes 1 ns; a comparison of process numbers takes 200 ns.
+/// to 0 in every child with a memory of its own, before any handler of pthread_atfork runs. The system does so whether
+/// fork, _Fork or a raw system call has created the child. Reading the mark takes 1 ns; a comparison of process numbers
+/// takes 200 ns.
 static MARK: AtomicPtr<AtomicU8> = AtomicPtr::new((&raw const BEFORE_OPENING).cast_mut());
 
 /// Whether this process was forked from a process that has opened a hand, or has tried to open one.

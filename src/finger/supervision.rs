@@ -15,9 +15,9 @@ const NOISY: f64 = 0.02;
 /// A servo counts as overrunning if, in the window, the share of cycles that skipped periods is larger than this.
 const OVERRUN: f64 = 0.02;
 
-/// The line counts as unusable if the share of damaged replies is larger than this. The share is that of a window as
-/// long as the time without replies after which a finger faults. With one damaged reply in two, the finger is still
-/// under control.
+/// The line counts as unusable if the share of damaged replies in a window is larger than this. The length of the
+/// window is equal to the time without replies after which a finger faults. With one damaged reply in two, the finger
+/// is still under control.
 const UNUSABLE: f64 = 0.6;
 
 /// Share of damaged replies above which a finger that gets no valid reply reports the damage as the cause of its fault.

@@ -1,5 +1,5 @@
-//! Damping ratios other than the controller's own: with an admitted ratio the finger must come to rest, and with a
-//! refused ratio it must not.
+//! Damping other than that of the controller's design, which counts as 1: with every admitted value the finger must
+//! come to rest. With values far outside of the admitted range it must not.
 
 use super::rig::{Loop, finger_with, poses_of};
 use super::state_feedback::shifted;
@@ -40,7 +40,7 @@ fn restlessness(finger: &ConfiguredFinger, rate: f64, stiffness: f64, damping: f
         let square = tips.iter().map(|tip| (tip - mean).norm_squared()).sum::<f64>() / tips.len() as f64;
         worst = worst.max(square.sqrt());
     }
-    assert!(tried >= 9, "only {tried} of 12 poses have a goal within the joint limits");
+    assert!(tried >= 9, "only {tried} of 12 poses were tried: the others have no goal that the finger can reach");
     worst
 }
 
@@ -78,7 +78,7 @@ fn state_feedback_rests_at_both_ends_of_the_range() {
 }
 
 /// The finger has no friction, because with friction the controllers of the report's figures hunt by more than 0.01 cm
-/// at any damping, even at 1.
+/// at every damping.
 #[test]
 fn the_figures_rest_with_more_damping_without_friction() {
     for scheme in [Scheme::Figure9, Scheme::Figure10] {

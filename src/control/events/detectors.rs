@@ -23,7 +23,7 @@ pub struct Detectors {
 #[derive(Clone, Copy, Debug)]
 pub struct DetectorState {
     contact: ContactBefore,
-    /// The bound that each tension is beyond.
+    /// For each tension, the side on which it is beyond its bound, if it is.
     tensions: [Option<Side>; 4],
     /// Whether each joint is at a limit.
     joints: [bool; 3],

@@ -1,4 +1,4 @@
-//! The events of a finger: what the detectors observe, and the threads that wait for events.
+//! Writes the events of a finger to its event log, and wakes the threads that wait for events.
 
 use super::FingerServo;
 use crate::control::Activity;

@@ -136,8 +136,8 @@ mod tests {
                 let longest = if draw(20) == 0 { 3 * PERIOD / 2 } else { PERIOD * 4 / 10 };
                 let ended = began + draw(longest);
                 cycles.push(Cycle { finger, number, scheduled, began, ended, events: draw(4) as usize });
-                // A cycle that ends late delays the next one. A servo skips whole periods too, but does not move its
-                // schedule by the rest.
+                // Like a servo, this schedule skips the whole periods that have passed when a cycle ends late. Unlike
+                // the schedule of a servo, it then also moves to the end of that cycle.
                 scheduled += PERIOD;
                 scheduled += ended.saturating_sub(scheduled) / PERIOD * PERIOD;
                 if ended > scheduled {
