@@ -121,7 +121,7 @@ fn count(scheme: &str) -> Result<f64, Box<dyn Error>> {
     }
     let text = std::fs::read_to_string(&file)?;
     let total = text.lines().find_map(|line| line.strip_prefix("totals: ")).ok_or_else(|| {
-        format!("the output of callgrind, {}, has no line \"totals:\": check the version of valgrind", file.display())
+        format!("the output of callgrind, {}, has no line \"totals:\", which valgrind 3.19 writes", file.display())
     })?;
     Ok(total.trim().parse::<f64>()? / CYCLES as f64)
 }

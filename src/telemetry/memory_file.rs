@@ -6,7 +6,7 @@ use crate::realtime::atomics::AtomicU64;
 use std::io;
 use std::ptr::NonNull;
 
-/// The seals of the file: it keeps its size, and no other mapping of it can be written.
+/// The seals of the file: it keeps its size, and a mapping that is made later cannot be written.
 const SEALS: libc::c_int = libc::F_SEAL_SHRINK | libc::F_SEAL_GROW | libc::F_SEAL_FUTURE_WRITE | libc::F_SEAL_SEAL;
 
 /// A mapping of a memory file.

@@ -57,8 +57,8 @@ fn an_acquire_that_the_owner_prevents_does_not_hold_up_a_recovery() {
     join(&shared);
 }
 
-/// Stops finger 1, and lets the set point of finger 2 expire in 50 ms. At that time the recovery of finger 1, which the
-/// caller then requests, still takes up slack.
+/// Stops finger 1, and lets the set point of finger 2 expire in 50 ms. The caller then requests the recovery of finger
+/// 1, which takes longer than 50 ms.
 fn stop_and_expire(shared: &Shared) {
     shared.hand.stop(1).expect("finger 1");
     let begun = Instant::now();
