@@ -34,7 +34,8 @@ fn line() -> (File, Port) {
 /// [`BUSY_AT_MOST`]. Returns the result of `work`, and whether `work` has ended while the processors were still busy.
 fn on_a_busy_machine<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> (T, bool) {
     let processors = thread::available_parallelism().expect("a number").get();
-    // Every thread has its priority before the first one is busy. An ordinary thread would not run any more.
+    // No thread is busy before every thread has its priority: a thread that is still ordinary would not run beside busy
+    // threads, and would never get its priority.
     let ready = Arc::new(Barrier::new(processors + 1));
     let (ended, too_late) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
     let start = |core| {

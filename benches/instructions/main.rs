@@ -87,7 +87,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     compare(&now, &recorded)
 }
 
-/// Repeats the recorded run of a scheme.
+/// Simulates a run with a scheme, and repeats the cycles of its controller. Callgrind counts only the repetition.
 fn steps(scheme: &str) -> Result<(), Box<dyn Error>> {
     let mut finger = ConfiguredFinger::default();
     let name: StrDeserializer<ValueError> = scheme.into_deserializer();
@@ -121,7 +121,10 @@ fn count(scheme: &str) -> Result<f64, Box<dyn Error>> {
     }
     let text = std::fs::read_to_string(&file)?;
     let total = text.lines().find_map(|line| line.strip_prefix("totals: ")).ok_or_else(|| {
-        format!("the output of callgrind, {}, has no line \"totals:\", which valgrind 3.19 writes", file.display())
+        format!(
+            "the output of callgrind, {}, has no line \"totals:\": install valgrind 3.19, which writes it",
+            file.display()
+        )
     })?;
     Ok(total.trim().parse::<f64>()? / CYCLES as f64)
 }

@@ -67,7 +67,7 @@ impl Drop for Pending {
     }
 }
 
-/// Ends all openings.
+/// Requests all openings to end. Each one ends when it asks the next time whether it is to continue.
 pub fn end_openings() {
     state().ending = true;
 }

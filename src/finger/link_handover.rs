@@ -34,7 +34,7 @@ pub struct RestoredBoard {
     pub configured: Configured,
     /// The numbers of requests to stop and of faults before the recovery began.
     pub stops: StopCounts,
-    /// Number of restarts of the board since open that recoveries have detected. A recovery looks for a restart only if
+    /// Number of restarts of the board that recoveries have detected since open. A recovery looks for a restart only if
     /// the board loses its zeros or the readings of tactile elements at a restart. For other boards the number is 0.
     pub restarts: u32,
 }

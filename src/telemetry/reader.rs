@@ -229,7 +229,10 @@ fn answer(
         Ok(Reply::Attached { description, words, position }) => {
             let map = |file| memory_file::open(&file, usize::try_from(words).map_err(io::Error::other)?);
             let file = received.file.ok_or_else(|| incomprehensible("no memory file".into()))?;
-            let mapping = map(file).map_err(|error| incomprehensible(error.to_string()))?;
+            let mapping = map(file).map_err(|error| match error.kind() {
+                ErrorKind::InvalidData => incomprehensible(error.to_string()),
+                _ => AttachError::System { doing: "map the memory of the hand", source: error },
+            })?;
             Ok(((*description, position), mapping))
         }
         Ok(Reply::Refused(reason)) => Err(AttachError::Refused { name: name(), reason }),

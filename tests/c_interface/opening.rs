@@ -19,7 +19,8 @@ fn the_first_refusal_of_each_kind_prints_one_line() {
     let (status, _, printed) = opened_with("");
     assert_eq!(status, Some(0), "{printed}");
     let refusals: Vec<_> = printed.lines().filter(|line| line.contains("SendPos")).collect();
-    // Beyond the limits, no such finger, and no hand: each of the three was refused several times and printed once.
+    // opens.c gives three reasons for a refusal: joint angles beyond the limits, a finger that does not exist, and a
+    // hand that is closed. Each reason occurs several times, and is printed once.
     assert_eq!(refusals.len(), 3, "{printed}");
     assert!(refusals.iter().all(|line| line.starts_with("sun2xp: SendPos: ")), "{printed}");
 }

@@ -1,5 +1,5 @@
-//! Tests values of the damping. The value 1 is the damping for which the controller is designed. With every admitted
-//! value, the finger must come to rest. With values far outside of the admitted range, the finger must keep moving.
+//! Tests values of the damping. The value 1 is the damping for which the controller is designed. At the ends of the
+//! admitted range, the finger must come to rest. With values far outside of this range, it must keep moving.
 
 use super::rig::{Loop, finger_with, poses_of};
 use super::state_feedback::shifted;

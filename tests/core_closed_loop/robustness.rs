@@ -69,7 +69,8 @@ proptest! {
         cases: ProptestConfig::default().cases.max(300), failure_persistence: None, ..Default::default()
     })]
 
-    /// Whatever the board reports, torques are finite and within the limits, and tensions are within the bounds.
+    /// Whatever the board reports, the commanded torques are finite and within their limits, and the desired tensions
+    /// are within their bounds.
     #[test]
     fn commands_are_finite_and_bounded_for_any_feedback(
         replies in prop::collection::vec(

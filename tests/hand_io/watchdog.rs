@@ -19,7 +19,7 @@ fn note(_: Severity, text: &str) -> bool {
 
 /// Opens finger 2 with hardware that has this shortest watchdog time, ms. Returns the time that the hardware gets, and
 /// the notices about it. A pause of the machine does not fail the test: the hardware is simulated physics for which the
-/// servo waits (`in_step`), and its watchdog does not trip after a long time without an exchange.
+/// servo waits (`in_step`), and such hardware has no watchdog.
 fn opened(shortest_watchdog_ms: u16) -> (u16, Vec<String>) {
     offer_messages_to(note);
     let mut configuration = Configuration::default();

@@ -1,4 +1,4 @@
-//! Runs all detectors of a finger in each cycle.
+//! Runs all detectors of a finger. The servo calls them in each cycle that has a reply and follows a set point.
 
 use super::arrival::{Arrival, ArrivalDetector, ArrivalState};
 use super::contact_edges::{ContactBefore, ContactEdges};

@@ -76,8 +76,8 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
         let cause = match missing {
             Some(missing) => missing,
             None if priority(configuration, thread).fifo == 0 => format!(
-                "This thread has no real-time priority, so every busy program delays it. Set hand.real_time = \"try\" \
-                 and finger.priority to 1 to 99, or {other}"
+                "This thread has no real-time priority, so every busy program delays it. Set hand.real_time to \
+                 \"try\" and finger.priority to a number from 1 to 99, or {other}"
             ),
             None => format!(
                 "Something keeps this thread from running, for example other real-time threads, a busy or paused \

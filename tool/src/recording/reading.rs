@@ -42,9 +42,18 @@ enum Source {
 struct Mcap {
     file: File,
     reader: LinearReader,
-    channels: BTreeMap<u16, (String, String)>,
+    content: Content,
     /// Size of the file, and number of bytes that have been read.
     bytes: (u64, u64),
+}
+
+/// What the records up to now contain.
+#[derive(Default)]
+struct Content {
+    /// Topic and encoding of each channel.
+    channels: BTreeMap<u16, (String, String)>,
+    /// Number of messages.
+    messages: u64,
 }
 
 /// A record that this program reads.
@@ -75,7 +84,7 @@ impl Recording {
         let options =
             LinearReaderOptions::default().with_prevalidate_chunk_crcs(true).with_record_length_limit(LARGEST_RECORD);
         let reader = LinearReader::new_with_options(options);
-        let mut mcap = Mcap { file, reader, channels: BTreeMap::new(), bytes };
+        let mut mcap = Mcap { file, reader, content: Content::default(), bytes };
         let foreign = |reason: &str| {
             format!(
                 "{} is not a recording of sun2xp: {reason}. Use a file of `sun2xp record` or a black box, and copy it \
@@ -201,7 +210,7 @@ impl Mcap {
                     self.bytes.1 += read as u64;
                     continue;
                 }
-                Some(Ok(LinearReadEvent::Record { data, opcode })) => interpret(&mut self.channels, opcode, data)?,
+                Some(Ok(LinearReadEvent::Record { data, opcode })) => self.content.interpret(opcode, data)?,
             };
             if let Some(found) = found {
                 return Ok(Some(found));
@@ -210,33 +219,39 @@ impl Mcap {
     }
 }
 
-/// Returns what a record contains; none if this program does not use it.
-fn interpret(
-    channels: &mut BTreeMap<u16, (String, String)>,
-    opcode: u8,
-    data: &[u8],
-) -> Result<Option<Found>, Failure> {
-    if opcode == op::FOOTER {
-        return Ok(Some(Found::End));
-    }
-    if !matches!(opcode, op::CHANNEL | op::MESSAGE | op::METADATA) {
-        return Ok(None);
-    }
-    Ok(match mcap::parse_record(opcode, data)? {
-        Record::Channel(channel) if channels.len() < MOST_CHANNELS => {
-            channels.insert(channel.id, (channel.topic, channel.message_encoding));
-            None
+impl Content {
+    /// Returns what a record contains; none if this program does not use it.
+    fn interpret(&mut self, opcode: u8, data: &[u8]) -> Result<Option<Found>, Failure> {
+        if opcode == op::FOOTER {
+            return Ok(Some(Found::End));
         }
-        Record::Metadata(metadata) if metadata.name == FORMAT => {
-            let value = |key| metadata.metadata.get(key).cloned().unwrap_or_default();
-            Some(Found::Format { version: value("version"), library: value("library") })
+        if !matches!(opcode, op::CHANNEL | op::MESSAGE | op::METADATA | op::STATISTICS) {
+            return Ok(None);
         }
-        Record::Message { header, data } => match channels.get(&header.channel_id) {
-            Some((topic, encoding)) => message(topic, encoding, header.log_time, &data)?,
-            None => return Err("a message belongs to no channel".into()),
-        },
-        _ => None,
-    })
+        Ok(match mcap::parse_record(opcode, data)? {
+            Record::Channel(channel) if self.channels.len() < MOST_CHANNELS => {
+                self.channels.insert(channel.id, (channel.topic, channel.message_encoding));
+                None
+            }
+            Record::Metadata(metadata) if metadata.name == FORMAT => {
+                let value = |key| metadata.metadata.get(key).cloned().unwrap_or_default();
+                Some(Found::Format { version: value("version"), library: value("library") })
+            }
+            Record::Message { header, data } => {
+                self.messages += 1;
+                match self.channels.get(&header.channel_id) {
+                    Some((topic, encoding)) => message(topic, encoding, header.log_time, &data)?,
+                    None => return Err("a message belongs to no channel".into()),
+                }
+            }
+            // A chunk whose kind was altered is skipped like a record of an unknown kind, so its messages are missing.
+            Record::Statistics(written) if written.message_count != self.messages => {
+                let (read, written) = (self.messages, written.message_count);
+                return Err(format!("{read} messages were read, and {written} were written").into());
+            }
+            _ => None,
+        })
+    }
 }
 
 /// Cycles that were lost.

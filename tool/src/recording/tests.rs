@@ -138,15 +138,8 @@ fn a_recording_that_is_cut_between_two_records_is_incomplete() {
     let (reader, messages) = messages("between", Duration::from_millis(200));
     write(&path, &reader, &messages);
     let whole = fs::read(&path).expect("the file");
-    // After 8 bytes that name the format, each record has a byte for its kind and 8 for its length.
-    let (mut end, mut ends) = (8, Vec::new());
-    while whole[end] != mcap::records::op::FOOTER {
-        let length = u64::from_le_bytes(whole[end + 1..end + 9].try_into().expect("8 bytes"));
-        end += 9 + usize::try_from(length).expect("a length");
-        ends.push(end);
-    }
     let mut readable = 0;
-    for end in ends {
+    for end in ends_of_records(&whole) {
         fs::write(&path, &whole[..end]).expect("written");
         let Ok(mut recording) = Recording::open(&path) else { continue };
         for entry in recording.by_ref() {
@@ -156,6 +149,18 @@ fn a_recording_that_is_cut_between_two_records_is_incomplete() {
         readable += 1;
     }
     assert!(readable > 5);
+}
+
+/// Returns the place after each record up to the footer. The record of the footer itself is not among them.
+fn ends_of_records(file: &[u8]) -> Vec<usize> {
+    // After 8 bytes that name the format, each record has a byte for its kind and 8 for its length.
+    let (mut end, mut ends) = (8, Vec::new());
+    while file[end] != mcap::records::op::FOOTER {
+        let length = u64::from_le_bytes(file[end + 1..end + 9].try_into().expect("8 bytes"));
+        end += 9 + usize::try_from(length).expect("a length");
+        ends.push(end);
+    }
+    ends
 }
 
 #[test]
@@ -178,15 +183,31 @@ fn a_recording_that_is_cut_anywhere_is_readable_up_to_its_last_whole_chunk() {
         read.push(count);
     }
     assert!(read.is_sorted() && *read.last().expect("parts") > 300, "{read:?}");
-    // Altered bytes cause an error or change nothing. They never cause a panic.
-    for place in (0..whole.len()).step_by(whole.len() / 300) {
+}
+
+#[test]
+fn no_altered_byte_makes_entries_disappear_from_a_complete_recording() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hand.mcap");
+    let (reader, messages) = messages("altered", Duration::from_millis(400));
+    write(&path, &reader, &messages);
+    let whole = fs::read(&path).expect("the file");
+    let written = Recording::open(&path).expect("a recording").count();
+    let ends = ends_of_records(&whole);
+    // The byte after the end of a record is the kind of the next one.
+    let places = (0..whole.len()).step_by(whole.len() / 300).chain(ends);
+    let mut refused = 0;
+    for place in places {
         let mut altered = whole.clone();
         altered[place] ^= 0x55;
         fs::write(&path, &altered).expect("written");
-        if let Ok(recording) = Recording::open(&path) {
-            recording.take_while(Result::is_ok).for_each(drop);
-        }
+        let Ok(mut recording) = Recording::open(&path) else { continue };
+        let read: Vec<_> = recording.by_ref().collect();
+        let error = read.last().and_then(|last| last.as_ref().err()).map(ToString::to_string);
+        assert!(error.is_some() || !recording.is_complete() || read.len() == written, "byte {place}");
+        refused += u32::from(error.is_some_and(|text| text.contains("were written. The file was altered")));
     }
+    assert!(refused > 0, "no chunk was lost");
 }
 
 /// Waits until finger 2 has run 200 more cycles.
