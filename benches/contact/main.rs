@@ -86,7 +86,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Prints the table of contacts that follow a motion.
 fn after(cases: &[&Case], contact: &ConfiguredContact, seeds: u64) -> Result<(), Box<dyn Error>> {
-    println!("\nA force of {FORCE} N after a motion at up to 1 or 3 rad/s, or after a jump of the set point:\n");
+    println!(
+        "\nA force of {FORCE} N near the end of a motion at up to 1 or 3 rad/s, or after a jump of the set point:\n"
+    );
     println!(
         "| hand | fastest joint rate, rad/s | force begins after the motion, s | detected | error, N cm: mean, worst |"
     );

@@ -8,7 +8,7 @@
 //! the code and its number of instructions differ. In that case nothing is compared, and a line on standard error says
 //! so. Record again when another compiler or C library becomes the usual one, or when an increase is intended.
 
-#[allow(dead_code, reason = "only the comparison with C uses all of it")]
+#[allow(dead_code, reason = "the benchmark `handwritten` uses the other functions")]
 #[path = "../recorded_run/mod.rs"]
 mod recorded_run;
 

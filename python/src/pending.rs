@@ -34,8 +34,8 @@ pub struct Pending {
 }
 
 impl Pending {
-    /// Notes an opening. The end of the interpreter does not wait for it before the first call of
-    /// [`Pending::goes_on`].
+    /// Notes an opening. Until the first call of [`Pending::goes_on`], the end of the interpreter does not wait for
+    /// this opening.
     pub fn opening() -> Self {
         Self { counted: AtomicBool::new(false), generation: fork::generation() }
     }

@@ -7,7 +7,8 @@ from xml.etree import ElementTree
 
 ROS = pathlib.Path(__file__).parents[1]
 
-#: The package sun2xp has no rosdep key, and that of numpy is python3-numpy.
+#: Imported modules that package.xml does not list under these names: sun2xp has no rosdep key, and the rosdep key of
+#: numpy is python3-numpy.
 OTHERS = {"sun2xp", "numpy"}
 
 

@@ -1,7 +1,7 @@
 //! Locking of the memory that a real-time thread uses, so that it has no page faults.
 //!
-//! A library must not call `mlockall`. With MCL_FUTURE, every later allocation of a planner with a small memlock limit
-//! would fail.
+//! A library must not call `mlockall`. With MCL_FUTURE, later allocations of the planner would fail as soon as its
+//! memory exceeds its memlock limit.
 #![allow(unsafe_code, reason = "locks of pages")]
 
 use super::pages::{Pages, SharedPages};
@@ -48,8 +48,9 @@ impl LockedMemory {
     }
 }
 
-/// Whether the planner has locked all future pages (mlockall with MCL_FUTURE). If the system has no page for the test,
-/// the answer is yes: to keep a lock does less harm than to remove a lock of the planner.
+/// Whether the planner has locked all future pages (mlockall with MCL_FUTURE). A servo thread that ends unlocks its
+/// stack only if it has not. If the system has no page for the test, the answer is yes: a stack that stays locked does
+/// less harm than the loss of a lock of the planner.
 pub(super) fn every_page_is_locked() -> bool {
     let Some(new) = Pages::try_new(0u8) else { return true };
     let place = new.range();

@@ -83,7 +83,7 @@ pub(super) fn create(words: usize) -> io::Result<(Descriptor, Mapping)> {
 /// Maps a file that another process has created, for reading.
 ///
 /// # Errors
-/// Returns an error if the file has another size or other seals than [`create`] gives it. Reading a file that another
+/// Returns an error if the file has another size, or lacks a seal that [`create`] gives it. Reading a file that another
 /// process can shrink could end this process.
 pub(super) fn open(file: &Descriptor, words: usize) -> io::Result<Mapping> {
     let foreign = || io::Error::new(io::ErrorKind::InvalidData, "the memory file has a wrong size or wrong seals");

@@ -18,8 +18,8 @@ fn note(_: Severity, text: &str) -> bool {
 }
 
 /// Opens finger 2 with hardware that has this shortest watchdog time, ms. Returns the time that the hardware gets, and
-/// the notices about it. A pause of the machine does not fail the test: the hardware is simulated physics for which the
-/// servo waits (`in_step`), and such hardware has no watchdog.
+/// the notices about it. The servo waits for this hardware (`in_step`), so the library never reports that the watchdog
+/// time has passed, and a pause of the machine does not fail the test.
 fn opened(shortest_watchdog_ms: u16) -> (u16, Vec<String>) {
     offer_messages_to(note);
     let mut configuration = Configuration::default();

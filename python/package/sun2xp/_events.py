@@ -13,8 +13,8 @@ class Events(_sun2xp.Queue):
     """A queue of all events of a hand, from `Hand.events`. Iteration waits for each event, and ends when the hand is
     closed or being closed and no event is left. `take` returns the events that come while the hand is being closed.
 
-    Every queue gets all events. A queue that is not read keeps the newest 4096 of each finger, and counts in `lost` how
-    many it has lost.
+    Every queue gets all events. A queue that is not read keeps the newest 4096 of each finger. When it is read again,
+    it adds the number of lost events to `lost`.
     """
 
     def __iter__(self) -> Iterator[Event]:

@@ -189,7 +189,7 @@ fn a_recording_that_is_cut_anywhere_is_readable_up_to_its_last_whole_chunk() {
 fn no_altered_byte_makes_entries_disappear_from_a_complete_recording() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("hand.mcap");
-    let (reader, messages) = messages("altered", Duration::from_millis(400));
+    let (reader, messages) = messages("kinds", Duration::from_millis(400));
     write(&path, &reader, &messages);
     let whole = fs::read(&path).expect("the file");
     let written = Recording::open(&path).expect("a recording").count();
