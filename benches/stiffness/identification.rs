@@ -8,8 +8,8 @@ use sun2xp::control::{Activity, Controller, Feedback, MotorCommand, Report, Stat
 use sun2xp::model::configuration::{ConfiguredFinger, ZeroingMethod};
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
-/// Identifies a finger whose true tendons are stiffer than configured by the factors `ratio`. Returns the identified
-/// stiffness of each tendon, N/cm. The finger has the default friction, and its sensors return whole counts.
+/// Identifies a finger whose true tendons have `ratio` times the configured stiffness. Returns the identified stiffness
+/// of each tendon, N/cm. The finger has the default friction, and its sensors return whole counts.
 pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obstacle> {
     let pose = Vector3::from(ConfiguredFinger::default().simulation.start_degrees.map(f64::to_radians));
     let mut truth = case.finger(&pose, Friction::Default);

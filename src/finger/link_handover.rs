@@ -57,7 +57,7 @@ pub struct LinkServoEnd<T> {
 }
 
 impl<T> LinkServoEnd<T> {
-    /// Adds the pages that both ends share to `memory`.
+    /// Adds to `memory` the pages that both ends share.
     pub(super) fn add_to(&self, memory: &mut LockedMemory) {
         self.released.add_to(memory);
         self.repaired.add_to(memory);

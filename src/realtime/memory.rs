@@ -48,9 +48,9 @@ impl LockedMemory {
     }
 }
 
-/// Whether the planner has locked all future pages (mlockall with MCL_FUTURE). A servo thread that ends unlocks its
-/// stack only if it has not. If the system has no page for the test, the answer is yes: a stack that stays locked does
-/// less harm than the loss of a lock of the planner.
+/// Whether the planner has locked all future pages (mlockall with MCL_FUTURE). In that case a servo thread does not
+/// unlock its stack when it ends. If the system has no page for the test, the answer is yes: a stack that stays locked
+/// does less harm than the loss of a lock of the planner.
 pub(super) fn every_page_is_locked() -> bool {
     let Some(new) = Pages::try_new(0u8) else { return true };
     let place = new.range();

@@ -10,8 +10,9 @@ from ._types import Event
 
 
 class Events(_sun2xp.Queue):
-    """A queue of all events of a hand, from `Hand.events`. Iteration waits for each event, and ends when the hand is
-    closed or being closed and no event is left. `take` returns the events that come while the hand is being closed.
+    """A queue of all events of a hand, from `Hand.events`. Iteration waits for each event. It ends when no
+    event is left and the hand is closed or being closed. `take` returns the events that come while the hand is being
+    closed.
 
     Every queue gets all events. A queue that is not read keeps the newest 4096 of each finger. When it is read again,
     it adds the number of lost events to `lost`.
@@ -25,8 +26,8 @@ class Events(_sun2xp.Queue):
         return self._follow()
 
     async def next(self, timeout: Optional[float] = None) -> Optional[Event]:
-        """Waits for an event in asyncio, and takes it. Returns None if no event comes within `timeout` s, or if the
-        hand is closed or being closed and no event is left. Without a timeout, waits without a limit."""
+        """Waits for an event in asyncio, and takes it. Returns None if no event comes within `timeout` s, or if
+        no event is left and the hand is closed or being closed. Without a timeout, waits without a limit."""
         loop = asyncio.get_running_loop()
         deadline = None if timeout is None else loop.time() + timeout
         while (event := self.take()) is None and not self.closed:

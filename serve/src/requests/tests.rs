@@ -57,8 +57,8 @@ fn an_acquire_that_the_owner_prevents_does_not_hold_up_a_recovery() {
     join(&shared);
 }
 
-/// Stops finger 1, and lets the set point of finger 2 expire in 50 ms. The caller then requests the recovery of finger
-/// 1, which takes longer than 50 ms.
+/// Stops finger 1, and lets the set point of finger 2 expire in 50 ms. The caller then requests the recovery of all
+/// fingers. That of finger 1 takes longer than 50 ms.
 fn stop_and_expire(shared: &Shared) {
     shared.hand.stop(1).expect("finger 1");
     let begun = Instant::now();
@@ -70,8 +70,8 @@ fn stop_and_expire(shared: &Shared) {
     shared.hand.keep_valid(2, soon).expect("finger 2");
 }
 
-/// The servo of a finger measures the silence of the previous owner itself. So the set point of the finger may expire a
-/// moment after the server has ended the ownership.
+/// The servo of a finger, and not the server, measures the silence of the previous owner. So the set point of the
+/// finger may expire a moment after the server has ended the ownership.
 #[test]
 fn a_finger_whose_set_point_expires_while_an_acquire_recovers_another_is_recovered_too() {
     let shared = shared();
