@@ -91,7 +91,7 @@ fn a_deadline_is_kept_while_the_kernel_cannot_carry_the_bytes() {
 }
 
 /// The wait is edge-triggered: if a read left bytes and the next read waited for another event, these bytes would stay
-/// until more arrive. Each chunk is therefore sent only after all bytes of the one before were read.
+/// until more arrive. The test sends each chunk only after it has read the one before, so no later chunk can hide this.
 #[test]
 fn no_byte_stays_behind_whatever_the_sizes_of_chunks_and_buffers() {
     let (mut board_end, mut port) = line();

@@ -53,7 +53,7 @@ class HandNode(Node):
         """Opens the hand. Options are those of `rclpy.node.Node`.
 
         Raises:
-            sun2xp.Error: the hand was not opened.
+            sun2xp.Error: the hand was not opened, or faulted at once.
         """
         self.hand: Any = None
         self._serves: Optional[Services] = None
@@ -193,7 +193,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except sun2xp.Error as error:
-        rclpy.logging.get_logger("sun2xp").fatal(f"the hand was not opened: {error}")
+        rclpy.logging.get_logger("sun2xp").fatal(f"the node was not started: {error}")
         return 1
     finally:
         if node is not None:

@@ -197,7 +197,7 @@ def test_a_hand_that_cannot_be_opened_ends_the_node_with_the_reason(ros, paramet
     except subprocess.TimeoutExpired:
         process.kill()
         raise
-    assert process.returncode == 1 and "the hand was not opened" in said and text in said and "Traceback" not in said
+    assert process.returncode == 1 and "the node was not started" in said and text in said and "Traceback" not in said
 
 
 def test_a_node_without_a_hand_destroys_itself(ros):

@@ -39,29 +39,35 @@ fn motor_constants_a_fifth_off_do_not_matter() {
     }
 }
 
+/// Figures 9 and 10 have an integral of the tension error. Figure 11 estimates the quotient of a tension and the pull
+/// commanded for it, and state feedback the disturbance of each motor.
 #[test]
-fn a_jammed_motor_does_not_wind_up_the_integral() {
-    // For 5 s all gauges show 5 N, although the set point demands more. Then one gauge shows 20 N more than desired.
-    let mut finger = ConfiguredFinger::default();
-    // A motor that never becomes too warm.
-    finger.motor.continuous_torque = finger.motor.torque_limit;
-    let controller = Controller::new(&finger, 1000.0).unwrap();
-    let count = |newton: f64| (newton * 4095.0 / 100.0).round() as u16;
-    let held = Feedback { motor_counts: [0; 4], gauge_counts: [count(5.0); 4] };
-    let mut state = controller.start(&held);
-    let there = Activity::Follow(SetPoint::hard_finger(Vector3::new(0.3, 0.3, 0.3), Matrix3::identity() * 3.0));
-    for _ in 0..5000 {
-        controller.cycle(&mut state, Some(&held), &there);
+fn a_jammed_motor_winds_up_neither_an_integral_nor_an_estimate() {
+    for scheme in SCHEMES {
+        // All gauges show 5 N for 5 s, although the set point demands more. Then one shows 20 N more than desired.
+        let mut finger = finger_with(scheme);
+        // A motor that never becomes too warm.
+        finger.motor.continuous_torque = finger.motor.torque_limit;
+        let controller = Controller::new(&finger, 1000.0).unwrap();
+        let count = |newton: f64| (newton * 4095.0 / 100.0).round() as u16;
+        let held = Feedback { motor_counts: [0; 4], gauge_counts: [count(5.0); 4] };
+        let mut state = controller.start(&held);
+        let there = Activity::Follow(SetPoint::hard_finger(Vector3::new(0.3, 0.3, 0.3), Matrix3::identity() * 3.0));
+        for _ in 0..5000 {
+            controller.cycle(&mut state, Some(&held), &there);
+        }
+        let limit = finger.motor.torque_limit[0];
+        let (command, report) = controller.cycle(&mut state, Some(&held), &there);
+        let most = report.desired_tensions.imax();
+        // The estimate of Figure 11 is bounded so closely that the command does not reach the limit.
+        let reaches = scheme == Scheme::Figure11 || (command.motor_torques[most] - limit).abs() < 1e-9;
+        assert!(reaches, "{scheme:?}: {}", command.motor_torques);
+        // In the first cycle in which the gauge shows more than the desired tension, the command is below the limit.
+        let mut taut = held;
+        taut.gauge_counts[most] = count(report.desired_tensions[most] + 20.0);
+        let (command, _) = controller.cycle(&mut state, Some(&taut), &there);
+        assert!(command.motor_torques[most] < 0.99 * limit, "{scheme:?}: {}", command.motor_torques);
     }
-    let limit = finger.motor.torque_limit[0];
-    let (command, report) = controller.cycle(&mut state, Some(&held), &there);
-    let most = report.desired_tensions.imax();
-    assert!((command.motor_torques[most] - limit).abs() < 1e-9);
-    // In the first cycle in which the gauge shows more than the desired tension, the command leaves the limit.
-    let mut taut = held;
-    taut.gauge_counts[most] = count(report.desired_tensions[most] + 20.0);
-    let (command, _) = controller.cycle(&mut state, Some(&taut), &there);
-    assert!(command.motor_torques[most] < 0.9 * limit, "{}", command.motor_torques);
 }
 
 proptest! {

@@ -94,7 +94,8 @@ fn a_finger_whose_set_point_expires_during_a_recovery_for_the_owner_stays_stoppe
     join(&shared);
 }
 
-/// If the recovery began, the finger would tighten its tendons before it is stopped again.
+/// A finger that is stopped after a request for its recovery must not begin to recover: the recovery would tighten the
+/// tendons.
 #[test]
 fn a_stop_since_the_request_prevents_the_recovery() {
     let shared = shared();

@@ -23,7 +23,7 @@ pub struct Detectors {
 #[derive(Clone, Copy, Debug)]
 pub struct DetectorState {
     contact: ContactBefore,
-    /// For each tension, the side on which it is beyond its bound, if it is.
+    /// For each tension, the bound that it is beyond, the upper or the lower one; none if it is within both.
     tensions: [Option<Side>; 4],
     /// Whether each joint is at a limit.
     joints: [bool; 3],
@@ -69,7 +69,7 @@ impl DetectorState {
         }
     }
 
-    /// Returns whether the finger has arrived at its set point and has settled.
+    /// Returns two facts: whether the finger has arrived at its set point, and whether it has settled.
     pub fn arrival(&self) -> Arrival {
         self.arrival.arrival()
     }

@@ -136,8 +136,8 @@ mod tests {
                 let longest = if draw(20) == 0 { 3 * PERIOD / 2 } else { PERIOD * 4 / 10 };
                 let ended = began + draw(longest);
                 cycles.push(Cycle { finger, number, scheduled, began, ended, events: draw(4) as usize });
-                // Like a servo, this schedule skips the whole periods that have passed when a cycle ends late. Unlike
-                // the schedule of a servo, it then also moves to the end of that cycle.
+                // Like a servo, this loop skips the whole periods that have passed when a cycle ends late. Unlike a
+                // servo, it then also schedules the next cycle no earlier than the end of the late one.
                 scheduled += PERIOD;
                 scheduled += ended.saturating_sub(scheduled) / PERIOD * PERIOD;
                 if ended > scheduled {
