@@ -64,8 +64,9 @@ pub struct sun2xp_record {
 ///   cycle    a cycle from record->oldest to record->newest of an earlier call; 0: the newest cycle
 ///   record   result; set record->size before the call
 ///
-/// A record is a part of what sun2xp_write_black_box writes into a file. Every cycle adds a record and
-/// removes the oldest one. A faulted finger adds none, so its records are the last ones before the fault.
+/// A record is a part of what sun2xp_write_black_box writes into a file. Every cycle adds a record.
+/// Records older than two seconds are removed, several at a time. A faulted finger adds no records, so its
+/// records are the last ones before the fault.
 /// If hand.black_box is set and a finger recovers right after a fault, its new cycles cannot be read until
 /// the library has copied the records of the fault. This takes up to 50 ms.
 ///

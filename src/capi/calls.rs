@@ -64,12 +64,11 @@ pub extern "C" fn OpenHand() -> c_int {
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
-///   EBUSY    the call was made in a callback of sun2xp_on_event, of this hand or of another one, while
-///            another thread was opening or closing this hand
+///   EBUSY    the call was made in an event callback (sun2xp_on_event) of any hand, while another thread
+///            was opening or closing this hand
 ///
 /// Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes. Waits until the
-/// callback of this hand has returned, unless the call was made in a callback of sun2xp_on_event, of this
-/// hand or of another one.
+/// callback of this hand has returned, unless the call was made in an event callback of any hand.
 #[unsafe(no_mangle)]
 pub extern "C" fn CloseHand() -> c_int {
     delegated_or_done_here("CloseHand", default_handle(), || {

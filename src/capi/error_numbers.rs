@@ -71,7 +71,7 @@ pub(super) fn number(refusal: &Refusal) -> c_int {
         Refusal::Forked => SUN2XP_ERROR_FORKED,
         Refusal::Exiting => SUN2XP_ERROR_EXITING,
         Refusal::NoHand => SUN2XP_ERROR_NO_HAND,
-        Refusal::AlreadyOpen | Refusal::Busy | Refusal::InLogCallback => SUN2XP_ERROR_BUSY,
+        Refusal::AlreadyOpen | Refusal::Busy | Refusal::BusyInCallback | Refusal::InLogCallback => SUN2XP_ERROR_BUSY,
         Refusal::TooManyHands => SUN2XP_ERROR_TOO_MANY,
         Refusal::Null { .. }
         | Refusal::WrongSize { .. }

@@ -118,7 +118,7 @@ pub unsafe extern "C" fn sun2xp_wait_event(hand: *mut sun2xp_hand, event: *mut s
 /// The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 ///
 /// When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
-/// called again. There is one exception: a call that is made in a callback, of this hand or of another one,
+/// called again. There is one exception: a call that is made in an event callback of any hand
 /// does not wait for the previous callback. The previous callback may then still be running or be called
 /// once more, so its context must stay valid for some time.
 ///

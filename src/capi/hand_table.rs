@@ -119,7 +119,7 @@ pub(super) fn close_default() -> Result<(), Refusal> {
 /// Closes the hand of OpenHand on behalf of a planner's callback for events.
 pub(super) fn close_default_in_callback() -> Result<(), Refusal> {
     // A CloseHand of another thread waits for the callback, so waiting for that call would be a deadlock.
-    let Some(_closing) = TABLE[DEFAULT].lifecycle.try_lock() else { return Err(Refusal::Busy) };
+    let Some(_closing) = TABLE[DEFAULT].lifecycle.try_lock() else { return Err(Refusal::BusyInCallback) };
     TABLE[DEFAULT].close(true);
     Ok(())
 }
@@ -134,7 +134,7 @@ pub(super) fn close(handle: Handle, in_callback: bool) -> Result<(), Refusal> {
             return Ok(());
         }
         if in_callback {
-            return Err(Refusal::Busy);
+            return Err(Refusal::BusyInCallback);
         }
         sleep(CLOSING_PERIOD);
     }

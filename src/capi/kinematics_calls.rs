@@ -218,10 +218,11 @@ pub unsafe extern "C" fn sun2xp_palm_pose(hand: *mut sun2xp_hand, finger: c_int,
 ///
 ///   gravity   gravity[3]: gravity along x, y, z of the palm's frame, m/s^2
 ///
-/// Replaces hand.gravity until sun2xp_close. Every finger compensates the new gravity within a cycle. If
-/// gravity changes by more than 2 m/s^2 in a millisecond, this takes several cycles, so that the torque does
-/// not jump. The new gravity also acts on simulated fingers and on a simulated object. Gravity is an input of
-/// the servos, as a set point is, so a planner can send it in every cycle.
+/// Replaces hand.gravity until sun2xp_close. Every finger that compensates gravity compensates the new one
+/// within a cycle (finger.controller.gravity_compensation, default true). If gravity changes by more than
+/// 2 m/s^2 in a millisecond, this takes several cycles, so that the torque does not jump. The new gravity
+/// also acts on simulated fingers and on a simulated object. Gravity is an input of the servos, as a set
+/// point is, so a planner can send it in every cycle.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

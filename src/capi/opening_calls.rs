@@ -130,11 +130,11 @@ pub unsafe extern "C" fn sun2xp_open_named(name: *const c_char, hand: *mut *mut 
 /// Returns 0, or a negative number with
 ///   EPERM    forked child
 ///   ENODEV   no such hand, or another thread is closing it already (the call does not wait for the end)
-///   EBUSY    only in a callback of sun2xp_on_event, of this hand or of another one: another thread is just
-///            beginning to close this hand, or the process exits
+///   EBUSY    only in an event callback (sun2xp_on_event) of any hand: another thread is just beginning to
+///            close this hand, or the process exits
 ///
-/// Threads: any. Waits until the callback of this hand has returned, unless the call was made in a callback
-/// of sun2xp_on_event, of this hand or of another one.
+/// Threads: any. Waits until the callback of this hand has returned, unless the call was made in an event
+/// callback of any hand.
 #[unsafe(no_mangle)]
 pub extern "C" fn sun2xp_close(hand: *mut sun2xp_hand) -> c_int {
     let hand = Handle::of(hand);

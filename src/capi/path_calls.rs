@@ -47,7 +47,7 @@ pub struct sun2xp_path_pose {
 /// and the path continues the anchor's motion. It passes every pose at its time and rests at the last one.
 /// Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only pose
 /// is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
-/// continuous, with one exception: if a path that continues the motion would be refused, the finger first
+/// continuous, with one exception: if a path from the present motion would violate a limit, the finger first
 /// brakes for 0.15 s. The braking begins with the present speed, but without acceleration and jerk. The
 /// controller "state feedback" (finger.controller.scheme) smooths this step in acceleration and jerk. This
 /// controller also feeds speed, acceleration and jerk forward, so the finger follows without the lag of

@@ -48,6 +48,11 @@ pub(super) enum Refusal {
     #[error("another thread is opening or closing the hand: wait until its call has returned")]
     Busy,
     #[error(
+        "another thread is opening or closing the hand, and an event callback must not wait for that thread: return \
+         from the callback"
+    )]
+    BusyInCallback,
+    #[error(
         "the log callback makes this call, which would wait until the callback has returned: make the call elsewhere"
     )]
     InLogCallback,
@@ -122,7 +127,7 @@ impl Refusal {
             Self::Null { .. } => libc::EFAULT,
             Self::WrongSize { .. } => libc::EINVAL,
             Self::NoHand => libc::ENODEV,
-            Self::AlreadyOpen | Self::Busy | Self::InLogCallback => libc::EBUSY,
+            Self::AlreadyOpen | Self::Busy | Self::BusyInCallback | Self::InLogCallback => libc::EBUSY,
             Self::TooManyHands => libc::EMFILE,
             Self::NoSuchName | Self::IoCount | Self::IoTwice(_) | Self::IoWatchdog { .. } => libc::EINVAL,
             Self::Exiting => libc::ESHUTDOWN,

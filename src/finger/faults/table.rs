@@ -27,7 +27,7 @@ faults! {
     3 OverTension "OVER_TENSION" Fault Tendon Tension "over-tension",
         "the tension of a tendon is far above finger.tendon.maximum",
         "the finger was hit or bent by force, a joint is jammed, or the scale of the gauge is wrong",
-        "Remove the load from the finger and recover it; check finger.tendon.maximum and \
+        "Remove the load from the finger, or free its joint, and recover it; check finger.tendon.maximum and \
          finger.gauge.newton_per_count", [Recover];
     4 GaugeStuck "GAUGE_STUCK" Fault Gauge Counts "gauge stuck",
         "the count of a strain gauge no longer changes",
@@ -95,7 +95,7 @@ faults! {
     18 EmergencyStopInput "EMERGENCY_STOP_INPUT" Fault Finger Status "emergency stop, input",
         "the emergency stop input of the board is active, or was active",
         "somebody pressed the button, or the wire of the button is broken",
-        "Make sure that the hand can move safely, release the button, then recover the finger", [Recover];
+        "Make sure that the hand can move safely, release or repair the button, then recover the finger", [Recover];
     19 EmergencyStopCall "EMERGENCY_STOP_CALL" Fault Finger Nothing "emergency stop, call",
         "the program requested an emergency stop",
         "the program or its user detected a danger",
@@ -148,7 +148,7 @@ faults! {
         "finger.port is not a serial port, the port cannot run at finger.baud or is not ready, its adapter or driver \
          has failed, a sandbox or container forbids the call, or a system limit has been reached",
         "Correct finger.port or finger.baud; try again after half a minute; check the adapter and its driver (dmesg); \
-         or permit the call or raise the limit, as the text of the refused call says", [];
+         or permit the system call or raise the limit that the error text names", [];
     31 BoardSilent "BOARD_SILENT" Refusal Finger Time "board silent",
         "no byte came from the board",
         "the board is off, the cable is unplugged, the transmit output of one side is not connected to the receive \
