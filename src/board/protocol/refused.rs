@@ -1,4 +1,5 @@
 use super::fields::{FieldReader, FieldWriter};
+use super::status::Status;
 use crate::model::Counted;
 use std::fmt;
 
@@ -80,6 +81,14 @@ impl Reason {
     }
 }
 
+/// The faults with which a board refuses a Configure, each with its cause and remedy.
+const REMEDIES: [(Status, &str); 4] = [
+    (Status::EMERGENCY_STOP, "the emergency stop is active, so release it"),
+    (Status::SUPPLY_FAULT, "the motor supply is missing or out of range, so check it"),
+    (Status::DRIVER_FAULT, "a motor driver reports a fault, so check the motors and their wires"),
+    (Status::SENSOR_FAULT, "an encoder or a gauge cannot be read, so check its cable"),
+];
+
 impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let (request, detail) = (self.request, self.detail);
@@ -98,11 +107,14 @@ impl fmt::Display for Refused {
             Reason::NotConfigured => write!(f, "it is not configured, because it has restarted. Check its power"),
             Reason::Running => write!(f, "its motors follow the commands of another program. End that program"),
             Reason::Fault => {
-                write!(
-                    f,
-                    "it reports a fault (status bits {detail:#06x}, docs/board-protocol.md). Release the emergency \
-                     stop or remove the fault"
-                )
+                let present = Status(detail);
+                let known = REMEDIES.iter().filter(|(fault, _)| present.has(*fault)).map(|(_, remedy)| *remedy);
+                let remedies = known.collect::<Vec<_>>().join("; ");
+                write!(f, "it reports a fault (status bits {detail:#06x}): {remedies}")?;
+                match remedies.is_empty() {
+                    true => f.write_str("see docs/board-protocol.md"),
+                    false => Ok(()),
+                }
             }
             Reason::UnknownFrame => {
                 let bytes = Counted(detail.into(), "byte", "bytes");
@@ -112,5 +124,24 @@ impl fmt::Display for Refused {
                 write!(f, "it gives the reason number {number}, which is unknown to this library. Update the library")
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_faults_that_prevent_a_configuration_are_named_with_their_remedies() {
+        let text = |detail| Refused { request: 0x2, reason: Reason::Fault, detail }.to_string();
+        assert_eq!(
+            text(0x00C0),
+            "it reports a fault (status bits 0x00c0): the emergency stop is active, so release it; the motor supply \
+             is missing or out of range, so check it"
+        );
+        for (fault, remedy) in REMEDIES {
+            assert!(Status::FAULTS.has(fault) && text(fault.0).ends_with(remedy), "{}", text(fault.0));
+        }
+        assert!(text(0x1000).ends_with(": see docs/board-protocol.md"), "{}", text(0x1000));
     }
 }
