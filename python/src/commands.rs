@@ -197,7 +197,7 @@ fn contact(
         ([4, 4], Some(normal)) => Contact::soft_finger(Matrix4::from_row_slice(&numbers), normal),
         ([6, 6], None) => Contact::general(&Matrix6::from_row_slice(&numbers), &Matrix6::identity()),
         _ => {
-            let text = "there is no such contact: pass a number and a normal for a frictionless point, a 3 x 3 \
+            let text = "there is no such contact: pass one stiffness and a normal for a frictionless point, a 3 x 3 \
                         stiffness for a hard finger, a 4 x 4 stiffness and a normal for a soft finger, or the 6 x 6 \
                         stiffness of any contact";
             return Err(Refusal::Argument(text.into()).raise(py));

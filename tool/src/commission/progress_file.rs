@@ -137,7 +137,7 @@ impl CommissionedFinger {
     pub fn open_fault(&self, step: Step) -> Option<String> {
         let (open, fault) = self.failed.iter().find(|&(&open, _)| step.moves() && open < step)?;
         Some(format!(
-            "the step \"{step}\" is not done, because it moves the finger and the step \"{open}\" failed on {}: {}. \
+            "the step \"{step}\" moves the finger. It is not done, because the step \"{open}\" failed on {}: {}. \
              Remove the cause and do the step \"{open}\" again",
             fault.when,
             fault.found.join("; ")

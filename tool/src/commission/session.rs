@@ -63,7 +63,7 @@ impl Session<'_> {
     pub fn closing(&self) -> Result<String, Failure> {
         let left = ProgressFile::read(&self.file)?.left(self.finger.get());
         if left.is_empty() {
-            let later = "To compare the finger later with its state of today, run sun2xp health.";
+            let later = "Later, run sun2xp health to compare the finger with its state of today.";
             return Ok(format!("The finger is commissioned. {later}"));
         }
         let names = left.iter().map(|step| step.name()).collect::<Vec<_>>().join(", ");

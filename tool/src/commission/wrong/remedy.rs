@@ -121,8 +121,9 @@ impl Wrong {
             }
             Self::TendonTension(tendon, _) => format!("Look for friction in the path of tendon {tendon}"),
             Self::SpringStiffness(..) => {
-                "Start the tool again with --step tendons --step spring. In the step \"spring\", push along one \
-                 direction only"
+                "Either the push changed its direction, or the tendons were measured badly. Leave with q, and start \
+                 the tool again with --step tendons --step spring. In the step \"spring\", push along one direction \
+                 only"
                     .into()
             }
             Self::SpringReturn(_) => "The cause is friction. docs/tuning.md says how to compensate for it".into(),
