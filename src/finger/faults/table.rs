@@ -146,7 +146,7 @@ faults! {
     30 PortUnusable "PORT_UNUSABLE" Refusal Finger Nothing "port unusable",
         "the port cannot be used as configured",
         "finger.port is not a serial port, the port cannot run at finger.baud or is not ready, its adapter or driver \
-         has failed, a sandbox or container forbids the call, or a system limit has been reached",
+         has failed, a sandbox or container forbids a system call, or a system limit is reached",
         "Correct finger.port or finger.baud; try again after half a minute; check the adapter and its driver (dmesg); \
          or permit the system call or raise the limit that the error text names", [];
     31 BoardSilent "BOARD_SILENT" Refusal Finger Time "board silent",
@@ -173,7 +173,7 @@ faults! {
     36 UnsuitableBoard "UNSUITABLE_BOARD" Refusal Finger Nothing "wrong board",
         "the board does not support the configuration, or confirms other values than those that were sent to it",
         "the configuration was made for another board, or the firmware of the board is faulty",
-        "Connect the right board, change the setting that the refused call's text names, or update the firmware", [];
+        "Connect the right board, change the setting that the error text names, or update the firmware", [];
     37 IdentityChanged "IDENTITY_CHANGED" Fault Finger Nothing "identity changed",
         "the board at the port is not the one that was there when the hand was opened",
         "boards or cables were exchanged while the hand was open",

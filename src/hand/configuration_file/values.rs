@@ -84,7 +84,10 @@ impl<'a> Node<'a> {
         };
         Err(Wrong::at(
             self.span,
-            format!("{number} is too {misfit} for this key: docs/sun2xp.toml describes its values"),
+            format!(
+                "{number} is too {misfit} for this key: see its description in docs/sun2xp.toml, or in docs/remote.md \
+                 for the table [serve]"
+            ),
         ))
     }
 }

@@ -124,7 +124,7 @@ pub enum PathError {
     /// the inhibition of a reflex ended.
     #[error(
         "the path of finger {0} was not sent, because while it was computed, the finger was recovered or calibrated, \
-         its set point expired, a reflex reacted, or the inhibition of a reflex ended: send the path again"
+         its set point expired, a reflex reacted, or the effect of a reflex ended: send the path again"
     )]
     Moved(FingerNumber),
 }
