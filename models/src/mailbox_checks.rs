@@ -46,8 +46,8 @@ pub fn an_order_comes_after_its_data() {
 }
 
 /// Each time a finger becomes a spring, a new spring phase begins (`FingerReport::springs`). A set point for an earlier
-/// phase is not used. This model has no set points that expire, for which the servo makes an exception. A set point
-/// that a planner sends after it has seen the new phase is used.
+/// phase is not used. The servo makes an exception if the earlier phase ended because its set point expired. In this
+/// model no set point expires. A set point that a planner sends after it has seen the new phase is used.
 pub fn a_set_point_is_for_one_spring() {
     let mut report = running();
     let (planner, mut servo, _) = mailbox(report, &Adjustable { number: 0 }, &[0.0; 3]);

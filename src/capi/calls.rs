@@ -49,7 +49,11 @@ use std::ffi::{c_char, c_int};
 ///     }
 #[unsafe(no_mangle)]
 pub extern "C" fn OpenHand() -> c_int {
-    delegated("OpenHand", default_handle(), MEMORY_OF_HAND, || Ok(|| hand_table::open_default(loaded_hand::open)))
+    delegated("OpenHand", default_handle(), MEMORY_OF_HAND, || {
+        // The work runs in another thread.
+        let in_callback = in_callback();
+        Ok(move || hand_table::open_default(loaded_hand::open, in_callback))
+    })
 }
 
 /// CloseHand - stop the hand

@@ -54,15 +54,18 @@ pub(super) fn default_handle() -> Handle {
     Handle::from_value(TABLE[DEFAULT].handle.load(Ordering::Acquire))
 }
 
-/// Opens the hand of OpenHand. `open_remote` opens the hand if it is on another machine.
-pub(super) fn open_default(open_remote: RemoteOpener) -> Result<(), Refusal> {
+/// Opens the hand of OpenHand. `open_remote` opens the hand if it is on another machine. `in_callback` says whether a
+/// planner's callback for events makes the call.
+pub(super) fn open_default(open_remote: RemoteOpener, in_callback: bool) -> Result<(), Refusal> {
     refuse_while_exiting()?;
     // This check comes before the lock, so that this call does not lock the lifecycle of an open hand. While the
     // lifecycle is locked, a callback that closes the hand is refused.
     if default_handle() != Handle::NULL {
         return Err(Refusal::AlreadyOpen);
     }
-    let Some(_opening) = TABLE[DEFAULT].lifecycle.try_lock() else { return Err(Refusal::Busy) };
+    let Some(_opening) = TABLE[DEFAULT].lifecycle.try_lock() else {
+        return Err(if in_callback { Refusal::BusyInCallback } else { Refusal::Busy });
+    };
     if TABLE[DEFAULT].hand.read().is_some() {
         return Err(Refusal::AlreadyOpen);
     }

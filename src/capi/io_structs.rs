@@ -83,7 +83,7 @@ pub struct sun2xp_io_sample {
     /// Counts of the motor encoders.
     pub encoders: [c_int; 4],
     /// Sum of the SUN2XP_IO_... bits of all present faults. Each bit stops the finger with a fault, except
-    /// SUN2XP_IO_ZERO_LOST if all samples since the start at opening have had it.
+    /// SUN2XP_IO_ZERO_LOST if all samples since start was called at opening have had it.
     pub faults: c_uint,
 }
 

@@ -49,7 +49,7 @@ pub(super) enum Refusal {
     Busy,
     #[error(
         "another thread is opening or closing the hand, and an event callback must not wait for that thread: return \
-         from the callback"
+         from the callback, and repeat the call elsewhere if it is still necessary"
     )]
     BusyInCallback,
     #[error(

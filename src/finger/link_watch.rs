@@ -1,7 +1,8 @@
 //! The reaction to lost replies in a row. First the last command is held, or continued by prediction. Then the motor
 //! torques fade to their final values: the last torques, limited to what the end state keeps. Finally the finger
-//! faults, before the watchdog of its board trips. Only a watchdog of less than three periods can trip before the
-//! fault, because one lost reply is not a fault. It trips if the commands are lost too.
+//! faults, before the watchdog of its board trips. A fault needs at least two lost replies, and its Stop is sent at
+//! least three periods after the last good reply. So a watchdog of less than three periods can trip earlier. It does if
+//! the commands are lost too.
 
 use crate::model::configuration::{ConfiguredHand, EndState};
 use nalgebra::Vector4;
