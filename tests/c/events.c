@@ -14,7 +14,7 @@
 enum { PATIENCE_MS = 20000 };
 
 static double Near[3] = {0.1, 0.5, 1.0}, Far[3] = {0.2, 0.6, 1.1};
-static volatile int calls, settled, closed;
+static volatile int calls, settled, closed, entered;
 static int context;
 
 /* Waits until this finger has settled. */
@@ -149,6 +149,22 @@ static void close_inside(const struct sun2xp_event *Event, void *Context)
     closed = 1;
 }
 
+/* Waits until main is in CloseHand, which waits for this callback. OpenHand is refused in any case: until then, because
+   the hand is open. */
+static void open_inside(const struct sun2xp_event *Event, void *Context)
+{
+    int tries;
+
+    (void)Event;
+    (void)Context;
+    entered = 1;
+    for (tries = 0; strstr(HandError(), "event callback must not wait") == NULL; tries++) {
+        CHECK(tries < PATIENCE_MS && OpenHand() == -1 && errno == EBUSY);
+        PAUSE_MS(1);
+    }
+    REFUSED(CloseHand(), EBUSY, "return from the callback");
+}
+
 int main(void)
 {
     pthread_t waiting[2];
@@ -169,6 +185,13 @@ int main(void)
 
     CHECK(OpenHand() == 0 && sun2xp_on_event(HAND, close_inside, NULL) == 0 && SendPos(1, Far) == 0);
     for (tries = 0; !closed; tries++) {
+        CHECK(tries < PATIENCE_MS);
+        PAUSE_MS(1);
+    }
+    CHECK(CloseHand() == 0);
+
+    CHECK(OpenHand() == 0 && sun2xp_on_event(HAND, open_inside, NULL) == 0 && SendPos(1, Far) == 0);
+    for (tries = 0; !entered; tries++) {
         CHECK(tries < PATIENCE_MS);
         PAUSE_MS(1);
     }
