@@ -106,11 +106,11 @@
    short also compiles: the compiler checks at most the length of the rows of a matrix.
 
    The C macros are function-like, so they do not work for a planner that declares the functions
-   itself or takes their addresses. Compile such a planner with
+   itself or takes their addresses. Compile such a planner with the element type of all its arrays:
 
        -DSUN2XP_REAL=float     or      -DSUN2XP_REAL=double
 
-   for the element type of all its arrays. SendPos, SendKx and GetPos are then plain functions for
+   SendPos, SendKx and GetPos are then plain functions for
    that type; for double they are renamed to SendPosD, SendKxD and GetPosD. The planner's
    declarations may be int SendPos(); or those of this header. With gcc 15 or newer, int SendPos();
    also needs -std=gnu89, because it declares a function without parameters in C23, the default of that
@@ -306,12 +306,11 @@ int OpenHand(void);
 
  Returns 0, or -1 with
    EPERM    forked child
-   EBUSY    the call was made in a callback of sun2xp_on_event, of this hand or of another one, while
-            another thread was opening or closing this hand
+   EBUSY    the call was made in an event callback (sun2xp_on_event) of any hand, while another thread
+            was opening or closing this hand
 
  Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes. Waits until the
- callback of this hand has returned, unless the call was made in a callback of sun2xp_on_event, of this
- hand or of another one.
+ callback of this hand has returned, unless the call was made in an event callback of any hand.
  */
 int CloseHand(void);
 

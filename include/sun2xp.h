@@ -509,11 +509,11 @@ int sun2xp_open_named(const char *name, sun2xp_hand **hand);
  Returns 0, or a negative number with
    EPERM    forked child
    ENODEV   no such hand, or another thread is closing it already (the call does not wait for the end)
-   EBUSY    only in a callback of sun2xp_on_event, of this hand or of another one: another thread is just
-            beginning to close this hand, or the process exits
+   EBUSY    only in an event callback (sun2xp_on_event) of any hand: another thread is just beginning to
+            close this hand, or the process exits
 
- Threads: any. Waits until the callback of this hand has returned, unless the call was made in a callback
- of sun2xp_on_event, of this hand or of another one.
+ Threads: any. Waits until the callback of this hand has returned, unless the call was made in an event
+ callback of any hand.
  */
 int sun2xp_close(sun2xp_hand *hand);
 
@@ -567,8 +567,8 @@ struct sun2xp_io_sample {
     double tensions[4];                     /* Tensions at the gauges, N. */
     int encoders[4];                        /* Counts of the motor encoders. */
     unsigned int faults;                    /* Sum of the SUN2XP_IO_... bits of all present faults. Each bit stops
-                                               the finger with a fault, except SUN2XP_IO_ZERO_LOST if it has been set
-                                               since start was called at opening. */
+                                               the finger with a fault, except SUN2XP_IO_ZERO_LOST if all samples
+                                               since start was called at opening have had it. */
 };
 
 /* The command of one exchange. The library sets all members. */
@@ -1152,7 +1152,7 @@ struct sun2xp_path_pose {
  and the path continues the anchor's motion. It passes every pose at its time and rests at the last one.
  Between poses the joint angles, or the tip, follow a spline. If the path begins at rest and its only pose
  is a position of the tip, the tip moves along a straight line. Speed, acceleration and jerk are
- continuous, with one exception: if a path that continues the motion would be refused, the finger first
+ continuous, with one exception: if a path from the present motion would violate a limit, the finger first
  brakes for 0.15 s. The braking begins with the present speed, but without acceleration and jerk. The
  controller "state feedback" (finger.controller.scheme) smooths this step in acceleration and jerk. This
  controller also feeds speed, acceleration and jerk forward, so the finger follows without the lag of
@@ -1371,10 +1371,11 @@ int sun2xp_palm_pose(sun2xp_hand *hand, int finger, struct sun2xp_palm_pose *pos
 
    gravity   gravity[3]: gravity along x, y, z of the palm's frame, m/s^2
 
- Replaces hand.gravity until sun2xp_close. Every finger compensates the new gravity within a cycle. If
- gravity changes by more than 2 m/s^2 in a millisecond, this takes several cycles, so that the torque does
- not jump. The new gravity also acts on simulated fingers and on a simulated object. Gravity is an input of
- the servos, as a set point is, so a planner can send it in every cycle.
+ Replaces hand.gravity until sun2xp_close. Every finger that compensates gravity compensates the new one
+ within a cycle (finger.controller.gravity_compensation, default true). If gravity changes by more than
+ 2 m/s^2 in a millisecond, this takes several cycles, so that the torque does not jump. The new gravity
+ also acts on simulated fingers and on a simulated object. Gravity is an input of the servos, as a set
+ point is, so a planner can send it in every cycle.
 
  Returns 0, or a negative number with
    EPERM    forked child
@@ -2188,7 +2189,7 @@ int sun2xp_wait_event(sun2xp_hand *hand, struct sun2xp_event *event, double seco
  The callback may make every call, and must return: no longjmp, pthread_exit or exception.
 
  When sun2xp_on_event or sun2xp_close has returned, the previous callback is not running and is not
- called again. There is one exception: a call that is made in a callback, of this hand or of another one,
+ called again. There is one exception: a call that is made in an event callback of any hand
  does not wait for the previous callback. The previous callback may then still be running or be called
  once more, so its context must stay valid for some time.
 
@@ -2408,8 +2409,9 @@ struct sun2xp_record {
    cycle    a cycle from record->oldest to record->newest of an earlier call; 0: the newest cycle
    record   result; set record->size before the call
 
- A record is a part of what sun2xp_write_black_box writes into a file. Every cycle adds a record and
- removes the oldest one. A faulted finger adds none, so its records are the last ones before the fault.
+ A record is a part of what sun2xp_write_black_box writes into a file. Every cycle adds a record.
+ Records older than two seconds are removed, several at a time. A faulted finger adds no records, so its
+ records are the last ones before the fault.
  If hand.black_box is set and a finger recovers right after a fault, its new cycles cannot be read until
  the library has copied the records of the fault. This takes up to 50 ms.
 
