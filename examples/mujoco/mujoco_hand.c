@@ -24,8 +24,8 @@
 #define CONFIGURATION \
     "[hand]\nreal_time = \"ignore\"\nend_state = \"release\"\n[finger]\nport = \"simulated\"\nthread = 1\n"
 
-/* Longest wait for the simulation in one exchange, s. After this time the exchange fails, and the library calls the
-   function exchange again in the next cycle. */
+/* Longest wait for the simulation in one exchange, s. After this time the exchange fails. The library repeats it after
+   about 100 ms. */
 #define PATIENCE 0.08
 
 /* The memory that both programs share: numbers of 8 bytes. simulation.py has the same layout. */

@@ -106,7 +106,7 @@ pub enum AdmissionError {
     /// the first pose.
     #[error(
         "the time of pose {pose} of the path of finger {finger} is {time} s after the beginning of the path: send a \
-         time that is at least {LEAST_STEP} s later than {} ({before} s), and at most {LONGEST} s",
+         time of at most {LONGEST} s that is at least {LEAST_STEP} s later than {} ({before} s)",
         if *pose == 0 { "the beginning of the path" } else { "the pose before it" }
     )]
     Time {

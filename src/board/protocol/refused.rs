@@ -88,8 +88,11 @@ const REMEDIES: [(Status, &str); 6] = [
     (Status::DRIVER_FAULT, "a motor driver reports a fault, so check the motors and their wires"),
     (Status::SENSOR_FAULT, "an encoder or a gauge cannot be read, so check its cable"),
     // Only hardware that the program provides refuses with these two bits.
-    (Status::WATCHDOG_TRIPPED, "its watchdog has tripped, so the function start must clear this"),
-    (Status::ENDED, "it has ended the motion, so the function start must clear this"),
+    (
+        Status::WATCHDOG_TRIPPED,
+        "its watchdog has tripped, so correct the program's function \"start\", which must reset it",
+    ),
+    (Status::ENDED, "it is still in its end state, so correct the program's function \"start\", which must leave it"),
 ];
 
 impl fmt::Display for Refused {

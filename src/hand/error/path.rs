@@ -23,7 +23,7 @@ pub enum PathError {
     /// the first pose.
     #[error(
         "the time of pose {pose} of the path of finger {finger} is {time} s after the beginning of the path: send a \
-         time that is at least {least} s later than {} ({before} s), and at most {most} s",
+         time of at most {most} s that is at least {least} s later than {} ({before} s)",
         if *pose == 0 { "the beginning of the path" } else { "the pose before it" }
     )]
     Time {

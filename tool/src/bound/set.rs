@@ -242,7 +242,8 @@ impl SetBound {
             let walls = member.uncovered_from_wall.map_or(String::new(), |wall| format!(" of {wall:.0} N/cm and more"));
             writeln!(
                 out,
-                "    not covered by the bound: {} of {} samples of {}, {}{walls}, for example {}",
+                "    does not limit the bound, because samples are unstable even at 1 N/cm: {} of {} samples of {}, \
+                 {}{walls}, for example {}",
                 member.uncovered,
                 member.samples,
                 member.plant,

@@ -50,7 +50,7 @@ pub fn bound(desk: &mut Desk) -> Result<Outcome, Failure> {
     desk.machine.configure(&desk.finger)?;
     let Bound { stiffness: bound, limit } = desk.machine.bound()?;
     desk.finger.stiffness.bound = Some(bound);
-    outcome.found(format!("the finger is stable up to {bound:.2} N/cm"));
+    outcome.found(format!("the bound of the stiffness is {bound:.2} N/cm"));
     outcome.found(format!("limited by: {limit}"));
     outcome.about("stiffness.bound", format!("limited by: {limit}"));
     let initial = desk.finger.initial_stiffness().symmetric_eigenvalues().max();

@@ -90,7 +90,7 @@ fn report(outcome: &mut Outcome, found: &Identified) {
     if let Some(inertia) = found.rotor_inertia {
         let inertia = list((inertia * 1e7).as_slice(), 2);
         outcome.found(format!(
-            "the inertia of the rotors differs from motor.inertia: the measured one is stored, {inertia} in 1e-7 kg m^2"
+            "the measured inertia of the rotors, {inertia} times 1e-7 kg m^2, differs from motor.inertia and is stored"
         ));
     }
     if found.moment_arms.is_some() {

@@ -95,7 +95,8 @@ fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) 
     let subject = "real-time priority";
     let wanted = configuration.of_hand().map(|finger| finger.priority).max().unwrap_or(0);
     if wanted == 0 {
-        let advice = "The servos have the jitter of ordinary threads: set finger.priority to 80";
+        let advice = "The servos have the jitter of ordinary threads: set finger.priority to 80, and hand.real_time to \
+                      \"try\" if it is \"ignore\"";
         return Finding::new(Rating::Warning, subject, "finger.priority is 0", advice);
     }
     // `None` means unlimited.

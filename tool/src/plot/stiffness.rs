@@ -94,7 +94,7 @@ impl Plot for Stiffness {
             (Sign::Line(SENT), "stiffness as it was sent".into()),
             (Sign::Line(IN_FORCE), format!("stiffness that takes effect in this pose ({scale:.2} of Kx)")),
             (Sign::Line(FORCE), "force of the tip at the end".into()),
-            (Sign::Line(FORCES), "force of the tip before".into()),
+            (Sign::Line(FORCES), "earlier forces of the tip".into()),
         ];
         let more = format!("after {time:.3} s  \u{b7}  each ellipse: the forces for all deflections of 1 cm");
         let subtitle = subtitle(selection, self.rate, &more);

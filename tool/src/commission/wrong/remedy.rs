@@ -128,8 +128,8 @@ impl Wrong {
             }
             Self::SpringReturn(_) => "The cause is friction. docs/tuning.md says how to compensate for it".into(),
             Self::InitialLowered(..) => {
-                "stiffness.initial is lowered to the bound. sun2xp bound simulates variants of the finger, and shows \
-                 the bound of each variant, and what limits it"
+                "stiffness.initial is lowered to the bound. sun2xp bound simulates variants of the finger. It shows \
+                 the bound of each variant, and names what limits the lowest bound"
                     .into()
             }
             Self::PoseRefused(_) => {
