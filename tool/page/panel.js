@@ -32,7 +32,7 @@ const COLUMNS = [
 const FACTS = [
   ["tip", "Position of the fingertip in the palm's frame"],
   ["tip force", "Magnitude of the measured force of the fingertip"],
-  ["scales", "Scale of the joint torques (1: the tendons make all of it) and of Kx (1: full effect in this pose)"],
+  ["scales", "Scale of the joint torques (1: the tendons make them in full) and of Kx (1: full effect in this pose)"],
   ["wake, cycle 99.9 %", "Wake-up delay and cycle duration that 99.9 % of the servo's cycles do not exceed"],
   ["lost, skipped", "Replies of the board that were lost, and periods that were skipped, since the hand was opened"],
 ];

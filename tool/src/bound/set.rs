@@ -237,17 +237,21 @@ impl SetBound {
 
     /// Writes which samples the bound does not cover.
     fn write_uncovered(&self, out: &mut impl Write) -> io::Result<()> {
-        for member in &self.plants {
+        for (index, member) in self.plants.iter().enumerate() {
             let Some(example) = &member.uncovered_example else { continue };
-            let walls = member.uncovered_from_wall.map_or(String::new(), |wall| format!(" of {wall:.0} N/cm and more"));
+            let softest = member.uncovered_from_wall;
+            let walls = softest.map_or(String::new(), |wall| format!(", at walls of {wall:.0} N/cm and more"));
+            let consequence = match index {
+                0 => "The other samples of this plant count for the bound",
+                _ => "This plant does not limit the bound",
+            };
             writeln!(
                 out,
-                "    does not limit the bound, because samples are unstable even at 1 N/cm: {} of {} samples of {}, \
-                 {}{walls}, for example {}",
-                member.uncovered,
-                member.samples,
+                "    {}, {}: {} of {} samples are unstable even at 1 N/cm{walls}, for example {}. {consequence}",
                 member.plant,
                 place(member.walls),
+                member.uncovered,
+                member.samples,
                 example.text()
             )?;
         }
