@@ -67,7 +67,7 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
         "{refused}"
     );
     assert!(refused.to_string().ends_with(". Remove the cause and calibrate the finger again"), "{refused}");
-    // What could not be stored is stored as soon as the file can be written.
+    // A later call stores what could not be stored.
     fs::write(&path, "[hand]\nrate = 500\n[finger.3.motor]\nsign = [-1, 1, 1, 1]\n").expect("written");
     assert!(hand.store_calibration(3).expect("stored"));
     assert_eq!(read_configuration(&path).expect("usable").fingers[2].motor.sign, [1; 4]);

@@ -29,8 +29,8 @@ pub struct Contact(Matrix6<f64>);
 pub enum ContactError {
     /// K, the normal, the selection S or the product S^T K S contains NaN or infinity.
     #[error(
-        "an entry of the stiffness, of the normal or of the selection, or of the 6 x 6 stiffness of the contact, is \
-         {0}: every entry must be a finite number, and so small that the 6 x 6 stiffness is finite"
+        "the stiffness of the contact, its normal, or the 6 x 6 stiffness that follows from them has the entry {0}: \
+         send finite numbers that are so small that the 6 x 6 stiffness is finite too"
     )]
     NotFinite(f64),
     /// `K[row][column]` and `K[column][row]` differ.

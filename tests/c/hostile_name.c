@@ -1,4 +1,4 @@
-/* Writes a black box to the file in the argument, which cannot be written, and prints the reason. */
+/* Tries to write a black box to the file that the argument names, which cannot be written. Prints the reason. */
 #include <string.h>
 #include "Sun2Xp.h"
 #include "sun2xp.h"

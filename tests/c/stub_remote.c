@@ -1,5 +1,5 @@
-/* A library in place of libsun2xp_remote.so, for stub_planner.c. While it is being loaded, the planner stops all hands.
-   Its hand counts the calls that it gets. GNU C99. */
+/* A library in place of libsun2xp_remote.so, for stub_planner.c. While it is being loaded, it calls sun2xp_stop_all, as
+   a planner could at that moment. Its hand counts the calls that it gets. GNU C99. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include "sun2xp.h"

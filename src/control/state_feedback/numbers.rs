@@ -1,13 +1,12 @@
 //! The parameters of state feedback ([`Numbers`]). One procedure computes them from the configuration, so that no
 //! finger needs parameters that are tuned by hand.
 //!
-//! The masses follow from the configured rotor inertias. The gains of the observers follow from the size of a count of
-//! the encoders and of the gauges, and from a bandwidth. The other numbers are tuned. Most of them are dimensionless,
-//! or their unit is cycles or radians per cycle. Many were found by a search on the eigenvalues of the exact
-//! one-cycle map of the default finger and of fingers that differ from it; the comments and docs/stiffness.md give the
-//! reasons for the others. No number was tuned for a single pose. `cargo bench --bench stiffness -- --search`
-//! searches for the numbers of a set of fingers. A name in quotes, such as "worn", is a value of
-//! `simulation.hand`. An identified finger uses the values that a calibration has found.
+//! The masses of the motors and the gains of the observers are not among these numbers: `construction` computes them.
+//! The numbers are tuned. Most of them are dimensionless, or their unit is cycles or radians per cycle. Many were found
+//! by a search on the eigenvalues of the exact one-cycle map of the default finger and of fingers that differ from it;
+//! the comments and docs/stiffness.md give the reasons for the others. No number was tuned for a single pose. `cargo
+//! bench --bench stiffness -- --search` searches for the numbers of a set of fingers. A name in quotes, such as "worn",
+//! is a value of `simulation.hand`. An identified finger uses the values that a calibration has found.
 
 use crate::control::number_checks::{not_negative, positive};
 use crate::control::rate_table::{Row, Tuned, at};

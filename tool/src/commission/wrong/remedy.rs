@@ -51,8 +51,8 @@ impl Wrong {
                 "Check the wires of motor {motor}, and that its driver is enabled, has its supply and shows no fault"
             ),
             Self::MotorTorque(motor, _) => format!(
-                "The hand works. Check motor.torque_constant of motor {motor}, and the scale of its driver's current \
-                 reference"
+                "The hand works nevertheless. Check motor.torque_constant of motor {motor}, and the scale of its \
+                 driver's current reference"
             ),
             Self::EncodersUnclear(_) => {
                 "Do the step again. Turn only the motor that the tool names, by one full turn, and hold the finger \
