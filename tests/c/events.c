@@ -17,6 +17,17 @@ static double Near[3] = {0.1, 0.5, 1.0}, Far[3] = {0.2, 0.6, 1.1};
 static volatile int calls, settled, closed, entered;
 static int context;
 
+/* Waits until a callback has set this number. */
+static void wait_for(volatile int *number)
+{
+    int tries;
+
+    for (tries = 0; *number == 0; tries++) {
+        CHECK(tries < PATIENCE_MS);
+        PAUSE_MS(1);
+    }
+}
+
 /* Waits until this finger has settled. */
 static void wait_until_settled(int finger)
 {
@@ -77,10 +88,7 @@ static void by_callback(void)
     CHECK(sun2xp_on_event(HAND, note, &context) == 0);
     CHECK(SendPos(1, Far) == 0);
     wait_until_settled(1);
-    for (before = 0; settled == 0; before++) {
-        CHECK(before < PATIENCE_MS);
-        PAUSE_MS(1);
-    }
+    wait_for(&settled);
     CHECK(sun2xp_on_event(HAND, NULL, NULL) == 0);
     before = calls;
     CHECK(SendPos(1, Near) == 0);
@@ -168,7 +176,7 @@ static void open_inside(const struct sun2xp_event *Event, void *Context)
 int main(void)
 {
     pthread_t waiting[2];
-    int place, tries;
+    int place;
 
     CHECK(OpenHand() == 0);
     taken_in_order();
@@ -184,17 +192,11 @@ int main(void)
         CHECK(pthread_join(waiting[place], NULL) == 0);
 
     CHECK(OpenHand() == 0 && sun2xp_on_event(HAND, close_inside, NULL) == 0 && SendPos(1, Far) == 0);
-    for (tries = 0; !closed; tries++) {
-        CHECK(tries < PATIENCE_MS);
-        PAUSE_MS(1);
-    }
+    wait_for(&closed);
     CHECK(CloseHand() == 0);
 
     CHECK(OpenHand() == 0 && sun2xp_on_event(HAND, open_inside, NULL) == 0 && SendPos(1, Far) == 0);
-    for (tries = 0; !entered; tries++) {
-        CHECK(tries < PATIENCE_MS);
-        PAUSE_MS(1);
-    }
+    wait_for(&entered);
     CHECK(CloseHand() == 0);
 
     /* The exit handlers run while a callback is installed and a thread waits. */

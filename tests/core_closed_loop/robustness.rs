@@ -66,7 +66,9 @@ fn a_jammed_motor_winds_up_neither_an_integral_nor_an_estimate() {
         let mut taut = held;
         taut.gauge_counts[most] = count(report.desired_tensions[most] + 20.0);
         let (command, _) = controller.cycle(&mut state, Some(&taut), &there);
-        assert!(command.motor_torques[most] < 0.99 * limit, "{scheme:?}: {}", command.motor_torques);
+        // The command of Figures 9 and 10 leaves the limit too, but falls more slowly.
+        let below = if matches!(scheme, Scheme::Figure9 | Scheme::Figure10) { 0.99 } else { 0.9 };
+        assert!(command.motor_torques[most] < below * limit, "{scheme:?}: {}", command.motor_torques);
     }
 }
 

@@ -5,13 +5,14 @@ use super::{Entry, Item, Recording, RecordingWriter};
 use mcap::records::Metadata;
 use mcap::write::WriteOptions;
 use std::fs::{self, File};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, UNIX_EPOCH};
 use sun2xp::hand::Hand;
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{clock_offset, now};
 use sun2xp::telemetry::{Message, Reader};
+use tempfile::TempDir;
 
 fn open(name: &str) -> Hand {
     let mut configuration = Configuration::default();
@@ -47,6 +48,16 @@ fn write(path: &Path, reader: &Reader, messages: &[Message]) {
         }
     }
     writer.finish().expect("finished");
+}
+
+/// Records a hand for this time. Returns the folder of the file, its path and its bytes.
+fn recorded(name: &str, time: Duration) -> (TempDir, PathBuf, Vec<u8>) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hand.mcap");
+    let (reader, messages) = messages(name, time);
+    write(&path, &reader, &messages);
+    let whole = fs::read(&path).expect("the file");
+    (folder, path, whole)
 }
 
 /// The messages in a form that can be compared. The status is recorded without its last cycle.
@@ -133,11 +144,7 @@ fn altered_configurations_are_refused_without_the_remedy_for_their_authors() {
 
 #[test]
 fn a_recording_that_is_cut_between_two_records_is_incomplete() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("hand.mcap");
-    let (reader, messages) = messages("between", Duration::from_millis(200));
-    write(&path, &reader, &messages);
-    let whole = fs::read(&path).expect("the file");
+    let (_folder, path, whole) = recorded("between", Duration::from_millis(200));
     let mut readable = 0;
     for end in ends_of_records(&whole) {
         fs::write(&path, &whole[..end]).expect("written");
@@ -165,11 +172,7 @@ fn ends_of_records(file: &[u8]) -> Vec<usize> {
 
 #[test]
 fn a_recording_that_is_cut_anywhere_is_readable_up_to_its_last_whole_chunk() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("hand.mcap");
-    let (reader, messages) = messages("cut", Duration::from_millis(400));
-    write(&path, &reader, &messages);
-    let whole = fs::read(&path).expect("the file");
+    let (_folder, path, whole) = recorded("cut", Duration::from_millis(400));
     let mut read = Vec::new();
     for part in [30, 60, 90, 99] {
         fs::write(&path, &whole[..whole.len() * part / 100]).expect("written");
@@ -187,11 +190,7 @@ fn a_recording_that_is_cut_anywhere_is_readable_up_to_its_last_whole_chunk() {
 
 #[test]
 fn no_altered_byte_makes_entries_disappear_from_a_complete_recording() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("hand.mcap");
-    let (reader, messages) = messages("kinds", Duration::from_millis(400));
-    write(&path, &reader, &messages);
-    let whole = fs::read(&path).expect("the file");
+    let (_folder, path, whole) = recorded("kinds", Duration::from_millis(400));
     let written = Recording::open(&path).expect("a recording").count();
     let ends = ends_of_records(&whole);
     // The byte after the end of a record is the kind of the next one.

@@ -136,13 +136,14 @@ fn the_page_draws_the_hand_and_the_picture_moves_with_it() {
     // draws too slowly, which it does at most three times. So at least one of five motions there and back has only the
     // changes of the hand.
     let mut changes = Vec::new();
-    for _ in 0..5 {
+    let moved = (0..5).any(|_| {
         let bent = picture_at(&browser, &hand, [0.3, 0.9, 1.2], "17.");
         let after = stretched();
-        changes.push((difference(&before, &bent), difference(&before, &after)));
+        let (there, back) = (difference(&before, &bent), difference(&before, &after));
+        changes.push((there, back));
         before = after;
-    }
-    let moved = changes.iter().any(|&(there, back)| there > 60 && there > 5 * back);
+        there > 60 && there > 5 * back
+    });
     assert!(moved, "pixels that differ after a motion, and after the way back: {changes:?}");
     check_logs(&browser, &program);
 }
