@@ -47,7 +47,7 @@ fn refused_paths_name_the_pose_and_the_remedy() {
 #[test]
 fn a_path_of_an_earlier_spring_phase_names_the_cause_and_the_remedy() {
     let text = PathError::Moved(FingerNumber::ONE).to_string();
-    for words in ["recovered or calibrated", "expired", "reflex", "inhibition", ": send the path again"] {
+    for words in ["recovered or calibrated", "expired", "effect of a reflex", ": send the path again"] {
         assert!(text.contains(words), "{words}: {text}");
     }
 }
