@@ -42,11 +42,11 @@ fn a_lower_rate_is_the_other_remedy() {
 fn a_key_that_differs_between_fingers_of_a_port_is_named() {
     let shared = "[finger]\nport = 'p'\nthread = 1\nbaud = 2000000\n";
     for (own, remedy) in [
-        ("[finger.2]\nbaud = 3000000\n", "set baud in [finger]"),
+        ("[finger.2]\nbaud = 3000000\n", "give all fingers of the port the same baud"),
         ("[finger.3]\naddress = 1\n", "leave `address` out"),
         ("[finger.2]\nthread = 2\n", "set thread = 1 for every finger of the port"),
-        ("[finger.2]\ncore = 1\n", "set core and priority in [finger]"),
-        ("[finger.3]\npriority = 10\n", "set core and priority in [finger]"),
+        ("[finger.2]\ncore = 1\n", "give all fingers of the thread the same core and priority"),
+        ("[finger.3]\npriority = 10\n", "give all fingers of the thread the same core and priority"),
     ] {
         let reason = refusal(&format!("{shared}{own}"));
         assert!(reason.contains(remedy), "{own}: {reason}");

@@ -1,6 +1,6 @@
-//! Lets the planner or the line fail many times. Prints how long after a failure the fingers were caught and when they
-//! went to their end states, as the telemetry of the hand shows it. Also prints the threads, descriptors and memory of
-//! the server before and after the failures. Needs root, because it makes network namespaces.
+//! Makes the planner or the line fail many times. Prints the time from a failure until the fingers were caught, and the
+//! time until they went to their end states. Both times come from the telemetry of the hand. Also prints the threads,
+//! descriptors and memory of the server before and after the failures. Needs root, because it makes network namespaces.
 
 #[path = "../../tests/network/line.rs"]
 mod line;
@@ -35,7 +35,7 @@ use std::time::{Duration, Instant};
 const LEASE: Duration = Duration::from_secs(20);
 
 /// Longest time in which the connections of all lost clients end. After a cut of the line, TCP retransmits for a long
-/// time before it gives a connection up.
+/// time before it closes a connection.
 const LAST: Duration = Duration::from_secs(120);
 
 /// Arguments of the benchmark.
@@ -45,8 +45,8 @@ struct Arguments {
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     repetitions: u32,
     /// Only this failure, for example Unplugged.
-    #[arg(long)]
-    failure: Option<String>,
+    #[arg(long, value_parser = failure_of_name)]
+    failure: Option<Failure>,
     /// Cargo passes this argument.
     #[arg(long, hide = true)]
     bench: bool,
@@ -57,9 +57,9 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let Arguments { repetitions, failure: only, .. } = Arguments::parse();
-    let wanted = |failure: &Failure| only.as_ref().is_none_or(|only| *only == format!("{failure:?}"));
+    let wanted = |failure: &Failure| only.is_none_or(|only| only == *failure);
     let begin = Instant::now();
-    // Measures one failure after the other, because several hands at once need more processors than a small machine
+    // One failure is measured after the other: several hands at the same time need more processors than a small machine
     // has.
     let failures = Failure::ALL.into_iter().filter(wanted);
     let measured: Vec<_> = failures.map(|failure| repeated(failure, repetitions)).collect();
@@ -76,6 +76,11 @@ fn main() -> ExitCode {
         println!("{failure:?}: before {before:?}, after {after:?} ({} s after the last failure)", freed.as_secs());
     }
     if measured.iter().all(Measured::is_good) { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+fn failure_of_name(name: &str) -> Result<Failure, String> {
+    let named = |failure: &Failure| format!("{failure:?}") == name;
+    Failure::ALL.into_iter().find(named).ok_or_else(|| format!("the failures are {:?}", Failure::ALL))
 }
 
 /// The repetitions of one failure, and what its server used before and after them.

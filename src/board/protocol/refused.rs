@@ -116,11 +116,9 @@ impl fmt::Display for Refused {
                 let present = Status(detail);
                 let known = REMEDIES.iter().filter(|(fault, _)| present.has(*fault)).map(|(_, remedy)| *remedy);
                 let remedies = known.collect::<Vec<_>>().join("; ");
-                write!(f, "it reports a fault (status bits {detail:#06x}): {remedies}")?;
-                match remedies.is_empty() {
-                    true => f.write_str("this library does not know the fault, so see the manual of the board"),
-                    false => Ok(()),
-                }
+                let unknown = "this library does not know the fault, so see the manual of the board";
+                let advice = if remedies.is_empty() { unknown } else { &remedies };
+                write!(f, "it reports a fault (status bits {detail:#06x}): {advice}")
             }
             Reason::UnknownFrame => {
                 let bytes = Counted(detail.into(), "byte", "bytes");

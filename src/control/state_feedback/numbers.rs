@@ -34,11 +34,11 @@ pub struct Numbers {
     pub sample_offset: f64,
     /// Lowest frequency for which the damping is designed, rad/s.
     pub least_frequency: f64,
-    /// Lag of the tensions for which the spring's damping is designed, relative to c / (alpha k). c is the damping that
-    /// follows from [`Numbers::relative_damping`], and k the stiffness of a tendon.
+    /// The spring's damping is designed for tensions that lag by this time, relative to c / (alpha k). Here, c is the
+    /// damping that follows from [`Numbers::relative_damping`], and k the stiffness of a tendon.
     pub lag: f64,
-    /// Inertia of the motors for which the spring's damping is designed, relative to R m R^T / alpha, with the moment
-    /// arms R and the masses m of the motors at the tendons.
+    /// The spring's damping is designed for motors of this inertia, relative to R m R^T / alpha. Here, R are the moment
+    /// arms, and m the masses of the motors at the tendons.
     pub damped_inertia: f64,
     /// Natural frequency of the common component of the tensions, rad/s. This component is proportional to the null
     /// vector of R and causes no joint torque. With a higher frequency, differences between motors convert more of it
@@ -55,19 +55,19 @@ pub struct Numbers {
     pub dither: f64,
     /// Smallest amplitude of the dither of the tensions as a fraction of the tension. 0: no dither of the tensions.
     pub tension_dither: f64,
-    /// Amplitude to which the dither of the tensions rises after a motion of the reference, as a fraction of the
-    /// tensions at zero joint torque, of which the lowest is t_min.
+    /// Amplitude to which the dither of each tension rises after a motion of the reference, as a fraction of this
+    /// tension at zero joint torque.
     pub dither_burst: f64,
     /// The part of the motors' friction that is fed forward.
     pub friction_share: f64,
     /// Frequency of the dither, Hz. With a lower frequency the motors need less torque for the dither, and the tip
     /// moves more.
     pub dither_frequency: f64,
-    /// Amplitude of the dither of the tensions, divided by the configured pulley friction, which is the fraction p of
-    /// the tension t.
+    /// Amplitude of the dither of the tensions, divided by the configured pulley friction p t. Here, t is the tension,
+    /// and p a configured fraction.
     pub pulley_excess: f64,
-    /// Distance of the tensions from t_min, as a fraction of t_min, divided by the relative amplitude of the dither of
-    /// the tensions. This distance makes room for the dither.
+    /// The tensions keep a distance from t_min, which makes room for the dither. This number is the distance as a
+    /// fraction of t_min, divided by the relative amplitude of the dither of the tensions.
     pub dither_reserve: f64,
     /// Largest amplitude of the dither of the tensions, divided by its amplitude at t_min without joint torque. The
     /// limit applies if the configured pulley friction does not require a larger dither. The motors of a loaded finger

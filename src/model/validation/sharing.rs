@@ -14,7 +14,7 @@ impl Configuration {
                 "thread",
                 format!(
                     "fingers {first} and {second} share thread {}, but have different cores or \
-                     priorities: set core and priority in [finger], and not in [finger.1] to [finger.3]",
+                     priorities: give all fingers of the thread the same core and priority",
                     self.thread(first)
                 ),
             );
@@ -44,7 +44,7 @@ impl Configuration {
         if one.baud != other.baud {
             let reason = format!(
                 "fingers {first} and {second} share the port {port}, but one has {} baud and the other \
-                 {}: set baud in [finger], and not in [finger.1] to [finger.3]",
+                 {}: give all fingers of the port the same baud",
                 one.baud, other.baud
             );
             return unusable("baud", reason);

@@ -29,7 +29,10 @@ impl Wrong {
             ),
             Self::GaugesExchanged(order) => format!("Swap the gauge cables: {}", moves(order)),
             Self::EncoderReversed(encoder) => {
-                format!("Nothing to do: encoder.sign compensates it. Or swap the channels A and B of encoder {encoder}")
+                format!(
+                    "Nothing to do: encoder.sign compensates it. Or swap the channels A and B of encoder {encoder} and \
+                     repeat the step"
+                )
             }
             Self::EncoderDead(encoder) => format!(
                 "Check the cable and the supply of encoder {encoder}, and that its disc turns with the shaft. An \
@@ -44,7 +47,10 @@ impl Wrong {
                 )
             }
             Self::MotorReversed(motor) => {
-                format!("Nothing to do: motor.sign compensates it. Or, if motor {motor} is brushed, swap its two wires")
+                format!(
+                    "Nothing to do: motor.sign compensates it. Or, if motor {motor} is brushed, swap its two wires and \
+                     repeat the step"
+                )
             }
             Self::MotorBlocked(motor) => format!("Free motor {motor}: its drum, brake, bearing or tendon blocks it"),
             Self::MotorDead(motor) => format!(
@@ -72,7 +78,7 @@ impl Wrong {
         match self {
             Self::GaugeReversed(gauge) => format!(
                 "Nothing to do: the sign of gauge.newton_per_count compensates it. Or swap the two signal wires of \
-                 gauge {gauge}"
+                 gauge {gauge} and repeat the step"
             ),
             Self::GaugeDead(gauge) => {
                 format!("Check the cable, the supply and the amplifier of gauge {gauge}, and that the weight bends it")
