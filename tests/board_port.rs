@@ -23,7 +23,8 @@ fn board() -> SimulatedPort {
 }
 
 fn terms() -> Terms {
-    // The watchdog time is long, because the test machine may be busy. The watchdog itself is tested on simulated time.
+    // The watchdog time is long, because the test machine may be busy. The time of the watchdog is tested on
+    // simulated time.
     let hand = ConfiguredHand { watchdog_ms: 500, ..Default::default() };
     Terms::new(&hand, &ConfiguredFinger::default())
 }

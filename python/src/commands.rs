@@ -133,7 +133,11 @@ impl Hand {
         let places = match (joints, tips) {
             (Some(joints), None) => numbers(joints, "joints", &[count, 3])?,
             (None, Some(tips)) => numbers(tips, "tips", &[count, 3])?,
-            _ => return Err(Refusal::Argument("a path has joints or tips: pass one of them".into()).raise(py)),
+            _ => {
+                return Err(
+                    Refusal::Argument("a path needs exactly one of the arguments joints and tips".into()).raise(py)
+                );
+            }
         };
         let stiffness = stiffness.map(|stiffness| numbers(stiffness, "stiffness", &[count, 3, 3])).transpose()?;
         let pose = |index: usize| {

@@ -20,7 +20,7 @@ pub(super) enum Refusal {
     Forked,
     #[error("{name} is a null pointer: pass {wanted}")]
     Null { name: &'static str, wanted: Wanted },
-    #[error("{name}->size is {size}: set it to sizeof *{name}, at least {least}, before the call")]
+    #[error("{name}->size is {size}: set it to sizeof *{name} before the call (it must be at least {least})")]
     WrongSize { name: &'static str, size: usize, least: usize },
     /// `capi/reporting.rs` adds the remedy, which depends on the interface.
     #[error("no hand is open")]

@@ -56,8 +56,8 @@ pub(super) fn with_culprit(
     match own.chain(others).find(|(_, reset)| permits(*reset)) {
         Some(&(key, _)) if key != named => {
             let reason = format!(
-                "this value causes an error of the key {named}. Correct this value first. The error is: {named}: \
-                 {reason}"
+                "because of this value, the key {named} is refused. Correct this value first. The refusal is: \
+                 {named}: {reason}"
             );
             Unusable { key, reason }
         }

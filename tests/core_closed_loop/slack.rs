@@ -77,8 +77,8 @@ fn the_joints_stay_nearly_where_they_are_in_a_calibration() {
     }
 }
 
-/// Pulling every tendon independently of the others makes the same fingers drift, so `the_joints_stay_where_they_are`
-/// can fail.
+/// If every tendon is pulled independently of the others, the same fingers drift. This shows that the test
+/// `the_joints_stay_where_they_are` detects a drift.
 #[test]
 fn tendons_that_are_pulled_independently_move_the_joints() {
     let finger = ConfiguredFinger::default();

@@ -117,7 +117,7 @@ fn a_tendon_that_stays_slack_closes_the_whole_hand_again() {
     let _turn = turn();
     let mut boards = three_boards();
     let mut configuration = on_boards(&boards);
-    // Long enough for a busy machine to run most of the cycles.
+    // Even a busy machine finds the slack tendon in this time.
     configuration.hand.open_timeout_ms = 3000;
     // The motor unwinds its tendon instead of winding it.
     configuration.fingers[2].motor.sign = [1, 1, 1, -1];

@@ -18,7 +18,7 @@ const DECLARATION: &str = "[[test]]\nname = \"zz_left_out\"\nharness = false\n";
 fn skipping(part: &str) -> String {
     format!(
         "#[path = \"common/tools.rs\"]\n#[allow(dead_code)]\nmod tools;\n\n#[test]\nfn needs_a_tool() {{\n    \
-         assert!(!tools::available(\"nothing\", \"{part}\"));\n}}\n"
+         assert!(!tools::available(\"no-such-tool\", \"{part}\"));\n}}\n"
     )
 }
 
@@ -39,7 +39,7 @@ fn package() -> TempDir {
         ("tests/zulu.rs", skipping("another part")),
         ("tests/zz_left_out.rs", copy("tests/zz_left_out.rs")),
         ("tests/common/tools.rs", copy("tests/common/tools.rs")),
-        ("tests/tools.txt", "nothing | its-package | false\n".into()),
+        ("tests/tools.txt", "no-such-tool | its-package | false\n".into()),
         ("tests/requirements.txt", String::new()),
     ] {
         let file = folder.path().join(name);
@@ -64,7 +64,7 @@ fn the_list_is_the_last_output_of_cargo_test() {
     let package = package();
     let printed = cargo_test(package.path(), &[]);
     assert_eq!(printed.matches("test result: ok. 1 passed").count(), 3, "{printed}");
-    let reason = "nothing is missing (apt-get install --no-install-recommends its-package)";
+    let reason = "no-such-tool is missing (apt-get install --no-install-recommends its-package)";
     let list = format!(
         "\nSkipped in bare (tests/run installs missing tools):\n\n    alpha, needs_a_tool, a part: {reason}\n    zulu, \
          needs_a_tool, another part: {reason}\n\n"

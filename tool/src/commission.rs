@@ -42,6 +42,9 @@ use sun2xp::model::{FingerNumber, ShownPath};
 use terminal::Terminal;
 pub use vitals::Vitals;
 
+/// The masses of the weights, kg, if none are given.
+const DEFAULT_WEIGHTS: [f64; 2] = [0.5, 1.0];
+
 /// Number of times in total that `sun2xp health` with --yes or --json repeats failed steps and readings without a
 /// question.
 const RETRIES: u32 = 3;
@@ -78,7 +81,7 @@ pub struct Arguments {
     again: bool,
     /// The masses, kg, of the weights that you hang on the tendons during the step "gauges". The tool asks for the
     /// lightest weight first. The heaviest one must not pull with more than `finger.tendon.maximum`.
-    #[arg(long, value_name = "KG", value_delimiter = ',', default_values_t = [0.5, 1.0], value_parser = mass)]
+    #[arg(long, value_name = "KG", value_delimiter = ',', default_values_t = DEFAULT_WEIGHTS, value_parser = mass)]
     weights: Vec<f64>,
     /// Do not wait for Enter. Use this only if a machine, and not a person, does at the finger what the tool asks for.
     #[arg(long)]
@@ -131,7 +134,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     terminal.heading(number, &arguments.config, &known)?;
     let mut machine = HandMachine::new(configured.configuration, arguments.finger);
     let mut desk = Desk { machine: &mut machine, person: &mut terminal, finger, weights, vitals: known.vitals };
-    let session = Session { config: &arguments.config, finger: arguments.finger, file };
+    let session = Session { config: &arguments.config, finger: arguments.finger, weights: &arguments.weights, file };
     for step in steps {
         if !session.carry_out(&mut desk, step)? {
             return Ok(ExitStatus::FAILURE);

@@ -60,6 +60,16 @@ fn a_failure_is_one_line_with_the_command_to_continue() {
 }
 
 #[test]
+fn the_command_to_continue_keeps_the_weights() {
+    let desk = Desk::new(SIMULATED);
+    let output = desk.commission(&["--step", "board", "--weights", "0.2,0.45"]);
+    assert!(output.status.success(), "{output:?}");
+    contains(&output.stdout, &[" --finger 1 --weights 0.2,0.45\n"]);
+    let output = desk.commission(&["--step", "board"]);
+    assert!(!String::from_utf8_lossy(&output.stdout).contains("--weights"), "{output:?}");
+}
+
+#[test]
 fn an_open_fault_blocks_the_steps_that_move_the_finger() {
     let desk = Desk::new(SIMULATED);
     let motors = r#""motors": { "when": "today", "found": ["motors 1 and 2 are swapped. Swap their cables"] }"#;

@@ -60,6 +60,7 @@ fn a_rate_below_the_lowest_that_can_be_configured_is_not_proposed() {
     assert!(parts.iter().all(|part| text.contains(part)), "{text}");
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(error.contains("raise finger.baud") && !error.contains("lower hand.rate"), "{error}");
+    assert!(error.contains("may be missed, because a cycle may end too late: "), "{error}");
 }
 
 /// At 1000 Hz, thread 1 fetches a tactile event. Its cycle takes 100 + 10 + 550 + 200 + 5 + 150 + 5 = 1020 us, which is

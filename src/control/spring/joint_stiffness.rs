@@ -15,8 +15,8 @@ const LIMP_DAMPING: f64 = 0.2;
 
 /// Minimum lever of joint 0, cm. With the tip on the axis of joint 0, no stiffness of the tip holds the joint. With the
 /// tip near the axis, a force on the tip can turn the joint out of its pose. A spring of stiffness k at the lever r
-/// gives the joint the stiffness k r^2. A force that moves the tip by d toward the axis reduces it by k d r. With a
-/// minimum lever of 5 mm, the joint is held at deflections of up to 5 mm.
+/// gives the joint the stiffness k r^2. A force that moves the tip by d toward the axis reduces the stiffness of the
+/// joint by k d r. With a minimum lever of 5 mm, the joint is held at deflections of up to 5 mm.
 const LEAST_LEVER: f64 = 0.5;
 
 /// Angle of joint 2, rad, within which the finger counts as straight. It is below the lower limit of joint 2 of the
@@ -24,7 +24,7 @@ const LEAST_LEVER: f64 = 0.5;
 const STRAIGHT: f64 = 0.08;
 
 /// Stiffness of the joint spring that leads the finger through the straight pose, divided by the diagonal of K_theta.
-/// The joint spring has no coupling between the joints. With the whole diagonal, it could exceed the stiffness that the
+/// The joint spring has no coupling between the joints. With a factor of 1, the joint spring could be stiffer than the
 /// pose supports.
 const LEADING: f64 = 0.5;
 
@@ -43,10 +43,11 @@ const LEADING: f64 = 0.5;
 /// stiffness n^T K n (rho^2 - r^2). n is the direction in which the joint moves the tip. The stiffness starts from zero
 /// at r = rho, and is zero if K has no stiffness along n.
 ///
-/// The exact law does not distinguish the two joint solutions of a tip position, which bend joint 2 to opposite sides.
-/// While joint 2 is bent to the opposite side from theta_d, a spring between the joint angles and theta_d therefore
-/// replaces the spring of the exact law. This joint spring has no singular pose, and leads the finger through the
-/// straight pose.
+/// There are two laws. The report's law is K_theta (theta_d - theta), and the exact law is J^T f with the deflection of
+/// the tip itself. A tip position has two joint solutions, which bend joint 2 to opposite sides, and the exact law does
+/// not distinguish them. While joint 2 is bent to the opposite side from theta_d, a spring between the joint angles and
+/// theta_d therefore replaces the spring of the exact law. This joint spring has no singular pose, and leads the finger
+/// through the straight pose.
 #[derive(Clone, Debug)]
 pub struct JointStiffness {
     links: Links,
@@ -133,8 +134,9 @@ fn k_theta(jacobian: &Matrix6x3<f64>, stiffened: &Matrix6x3<f64>, hold: f64) -> 
 }
 
 /// Returns the position of the tip, cm, from the Jacobian of its motion, which already contains the sines of the pose.
-/// Joint 0 turns the tip about the y axis, so column 0 contains x and z of the tip. The derivative of the
-/// distance of the tip from the y axis with respect to the angle of joint 1 is y of the tip, its height.
+/// Joint 0 turns the tip about the y axis, so column 0 contains x and z of the tip. A rotation of joint 1 changes the
+/// distance between the tip and the y axis. The derivative of this distance with respect to the angle is y of the tip,
+/// here called the height.
 fn tip(jacobian: &Matrix6x3<f64>) -> Vector3<f64> {
     let (cosine, sine) = (jacobian[(3, 1)], -jacobian[(5, 1)]);
     let height = sine * jacobian[(0, 1)] + cosine * jacobian[(2, 1)];

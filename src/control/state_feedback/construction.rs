@@ -120,11 +120,11 @@ impl Drives {
         2.0 * numbers.relative_damping * mass * frequency
     }
 
-    /// Returns the factors on alpha and on c, which is `relative_damping`, for the common component of the tensions.
-    /// The joints do not move with this component. With alpha and c multiplied by the factors, the stretch x of the
-    /// tendons in this component obeys m x'' + c x' + alpha k x = 0. The factors give this motion a frequency and a
-    /// damping ratio that do not depend on the mass m of the rotors. With factors that did not depend on m, the
-    /// tensions of fingers with rotors of 2.5 times the inertia were low for up to 287 ms after a bump.
+    /// Returns the factors a on alpha (`inertia_gain`) and b on c (`relative_damping`) for the common component of the
+    /// tensions. The joints do not move with this component. The stretch x of the tendons in this component obeys
+    /// m x'' + b c x' + a alpha k x = 0. The factors give this motion a frequency and a damping ratio that do not depend
+    /// on the mass m of the rotors. With factors that did not depend on m, the tensions of fingers with rotors of 2.5
+    /// times the inertia were low for up to 287 ms after a bump.
     fn common_factors(&self, numbers: &Numbers, relative_damping: f64) -> CommonFactors {
         let (mass, stiffness) = (self.mass.mean(), self.stiffness.mean());
         let frequency = numbers.common_frequency;
@@ -161,9 +161,10 @@ fn link_dynamics(finger: &ConfiguredFinger) -> Result<LinkDynamics, Unusable> {
     Ok(LinkDynamics::new(finger.links(), finger.links.masses, finger.links.radii, Vector3::zeros()))
 }
 
-/// Returns the dither of the tensions. `highest` is the largest tension of each tendon, N. The dither of a burst lowers
-/// no desired tension to less than `lowest`, N. `lowest` is t_min plus the largest amplitude by which the dither of the
-/// joints changes a tension. It contains no reserve for the noise of the gauges, because a burst is short.
+/// Returns the dither of the tensions. `highest` is the largest tension of each tendon, N. After a fast motion, the
+/// dither is larger for a short time, the burst. A burst lowers no desired tension to less than `lowest`, N. `lowest`
+/// is t_min plus the largest amplitude by which the dither of the joints changes a tension. It contains no reserve for
+/// the noise of the gauges, because a burst is short.
 fn tension_dither(
     finger: &ConfiguredFinger,
     numbers: &Numbers,

@@ -235,9 +235,8 @@ faults! {
         "the program or its user wants this finger to be at rest, or detected a danger",
         "Make sure that the finger can move safely, then recover it", [Recover];
     51 SetPointExpired "SET_POINT_EXPIRED" Fault Finger Time "set point expired",
-        "the planner has sent nothing for longer than its last set point was valid; with finger.motion.on_expiry = \
-         \"end state\" the finger stops at once, and otherwise after finger.motion.end_state_ms, if this key is set; \
-         with sun2xp serve, it stops when no target has arrived for the time serve.end_ms",
+        "the planner has sent nothing since its last set point expired (if finger.motion.on_expiry = \"hold\", for \
+         finger.motion.end_state_ms after that); with sun2xp serve: no target has arrived for serve.end_ms",
         "the planner hangs, is stopped in a debugger, or plans for longer than its set points are valid; with sun2xp \
          serve also: the planner was killed, or the network is cut or loses packets",
         "Recover the finger and send set points in time, or raise finger.motion.valid_ms, finger.motion.end_state_ms \

@@ -12,7 +12,8 @@ use crate::model::{FingerNumber, Section, Shown, UnusableConfiguration};
 use std::ops::Range;
 use toml_edit::{Document, Item, Table, Value, value};
 
-/// The tables that a configuration file may have. Other programs read the tables `serve` and `remote`.
+/// The tables that a configuration file may have. `sun2xp-serve` reads the table `serve`, and
+/// `libsun2xp_remote` the table `remote`.
 const TABLES: [&str; 5] = ["hand", "telemetry", "finger", "serve", "remote"];
 
 /// The keys of a finger whose value is a table with a single key, which selects a variant.
@@ -117,12 +118,11 @@ fn refuse_simulated_beside_real(
     let (Some(real), Some(missing)) = (real, unnamed.first()) else { return Ok(()) };
     let own = root.get("finger").and_then(|all| all.get(real.to_string()));
     let span = span_of(own, "port").or_else(|| span_of(own, "board"));
-    let others = configuration.hand.fingers.members().filter(|number| number != missing);
-    let fingers: Vec<String> = others.map(|number| number.to_string()).collect();
+    let fingers: Vec<String> = named.iter().map(FingerNumber::to_string).collect();
     let reason = format!(
         "is missing, and finger {real} has a real port: a finger is not simulated beside real ones unless the file \
-         says so. If the hand does not have finger {missing}, set hand.fingers = [{}]. Otherwise name its port or its \
-         board, or set port = \"simulated\" in [finger.{missing}]",
+         says so. If the file names the ports of all fingers of the hand, set hand.fingers = [{}]. Otherwise name the \
+         port or the board of finger {missing}, or set port = \"simulated\" in [finger.{missing}]",
         fingers.join(", ")
     );
     Err(Wrong::at(span, reason).in_key("port").in_key(&format!("finger.{missing}")))
@@ -200,7 +200,8 @@ fn span_of(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
     parent.as_table_like()?.key(last)?.span()
 }
 
-/// The line of a dotted key in a text with keys, counted from 1; none if the text does not contain the key.
+/// The number of the line of a dotted key in a TOML text; the first line is 1. None if the text does not contain the
+/// key.
 pub(in crate::hand) fn line_of_key(text: &str, dotted: &str) -> Option<usize> {
     let keys = Document::parse(text).ok()?;
     Wrong::at(span_of(Some(keys.as_item()), dotted), String::new()).line(text)

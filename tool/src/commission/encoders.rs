@@ -139,7 +139,8 @@ fn name_the_exchange(desk: &mut Desk, outcome: &mut Outcome, order: [usize; 4]) 
         {
             outcome.wrong(Wrong::EncodersExchanged(order));
         }
-        // The cables belong together: the command of each number has turned the encoder of the same number.
+        // The cables of the motors and of the encoders are exchanged in the same way: a command to motor n turns
+        // encoder n.
         Ok(_)
         | Err(Refused::Obstacle(
             Obstacle::NothingTightens { .. } | Obstacle::Swapped { .. } | Obstacle::InconsistentGauge { .. },

@@ -106,8 +106,8 @@ impl Display for NoAnswer {
         formatter.write_str(match self {
             Self::Left => "ended at your request, before the measurements were complete",
             Self::InputEnded => {
-                "standard input ended at a question: run the tool in a terminal, or with --yes if everything is done \
-                 by a jig"
+                "standard input ended at a question: run the tool in a terminal, or with --yes if a machine does \
+                 what the tool asks for"
             }
             Self::GivenUp(failure) => failure,
         })

@@ -1,5 +1,6 @@
 //! One run of the tool: carries out steps, and stores what they find.
 
+use super::DEFAULT_WEIGHTS;
 use super::configuration_file;
 use super::desk::Desk;
 use super::outcome::Outcome;
@@ -18,6 +19,8 @@ use sun2xp::model::{FingerNumber, ShownPath};
 pub struct Session<'a> {
     pub config: &'a Path,
     pub finger: FingerNumber,
+    /// The masses of the weights, kg.
+    pub weights: &'a [f64],
     /// The file with the steps that are done.
     pub file: PathBuf,
 }
@@ -78,7 +81,14 @@ impl Session<'_> {
     /// How to go on later.
     fn continuation(&self) -> String {
         let (config, finger) = (ShownPath(self.config), self.finger);
-        format!("The motors are off. To continue: sun2xp commission --config {config} --finger {finger}")
+        let weights = match self.weights == DEFAULT_WEIGHTS {
+            true => String::new(),
+            false => {
+                let masses: Vec<_> = self.weights.iter().map(f64::to_string).collect();
+                format!(" --weights {}", masses.join(","))
+            }
+        };
+        format!("The motors are off. To continue: sun2xp commission --config {config} --finger {finger}{weights}")
     }
 }
 

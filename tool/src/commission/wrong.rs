@@ -29,7 +29,8 @@ pub enum Wrong {
     /// The encoder counts this number of times in a revolution, and the configuration expects another number.
     EncoderScale(usize, u32, u32),
     EncoderUnclear(usize, f64),
-    /// `order[n]` is the encoder that counted when motor n + 1 was turned, or 0. No exchange of cables explains it.
+    /// `order[n]` is the encoder that counted when motor n + 1 was turned, or 0. It is not certain that an exchange of
+    /// cables explains this order.
     EncodersUnclear([usize; 4]),
     /// The person turned the motors in the direction that winds the tendons in.
     TurnedWrongWay,
@@ -51,7 +52,8 @@ pub enum Wrong {
     /// The count without load is at the end of the converter's range. The values are this count, and the zero that
     /// follows from the weights.
     GaugeAtEnd(usize, f64, f64),
-    /// `order[n]` is the gauge that showed the weight on tendon n + 1, or 0. No exchange of cables explains it.
+    /// `order[n]` is the gauge that showed the weight on tendon n + 1, or 0. It is not certain that an exchange of
+    /// cables explains this order.
     GaugesUnclear([usize; 4]),
     TendonLoose(usize),
     /// Tension at rest divided by the intended tension.
@@ -78,7 +80,7 @@ pub enum Wrong {
 }
 
 impl Wrong {
-    /// Whether nothing must be repaired, because the configuration compensates the error or the hand works with it.
+    /// Whether no repair is needed, because the configuration compensates the error or the hand works in spite of it.
     pub fn compensated(&self) -> bool {
         matches!(
             self,

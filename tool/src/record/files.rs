@@ -22,9 +22,9 @@ const MOST_CONTROLLERS: usize = 4;
 /// When a new file begins, and how many files are kept.
 #[derive(Clone, Copy, Default)]
 pub struct Limits {
-    /// Largest size of a file, bytes.
+    /// Size at which a new file begins, bytes.
     pub bytes: Option<u64>,
-    /// Largest age of a file.
+    /// Age at which a new file begins.
     pub age: Option<Duration>,
     /// Largest number of files.
     pub keep: Option<u32>,

@@ -82,7 +82,7 @@ pub struct Scheduled {
 }
 
 /// A condition of the schedule that may be violated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Violation {
     /// The line is busy for a larger part of a period than permitted.

@@ -139,7 +139,7 @@ impl Report {
         }
     }
 
-    /// Returns that a deadline may be missed at the configured rate, and what to do.
+    /// Returns that a deadline may be missed at the configured rate, why, and what to do.
     pub fn complaint(&self) -> String {
         let change = match self.configured.fastest.rate {
             Some(fastest) if f64::from(fastest) > self.rate => format!("raise hand.rate to {fastest}"),
@@ -148,10 +148,17 @@ impl Report {
                 "reduce the wake-up latency and the computing time (sun2xp doctor shows what increases them)".into()
             }
         };
-        format!(
-            "at {:.0} Hz a deadline may be missed: {change}, raise finger.baud or spread the fingers over cores",
-            self.rate
-        )
+        let mut violations: Vec<_> =
+            self.configured.threads.iter().filter_map(|thread| thread.scheduled.violation).collect();
+        violations.sort_unstable();
+        violations.dedup();
+        let causes: Vec<_> = violations.iter().map(|violation| missed(*violation)).collect();
+        // The cores have no influence on the load of the line.
+        let others = match violations == [Violation::Line] {
+            true => " or raise finger.baud",
+            false => ", raise finger.baud or spread the fingers over cores",
+        };
+        format!("at {:.0} Hz a deadline may be missed, because {}: {change}{others}", self.rate, causes.join(" and "))
     }
 
     pub fn write(&self, out: &mut impl Write, screen: &Screen) -> io::Result<()> {

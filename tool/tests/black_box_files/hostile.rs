@@ -62,7 +62,8 @@ fn skipped_periods_without_end_are_refused() {
 #[test]
 fn invalid_configurations_make_no_controller() {
     type Alter = fn(&mut Recording);
-    let weak = "friction.joint_coulomb: this value causes an error of the key motor.continuous_torque. The file was";
+    let weak =
+        "friction.joint_coulomb: because of this value, the key motor.continuous_torque is refused. The file was";
     let sign = "motor.sign: [1, 0, 1, 1] has an entry other than 1 and -1. The file was altered";
     let alterations: [(Alter, &str); 10] = [
         (|recording| recording.origin.controllers[0].finger.geometry.r[1][2] = 1e308, "geometry.r"),

@@ -16,7 +16,7 @@ use sun2xp::model::{FingerNumber, LinkDynamics};
 use sun2xp::nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
 use tempfile::TempDir;
 
-/// A configuration in which every value that the models contain differs from its default.
+/// A configuration in which the lengths, masses, moment arms, stop margin and gravity differ from their defaults.
 const HAND: &str = r#"
 [hand]
 gravity = [1.0, -2.0, -9.0]

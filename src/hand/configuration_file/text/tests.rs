@@ -61,6 +61,8 @@ fn a_finger_without_a_port_is_not_simulated_beside_real_ones() {
     let (line, reason) = refusal(text);
     assert_eq!(line, Some(2), "{reason}");
     assert!(reason.starts_with("finger.1.port: is missing") && reason.contains("hand.fingers = [2, 3]"), "{reason}");
+    let (_, reason) = refusal("[finger.3]\nport = '/dev/a'\n");
+    assert!(reason.starts_with("finger.1.port: is missing") && reason.contains("hand.fingers = [3]"), "{reason}");
     for beside in ["[finger.1]\nport = 'simulated'\n", "[hand]\nfingers = [2, 3]\n"] {
         let (hand, _) = parse(&format!("{text}{beside}")).expect("usable");
         assert!(hand.fingers[2].board.is_some() && !hand.fingers[2].simulated(), "{beside}");
@@ -149,8 +151,8 @@ fn values_with_which_no_controller_can_be_constructed_are_refused_with_the_key_t
         (
             "[finger.2.friction]\njoint_coulomb = [20, 20, 20]\n",
             2,
-            "finger.2.friction.joint_coulomb: this value causes an error of the key motor.continuous_torque. \
-             Correct this value first. The error is: motor.continuous_torque: is too low",
+            "finger.2.friction.joint_coulomb: because of this value, the key motor.continuous_torque is refused. \
+             Correct this value first. The refusal is: motor.continuous_torque: is too low",
             "lower tendon.minimum",
         ),
         (

@@ -9,10 +9,14 @@ impl Wrong {
     /// What to do, or what the tool has done.
     pub fn remedy(&self) -> String {
         match self {
-            Self::EmergencyStop => "Release it, reset the safety relay, and check the wires of its contact".into(),
+            Self::EmergencyStop => {
+                "Release it, reset the safety relay, and check the wires of its contact. If the board reports the \
+                 stop only while the button is not pressed, correct the polarity of the input"
+                    .into()
+            }
             Self::EmergencyStopUnseen => {
-                "The contact of the stop is not wired to the board, or the input for it is inverted: check both. \
-                 Without this signal the library does not know that the motors have no power"
+                "Check the wires from the contact of the stop to the board. Without this signal the library does not \
+                 know that the motors have no power"
                     .into()
             }
             Self::Supply => "Switch the supply on, and check the wire of its DC-OK output".into(),
@@ -139,8 +143,8 @@ impl Wrong {
                     .into()
             }
             Self::PoseRefused(_) => {
-                "If a jig held the finger, the finger probably trembled in the jig because its gauges lag: zero it at \
-                 its stops instead. For that, leave with q and set three keys of this finger in the \
+                "If a jig held the finger, it probably trembled because the signals of its gauges arrive too late: \
+                 zero it at its stops instead. For that, leave with q and set three keys of this finger in the \
                  configuration file: zeroing.method = \"stops\", and the angles of its stops in \
                  zeroing.lower_stop_degrees and zeroing.upper_stop_degrees. Then start the tool again: it reads the \
                  file only when it starts"
