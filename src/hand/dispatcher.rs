@@ -61,9 +61,9 @@ impl Dispatcher {
         Self { members: Arc::new(members), fingers, gate, collected: Arc::new(collected), collector: None }
     }
 
-    /// Starts the thread that collects timings and black boxes, so that none is lost while no planner calls. The thread
-    /// also causes the black box of a faulted finger to be written into `folder`, and publishes what it collects to
-    /// readers of telemetry.
+    /// Starts the thread that collects timings and black boxes, so that no data are lost if the planner makes no calls
+    /// for a while. The thread also causes the black box of a faulted finger to be written into `folder`, and publishes
+    /// what it collects to readers of telemetry.
     pub fn start_collecting(
         &mut self,
         folder: Option<PathBuf>,

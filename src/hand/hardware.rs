@@ -123,8 +123,8 @@ fn fit(gauge: &mut ConfiguredGauge, unit: f64) -> Result<(), Unusable> {
 pub(super) fn warn_of_lost_zero(number: FingerNumber, finger: &ConfiguredFinger, zero_valid: bool) {
     if finger.has_io() && !zero_valid {
         print_notice(&format!(
-            "the hardware of finger {number} starts without a reference for its encoder counts \
-             (SUN2XP_IO_ZERO_LOST), so its joint angles are wrong: zero the finger before it moves"
+            "the hardware of finger {number} starts without a reference for its encoder counts (zero lost), so its \
+             joint angles are wrong: zero the finger before it moves"
         ));
     }
 }
@@ -133,9 +133,9 @@ pub(super) fn warn_of_lost_zero(number: FingerNumber, finger: &ConfiguredFinger,
 /// has none when it starts for a recovery. The library cannot see whether the hardware has continued its counts.
 pub(super) fn warn_of_doubtful_zero(number: FingerNumber) {
     print_notice(&format!(
-        "the hardware of finger {number} starts again without a reference for its encoder counts \
-         (SUN2XP_IO_ZERO_LOST). If the hardware has restarted its counts since the finger was zeroed, the joint \
-         angles of the finger are wrong: zero the finger again"
+        "the hardware of finger {number} starts again without a reference for its encoder counts (zero lost). If the \
+         hardware has restarted its counts since the finger was zeroed, the joint angles of the finger are wrong: zero \
+         the finger again"
     ));
 }
 

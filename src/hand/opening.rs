@@ -225,7 +225,8 @@ fn shake_hands(
 }
 
 fn initial_stiffness(configuration: &Configuration, number: FingerNumber) -> Result<Matrix3<f64>, Unusable> {
-    // The error says what to send, but the hand is not open. Its cause is the part before the first colon.
+    // The text of the error says what to send, but the hand is not open yet. So only the cause is used, which is the
+    // part of the text before the first colon.
     let refused = |error: SetPointError| {
         let text = error.to_string();
         let cause = text.split(": ").next().unwrap_or(&text);

@@ -7,17 +7,18 @@ use std::path::{Path, PathBuf};
 /// A function of the C interface whose name is also the name of a type of the Rust library.
 const SHARED: &str = "HandError";
 
-/// The prefixes of constants in the C header.
-const PREFIXES: [&str; 3] = ["SUN2XP_FAULT_", "SUN2XP_STAGE_", "SUN2XP_STATE_"];
+/// The constants of the C header, a name and a value in each line.
+const CONSTANTS: &str = include_str!("../../docs/abi/constants");
 
-/// Returns the names of the functions that `folder` exports to C.
+/// Returns the names of the constants of the C header, and of the functions that `folder` exports to C.
 pub fn exported(folder: &Path) -> BTreeSet<String> {
     let texts = files(folder).into_iter().map(|file| fs::read_to_string(file).expect("a source file"));
     let names = |text: String| {
         let after = text.split("extern \"C\" fn ").skip(1).map(|rest| rest.split(['(', '<']).next().map(str::to_owned));
         after.flatten().filter(|name| name != SHARED && is_of_c(name)).collect::<Vec<_>>()
     };
-    texts.flat_map(names).collect()
+    let constants = CONSTANTS.lines().filter_map(|line| line.split(' ').next()).map(str::to_owned);
+    texts.flat_map(names).chain(constants).collect()
 }
 
 /// Returns whether a function has a name of the C interface. The folder has other `extern "C"` functions, which are not
@@ -26,16 +27,14 @@ fn is_of_c(name: &str) -> bool {
     name.starts_with(char::is_uppercase) || name.starts_with("sun2xp_")
 }
 
-/// Returns the uses of these names, and of constants of the header, in the files of `folder` except its subfolder
-/// `except`: file, line and name.
+/// Returns the uses of `names` in the files of `folder` except its subfolder `except`: file, line and name.
 pub fn used(names: &BTreeSet<String>, folder: &Path, except: &Path) -> Vec<String> {
     let mut found = Vec::new();
     for file in files(folder).into_iter().filter(|file| !file.starts_with(except)) {
         let text = fs::read_to_string(&file).expect("a source file");
         for (index, line) in text.lines().enumerate() {
             let words = line.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
-            let constant = |word: &str| PREFIXES.iter().any(|prefix| word.starts_with(prefix) && word != *prefix);
-            let of_c = words.filter(|&word| names.contains(word) || constant(word));
+            let of_c = words.filter(|&word| names.contains(word));
             found.extend(of_c.map(|word| format!("{}:{}: {word}", file.display(), index + 1)));
         }
     }

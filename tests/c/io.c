@@ -142,7 +142,7 @@ static void refusals(const struct sun2xp_io *io)
 
 static void count_notices(int severity, const char *text, void *user)
 {
-    if (severity == SUN2XP_LOG_WARNING && strstr(text, "SUN2XP_IO_ZERO_LOST") != NULL)
+    if (severity == SUN2XP_LOG_WARNING && strstr(text, "(zero lost)") != NULL)
         ++*(int *)user;
 }
 

@@ -190,7 +190,7 @@ pub enum SetPointError {
     #[error("a group has 0 to 3 commands, and not {0}: send at most one command for each finger")]
     GroupSize(i32),
     /// The condition to wait for does not exist.
-    #[error("there is no condition {0} to wait for: pass SUN2XP_WAIT_ARRIVED or SUN2XP_WAIT_SETTLED")]
+    #[error("there is no condition {0} to wait for: pass the constant for \"arrived\" or for \"settled\"")]
     NoSuchCondition(i32),
     /// A time limit is negative or NaN.
     #[error("the time limit of {0} s is negative or not a number: pass zero or a positive time")]
