@@ -7,7 +7,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::model::configuration::ConfiguredFinger;
 
-/// Distance from a soft limit, as a part of the range, within which no pose is tried.
+/// Fraction of the range of each joint, at either end of the range, in which no pose is tried.
 const MARGIN: f64 = 0.04;
 
 /// Returns two poses within the joint limits, rad, with joint 2 between the given angles.
@@ -24,8 +24,9 @@ fn two_poses(finger: &ConfiguredFinger, random: &mut Pcg64, joint_2: [[f64; 2]; 
     })
 }
 
-/// Sends a finger from one pose to another, and returns the joint angles at which it rests, rad. A finger that is held
-/// is let go only when the anchor of its spring has arrived.
+/// Sends a finger from one pose to another, and returns the joint angles at which it rests, rad. If `held` is true, the
+/// finger is held in the first pose until the rest position of its spring has arrived at the second pose, which takes
+/// less than 2 s.
 fn sent(finger: &ConfiguredFinger, [from, to]: [Vector3<f64>; 2], stiffness: f64, held: bool) -> Vector3<f64> {
     let mut finger = finger.clone();
     finger.simulation.start_degrees = from.map(f64::to_degrees).into();
@@ -35,7 +36,7 @@ fn sent(finger: &ConfiguredFinger, [from, to]: [Vector3<f64>; 2], stiffness: f64
     servo.run(0.3, &spring(from, stiffness));
     if held {
         servo.plant.hold(from);
-        servo.run(1.0, &spring(to, stiffness));
+        servo.run(2.0, &spring(to, stiffness));
         servo.plant.release();
     }
     servo.run(2.5, &spring(to, stiffness));

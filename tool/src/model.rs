@@ -19,8 +19,9 @@ use sun2xp::model::configuration::Configuration;
 /// Writes a model of the configured hand for other programs: palm, fingers, joints with their stops, masses, tendons
 /// and the object of the simulation.
 ///
-/// Masses, friction and moment arms are those of `[finger.simulation]`. Shapes and colours are only for display. The
-/// frames of the fingertips are `finger1_tip` to `finger3_tip`.
+/// Masses and friction are those of `[finger.simulation]`. Moment arms are `finger.geometry.r` times `moment_arm_ratio`
+/// of that table. Shapes and colours are only for display. The frames of the fingertips are `finger1_tip` to
+/// `finger3_tip`.
 #[derive(clap::Args)]
 pub struct Arguments {
     #[command(flatten)]
