@@ -37,8 +37,10 @@ int main(int count, char **arguments)
     CHECK(strstr(sun2xp_fault_text(Fault.number), "port vanished") != NULL);
     CHECK(sun2xp_fault(HAND, 2, &Fault) == 0 && Fault.number == 0);
 
-    for (number = 1; number <= SUN2XP_FAULT_WARM_MOTOR; number++)
+    for (number = 1; number <= SUN2XP_FAULT_WRONG_WIRING; number++)
         CHECK(strstr(sun2xp_fault_text(number), ". Likely cause: ") != NULL);
+    /* A later fault belongs into the loop. */
+    CHECK(sun2xp_fault_text(number)[0] == '\0');
     CHECK(sun2xp_fault_text(0)[0] == '\0' && sun2xp_fault_text(-1)[0] == '\0' && sun2xp_fault_text(1000)[0] == '\0');
     CHECK(CloseHand() == 0);
     return 0;
